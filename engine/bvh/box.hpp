@@ -1,0 +1,41 @@
+#pragma once
+
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/bvh/bvh.hpp"
+
+namespace candela {
+
+/// Axis-aligned box, empty until it is grown. Points that are not numbers do not grow it.
+struct Box {
+    glm::vec3 lower{std::numeric_limits<float>::infinity()};
+    glm::vec3 upper{-std::numeric_limits<float>::infinity()};
+
+    void grow(const glm::vec3& point) {
+        lower = glm::min(lower, point);
+        upper = glm::max(upper, point);
+    }
+    void grow(const Box& box) {
+        lower = glm::min(lower, box.lower);
+        upper = glm::max(upper, box.upper);
+    }
+};
+
+[[nodiscard]] inline Box bounds(const Triangle& triangle) {
+    Box box;
+    box.grow(triangle.a);
+    box.grow(triangle.b);
+    box.grow(triangle.c);
+    return box;
+}
+
+/// Half the surface area; 0 for an empty box.
+[[nodiscard]] inline float half_area(const glm::vec3& lower, const glm::vec3& upper) {
+    const glm::vec3 size = glm::max(upper - lower, glm::vec3(0.0F));
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+}  // namespace candela

@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/bvh/box.hpp"
+#include "engine/bvh/bvh.hpp"
+
+namespace candela {
+namespace {
+
+constexpr std::uint32_t bin_count = 16;
+constexpr std::uint32_t max_leaf_size = 4;
+
+// A triangle as the builder sees it. The centroid is finite whatever the triangle is.
+struct Reference {
+    Box box;
+    glm::vec3 centroid;
+    std::uint32_t triangle;
+};
+
+// A node still to be made from references [first, first + count).
+struct Task {
+    std::uint32_t node;
+    std::uint32_t first;
+    std::uint32_t count;
+    std::uint32_t depth;
+};
+
+// Sorts centroids into equal slices of their extent along one axis; all into the first if they have no
+// extent.
+struct Slicing {
+    glm::length_t axis;
+    float lower;
+    float slices_per_metre = 0.0F;
+
+    Slicing(const Box& centroids, glm::length_t along) : axis(along), lower(centroids.lower[along]) {
+        const float extent = centroids.upper[along] - lower;
+        if (extent > 0.0F) {
+            slices_per_metre = static_cast<float>(bin_count) / extent;
+        }
+    }
+
+    [[nodiscard]] std::uint32_t slice(const Reference& reference) const {
+        // In this order the maximum turns what is not a number (0 · ∞) into 0.
+        const float at = std::max(0.0F, (reference.centroid[axis] - lower) * slices_per_metre);
+        return static_cast<std::uint32_t>(std::min(at, static_cast<float>(bin_count - 1)));
+    }
+};
+
+struct Bin {
+    Box box;
+    std::uint32_t count = 0;
+
+    void add(const Bin& other) {
+        box.grow(other.box);
+        count += other.count;
+    }
+    // Expected cost of intersecting what is in it, in triangle tests times area.
+    [[nodiscard]] float cost() const { return half_area(box.lower, box.upper) * static_cast<float>(count); }
+};
+using Bins = std::array<Bin, bin_count>;
+
+// References in slices below `slice` along `axis` go left. An infinite cost stands for no split.
+struct Split {
+    glm::length_t axis = 0;
+    std::uint32_t slice = 0;
+    float cost = std::numeric_limits<float>::infinity();
+};
+
+Reference make_reference(const Triangle& triangle, std::uint32_t index) {
+    const Box box = bounds(triangle);
+    glm::vec3 centroid = 0.5F * box.lower + 0.5F * box.upper;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(centroid[axis])) {
+            centroid[axis] = 0.0F;
+        }
+    }
+    return {box, centroid, index};
+}
+
+Split cheapest_split(const Bins& bins, glm::length_t axis) {
+    std::array<float, bin_count> cost_above{};  // of bins i and up
+    Bin above;
+    for (std::uint32_t i = bin_count; i-- > 0;) {
+        above.add(bins[i]);
+        cost_above[i] = above.cost();
+    }
+    Split best;
+    Bin below;
+    for (std::uint32_t i = 1; i < bin_count; ++i) {
+        below.add(bins[i - 1]);
+        const float cost = below.cost() + cost_above[i];
+        const bool divides = below.count > 0 && below.count < above.count;
+        if (divides && cost < best.cost) {
+            best = {axis, i, cost};
+        }
+    }
+    return best;
+}
+
+Split cheapest_split(std::span<const Reference> references, const Box& centroids) {
+    const std::array slicings{Slicing(centroids, 0), Slicing(centroids, 1), Slicing(centroids, 2)};
+    std::array<Bins, 3> bins;
+    for (const Reference& reference : references) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            bins[axis][slicings[axis].slice(reference)].add({reference.box, 1});
+        }
+    }
+    Split best;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        const Split split = cheapest_split(bins[static_cast<std::size_t>(axis)], axis);
+        if (split.cost < best.cost) {
+            best = split;
+        }
+    }
+    return best;
+}
+
+// Levels of median splits that bring n triangles into leaves.
+std::uint32_t median_levels(std::uint32_t n) {
+    return static_cast<std::uint32_t>(std::bit_width((n - 1) / max_leaf_size));
+}
+
+std::uint32_t split_at_median(std::span<Reference> references, const Box& centroids) {
+    const glm::vec3 extent = centroids.upper - centroids.lower;
+    const glm::length_t longer = extent.y > extent.x ? 1 : 0;
+    const glm::length_t axis = extent.z > extent[longer] ? 2 : longer;
+    const auto before = [axis](const Reference& a, const Reference& b) {
+        return std::pair(a.centroid[axis], a.triangle) < std::pair(b.centroid[axis], b.triangle);
+    };
+    const auto median = references.begin() + static_cast<std::ptrdiff_t>(references.size() / 2);
+    std::nth_element(references.begin(), median, references.end(), before);
+    return static_cast<std::uint32_t>(median - references.begin());
+}
+
+std::uint32_t split_at(const Split& split, std::span<Reference> references, const Box& centroids) {
+    const Slicing slicing(centroids, split.axis);
+    const auto goes_left = [&](const Reference& reference) { return slicing.slice(reference) < split.slice; };
+    const auto right = std::partition(references.begin(), references.end(), goes_left);
+    return static_cast<std::uint32_t>(right - references.begin());
+}
+
+// Reorders the references of a node so that the left child's come first, and counts them; 0 makes a leaf.
+std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint32_t depth) {
+    const auto n = static_cast<std::uint32_t>(references.size());
+    if (n == 1) {
+        return 0;
+    }
+    Box centroids;
+    for (const Reference& reference : references) {
+        centroids.grow(reference.centroid);
+    }
+
+    // Every node keeps room below it for median splits down to leaves, so that no input exceeds the depth.
+    const bool free_choice = depth + median_levels(n) < bvh_max_depth;
+    const Split split = free_choice ? cheapest_split(references, centroids) : Split{};
+    if (n <= max_leaf_size) {
+        // Descending costs as much as one triangle test.
+        const float area = half_area(box.lower, box.upper);
+        const bool pays = area + split.cost < area * static_cast<float>(n);
+        return pays ? split_at(split, references, centroids) : 0;
+    }
+    const bool found = split.cost < std::numeric_limits<float>::infinity();
+    return found ? split_at(split, references, centroids) : split_at_median(references, centroids);
+}
+
+}  // namespace
+
+Bvh build_bvh(std::span<const Triangle> triangles) {
+    if (triangles.empty()) {
+        return {};
+    }
+    const auto n = static_cast<std::uint32_t>(triangles.size());
+    std::vector<Reference> references;
+    references.reserve(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        references.push_back(make_reference(triangles[i], i));
+    }
+
+    Bvh bvh;
+    bvh.nodes.resize(1);
+    std::vector<Task> tasks{{0, 0, n, 0}};
+    while (!tasks.empty()) {
+        const auto [node, first, count, depth] = tasks.back();
+        tasks.pop_back();
+        const auto range = std::span(references).subspan(first, count);
+        Box box;
+        for (const Reference& reference : range) {
+            box.grow(reference.box);
+        }
+
+        const std::uint32_t left = divide(range, box, depth);
+        if (left == 0) {
+            bvh.nodes[node] = {box.lower, first, box.upper, count};
+            continue;
+        }
+        const auto child = static_cast<std::uint32_t>(bvh.nodes.size());
+        bvh.nodes[node] = {box.lower, child, box.upper, 0};
+        bvh.nodes.resize(bvh.nodes.size() + 2);
+        tasks.push_back({child + 1, first + left, count - left, depth + 1});
+        tasks.push_back({child, first, left, depth + 1});
+    }
+
+    bvh.order.reserve(n);
+    for (const Reference& reference : references) {
+        bvh.order.push_back(reference.triangle);
+    }
+    return bvh;
+}
+
+}  // namespace candela

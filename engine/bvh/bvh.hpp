@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace candela {
+
+/// A triangle in world space (metres), counter-clockwise from its front.
+struct Triangle {
+    glm::vec3 a;
+    glm::vec3 b;
+    glm::vec3 c;
+};
+
+/// Node of a binary bounding-volume hierarchy, laid out as the GPU reads it (std430, 32 bytes).
+/// Inner (`count` == 0): children are nodes `first` and `first + 1`. Leaf: entries [first, first + count) of
+/// `Bvh::order`.
+struct BvhNode {
+    glm::vec3 lower;
+    std::uint32_t first;
+    glm::vec3 upper;
+    std::uint32_t count;
+};
+static_assert(sizeof(BvhNode) == 32);
+
+/// Deepest path from the root to a leaf, in edges, that any hierarchy has; traversal stacks hold this many
+/// entries.
+inline constexpr std::uint32_t bvh_max_depth = 48;
+
+/// A hierarchy over triangles that it does not own. Empty (no nodes) for no triangles.
+struct Bvh {
+    std::vector<BvhNode> nodes;  ///< nodes[0] is the root; at most 2n - 1, children behind their parents
+    std::vector<std::uint32_t> order;  ///< a permutation of the triangles' indices, leaf by leaf
+};
+
+/// Points origin + t·direction with t in (t_min, t_max), t_min >= 0; `direction` need not be unit length.
+struct Ray {
+    glm::vec3 origin;
+    glm::vec3 direction;
+    float t_min = 0.0F;
+    float t_max = std::numeric_limits<float>::infinity();
+};
+
+/// Barycentric hit: the point is (1-u-v)·a + u·b + v·c of triangle `triangle` (its index in the caller's
+/// span).
+struct Hit {
+    float t;
+    float u;
+    float v;
+    std::uint32_t triangle;
+};
+
+/// Builds by binned surface-area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
+/// Hierarchies", 2007), falling back to median splits where that would exceed `bvh_max_depth`. Leaves hold at
+/// most 4 triangles. O(n log n), deterministic. Vertices that are not finite spoil only the boxes around
+/// them. Fewer than 2^31 triangles.
+[[nodiscard]] Bvh build_bvh(std::span<const Triangle> triangles);
+
+/// Fits the boxes to moved triangles, keeping the topology. `triangles` has the size it was built with. O(n).
+void refit(Bvh& bvh, std::span<const Triangle> triangles);
+
+/// Expected number of inner nodes entered plus triangles tested by a ray that enters the root, by surface
+/// areas; 0 if the root has none. Tells when refitting has degraded the hierarchy.
+[[nodiscard]] float sah_cost(const Bvh& bvh);
+
+/// Nearest triangle along the ray, whichever side it shows. At equal distance the lowest index wins.
+[[nodiscard]] std::optional<Hit> closest_hit(const Bvh& bvh, std::span<const Triangle> triangles,
+                                             const Ray& ray);
+
+/// Whether anything lies on the ray.
+[[nodiscard]] bool any_hit(const Bvh& bvh, std::span<const Triangle> triangles, const Ray& ray);
+
+/// Ray against one triangle (Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997),
+/// two-sided. The hit is held to the triangle's box, so that traversal finds exactly what testing every
+/// triangle finds.
+[[nodiscard]] std::optional<Hit> intersect(const Triangle& triangle, std::uint32_t index, const Ray& ray);
+
+}  // namespace candela

@@ -1,0 +1,42 @@
+#include <algorithm>
+
+#include "engine/bvh/box.hpp"
+#include "engine/bvh/bvh.hpp"
+
+namespace candela {
+
+void refit(Bvh& bvh, std::span<const Triangle> triangles) {
+    // Children stand behind their parents, so that going backwards meets them first.
+    for (auto at = bvh.nodes.rbegin(); at != bvh.nodes.rend(); ++at) {
+        BvhNode& node = *at;
+        Box box;
+        for (std::uint32_t i = 0; i < node.count; ++i) {
+            box.grow(bounds(triangles[bvh.order[node.first + i]]));
+        }
+        if (node.count == 0) {
+            const BvhNode& left = bvh.nodes[node.first];
+            const BvhNode& right = bvh.nodes[node.first + 1];
+            box = {glm::min(left.lower, right.lower), glm::max(left.upper, right.upper)};
+        }
+        node.lower = box.lower;
+        node.upper = box.upper;
+    }
+}
+
+float sah_cost(const Bvh& bvh) {
+    if (bvh.nodes.empty()) {
+        return 0.0F;
+    }
+    const BvhNode& root = bvh.nodes.front();
+    const double root_area = half_area(root.lower, root.upper);
+    if (!(root_area > 0.0)) {
+        return 0.0F;
+    }
+    double cost = 0.0;
+    for (const BvhNode& node : bvh.nodes) {
+        cost += half_area(node.lower, node.upper) * static_cast<double>(std::max(node.count, 1U));
+    }
+    return static_cast<float>(cost / root_area);
+}
+
+}  // namespace candela

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <string_view>
+
+namespace candela {
+
+/// What a World stores: any copyable value. (`bool` alone is out, because std::vector packs it into bits.)
+template <class C>
+concept Component = std::copyable<C> && !std::same_as<C, bool>;
+
+namespace detail {
+
+template <class T>
+consteval std::string_view signature() {
+    return __PRETTY_FUNCTION__;
+}
+
+/// GCC and Clang frame a type's name by fixed text; a type of known name tells how much of it on each side.
+inline constexpr std::string_view known_name = "double";
+inline constexpr std::size_t prefix = signature<double>().find(known_name);
+inline constexpr std::size_t suffix = signature<double>().size() - prefix - known_name.size();
+
+}  // namespace detail
+
+/// The type's name without its namespaces: "PointLight" for candela::PointLight. Points into static storage.
+template <class C>
+[[nodiscard]] consteval std::string_view component_name() {
+    std::string_view name = detail::signature<C>();
+    name.remove_prefix(detail::prefix);
+    name.remove_suffix(detail::suffix);
+    const auto scope = name.substr(0, name.find('<')).rfind("::");
+    return scope == std::string_view::npos ? name : name.substr(scope + 2);
+}
+
+}  // namespace candela

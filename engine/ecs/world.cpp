@@ -1,0 +1,69 @@
+#include "engine/ecs/world.hpp"
+
+#include <fmt/format.h>
+
+namespace candela {
+
+std::string to_string(Entity entity) {
+    if (!entity) {
+        return "the null entity";
+    }
+    return fmt::format("entity {} (generation {})", entity.index, entity.generation);
+}
+
+EntityError EntityError::not_alive(Entity entity, std::string_view component) {
+    return EntityError(fmt::format("{} is not alive, so it has no {}", to_string(entity), component));
+}
+
+EntityError EntityError::lacks(Entity entity, std::string_view component) {
+    return EntityError(fmt::format("{} has no {}", to_string(entity), component));
+}
+
+World::World(const World& other)
+    : generations_(other.generations_), free_(other.free_), live_(other.live_), tick_(other.tick_) {
+    for (const auto& [type, pool] : other.pools_) {
+        pools_.emplace(type, pool->clone());
+    }
+}
+
+World& World::operator=(const World& other) {
+    return *this = World(other);
+}
+
+Entity World::create() {
+    if (free_.empty()) {
+        free_.push_back(static_cast<std::uint32_t>(generations_.size()));
+        generations_.push_back(0);
+    }
+    const std::uint32_t index = free_.back();
+    free_.pop_back();
+    ++live_;
+    return {index, ++generations_[index]};
+}
+
+void World::destroy(Entity entity) {
+    require_alive(entity, "components to destroy");
+    bool changed = false;
+    for (auto& [type, pool] : pools_) {
+        changed |= pool->remove(entity, tick_ + 1);
+    }
+    tick_ += changed ? 1 : 0;
+    --live_;
+    // A slot whose generations are used up is never let again, lest an old handle come back to life.
+    if (++generations_[entity.index] != std::numeric_limits<std::uint32_t>::max() - 1) {
+        free_.push_back(entity.index);
+    }
+}
+
+bool World::alive(Entity entity) const {
+    const bool occupied = entity.generation % 2 == 1;
+    return occupied && entity.index < generations_.size() && generations_[entity.index] == entity.generation;
+}
+
+void World::require_alive(Entity entity, std::string_view component) const {
+    if (!alive(entity)) {
+        throw EntityError::not_alive(entity, component);
+    }
+}
+
+}  // namespace candela

@@ -1,0 +1,166 @@
+#include "engine/graph/compile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "engine/graph/details/barriers.hpp"
+#include "engine/graph/details/index_table.hpp"
+#include "engine/graph/details/objects.hpp"
+#include "engine/graph/details/order.hpp"
+
+namespace candela {
+namespace detail {
+namespace {
+
+/// Checks that passes have names of their own, and resolves those that `after` gives.
+std::vector<Edge> resolve_passes(const Declaration& declared, std::vector<Fault>& faults) {
+    IndexTable table(declared.pass_count());
+    const auto named = [&](std::string_view name) {
+        return [&declared, name](std::uint32_t pass) { return declared.passes[pass].name == name; };
+    };
+    for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
+        const std::string_view name = declared.passes[pass].name;
+        if (table.find_or_insert(hash_of(name), pass, named(name)) != none) {
+            faults.push_back({FaultCode::duplicate_pass, fmt::format("two passes are called '{}'", name)});
+        }
+    }
+
+    std::vector<Edge> afters;
+    for (std::uint32_t pass = 0; !declared.afters.empty() && pass < declared.pass_count(); ++pass) {
+        for (const std::string_view name : declared.afters_of(pass)) {
+            const std::uint32_t before = table.find_index(hash_of(name), named(name));
+            if (before != none) {
+                afters.push_back({before, pass, none});
+            } else {
+                faults.push_back({FaultCode::unknown_pass, fmt::format("pass '{}' says after '{}', which is not a pass",
+                                                                       declared.passes[pass].name, name)});
+            }
+        }
+    }
+    return afters;
+}
+
+/// Checks that resources known from graph to graph have names of their own, and that pasts have a present.
+void check_resources(const Declaration& declared, std::vector<Fault>& faults) {
+    const auto known = [](const Resource& resource) {
+        return resource.lifetime != Lifetime::transient && resource.history_of == none;
+    };
+    const auto& resources = declared.resources;
+    IndexTable table(static_cast<std::size_t>(std::count_if(resources.begin(), resources.end(), known)));
+    for (std::uint32_t index = 0; index < resources.size(); ++index) {
+        const Resource& resource = resources[index];
+        if (resource.history != none && resource.versions == 0) {
+            faults.push_back({FaultCode::unwritten_read, fmt::format("{} '{}' has a history, but nobody writes it",
+                                                                     to_string(resource.kind), resource.name)});
+        }
+        if (!known(resource)) { continue; }
+        const auto same = [&](std::uint32_t other) {
+            return resources[other].kind == resource.kind && resources[other].name == resource.name;
+        };
+        const std::size_t hash = hash_of(resource.name) + static_cast<std::size_t>(resource.kind);
+        if (table.find_or_insert(hash, index, same) != none) {
+            faults.push_back({FaultCode::duplicate_resource,
+                              fmt::format("two {}s that are kept or imported are called '{}'",
+                                          to_string(resource.kind), resource.name)});
+        }
+    }
+}
+
+void number_versions(const Declaration& declared, Plan& plan) {
+    plan.first_version.resize(declared.resources.size() + 1);
+    std::uint32_t versions = 0;
+    for (std::size_t resource = 0; resource < declared.resources.size(); ++resource) {
+        plan.first_version[resource] = versions;
+        versions += declared.resources[resource].versions + 1;
+    }
+    plan.first_version.back() = versions;
+
+    plan.writer.assign(versions, none);
+    for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
+        for (const Access& access : declared.accesses_of(pass)) {
+            if (access.write) { plan.writer[plan.version(access.resource, access.version)] = pass; }
+        }
+    }
+}
+
+bool is_root(const Declaration& declared, std::uint32_t pass) {
+    if (declared.passes[pass].side_effect) { return true; }
+    const auto accesses = declared.accesses_of(pass);
+    return std::any_of(accesses.begin(), accesses.end(), [&](const Access& access) {
+        return access.write && declared.resources[access.resource].lifetime == Lifetime::imported;
+    });
+}
+
+/// By pass: whether something that must happen needs it.
+std::vector<std::uint8_t> needed_passes(const Declaration& declared, const Plan& plan) {
+    std::vector<std::uint8_t> needed(declared.pass_count(), 0);
+    std::vector<std::uint32_t> open;
+    open.reserve(declared.pass_count());
+    const auto need = [&](std::uint32_t pass) {
+        if (pass == none || needed[pass]) { return; }
+        needed[pass] = 1;
+        open.push_back(pass);
+    };
+    for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
+        if (is_root(declared, pass)) { need(pass); }
+    }
+    while (!open.empty()) {
+        const std::uint32_t pass = open.back();
+        open.pop_back();
+        for (const Access& access : declared.accesses_of(pass)) {
+            const std::uint32_t past_of = declared.resources[access.resource].history_of;
+            const std::uint32_t version =
+                past_of == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
+                                : plan.version(past_of, declared.resources[past_of].versions);
+            need(plan.writer[version]);
+        }
+    }
+    return needed;
+}
+
+}  // namespace
+}  // namespace detail
+
+std::string to_string(Barrier bits) {
+    static constexpr std::array<std::string_view, 10> names{
+        "vertex attrib", "element",        "uniform",       "texture fetch", "image access",
+        "command",       "texture update", "buffer update", "framebuffer",   "storage"};
+    std::string text;
+    for (std::size_t bit = 0; bit < names.size(); ++bit) {
+        if ((bits & static_cast<Barrier>(1U << bit)) == Barrier::none) { continue; }
+        text += text.empty() ? "" : " + ";
+        text += names.at(bit);
+    }
+    return text.empty() ? "none" : text;
+}
+
+CompiledGraph CompileResult::take() && {
+    if (graph) { return std::move(*graph); }
+    std::string message = "the frame graph does not compile:";
+    for (const Fault& fault : faults) { message += "\n  " + fault.message; }
+    throw GraphError(message);
+}
+
+CompileResult compile(FrameGraph&& graph, CompileOptions options) {
+    detail::Declaration declared = std::move(graph.declared_);
+    std::vector<Fault> faults = std::move(declared.faults);
+    detail::Plan plan;
+
+    const std::vector<detail::Edge> afters = detail::resolve_passes(declared, faults);
+    detail::check_resources(declared, faults);
+    detail::number_versions(declared, plan);
+    plan.order = detail::order_passes(declared, plan, afters, options.shuffle_seed, faults);
+    if (!faults.empty()) { return {std::nullopt, std::move(faults)}; }
+
+    const std::vector<std::uint8_t> needed = detail::needed_passes(declared, plan);
+    std::erase_if(plan.order, [&](std::uint32_t pass) { return !needed[pass]; });
+    detail::plan_lifetimes(declared, plan);
+    detail::plan_objects(declared, plan);
+    plan.barrier = detail::plan_barriers(declared, plan);
+    return {CompiledGraph(std::move(declared), std::move(plan)), {}};
+}
+
+}  // namespace candela

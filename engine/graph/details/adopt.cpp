@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+#include "engine/graph/details/index_table.hpp"
+#include "engine/graph/execute.hpp"
+
+namespace candela {
+namespace {
+
+constexpr Barrier all_barriers = static_cast<Barrier>((1U << 10U) - 1);
+
+std::size_t hash_of(const detail::Slot& slot) {
+    return slot.kind == ResourceKind::texture ? detail::hash_of(slot.texture) : detail::hash_of(slot.buffer);
+}
+
+bool alike(const detail::Slot& a, const detail::Slot& b) {
+    return a.kind == b.kind && a.texture == b.texture && a.buffer == b.buffer;
+}
+
+/// Objects that wait for a use. What is taken leaves a slot without an object.
+class Stock {
+ public:
+    explicit Stock(std::vector<detail::Slot>& slots) : slots_(slots) {
+        for (std::size_t index = 0; index < slots.size(); ++index) { by_hash_.emplace(hash_of(slots[index]), index); }
+    }
+
+    /// 0 if there is none alike.
+    ObjectId take(const detail::Slot& wanted) {
+        const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
+        for (auto found = first; found != last; ++found) {
+            detail::Slot& slot = slots_[found->second];
+            if (!alike(slot, wanted)) { continue; }
+            by_hash_.erase(found);
+            return std::exchange(slot.object, 0);
+        }
+        return 0;
+    }
+
+ private:
+    std::vector<detail::Slot>& slots_;
+    std::unordered_multimap<std::size_t, std::size_t> by_hash_;
+};
+
+}  // namespace
+
+GraphRuntime::~GraphRuntime() {
+    for (const detail::Slot& slot : state_.slots) { destroy(slot); }
+    trim();
+}
+
+void GraphRuntime::adopt(CompiledGraph graph) {
+    detail::State state = detail::make_state(graph);
+    std::vector<PassRecord> passes;
+    for (std::uint32_t position = 0; position < state.step_count(); ++position) {
+        passes.push_back({state.steps[position].name});
+    }
+    std::vector<detail::Slot> stock = spare_;
+    if (graph_) {
+        const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, state_);
+        for (std::size_t index = 0; index < taken.size(); ++index) {
+            if (!taken[index] && state_.slots[index].owned) { stock.push_back(state_.slots[index]); }
+        }
+    }
+    provide_objects(graph, state, stock);
+
+    // From here on nothing fails. What the graph before had and this one does not use is spared; what was spared for
+    // it until now goes.
+    const auto spared = stock.begin() + static_cast<std::ptrdiff_t>(spare_.size());
+    std::for_each(stock.begin(), spared, [this](const detail::Slot& slot) { destroy(slot); });
+    stock.erase(stock.begin(), spared);
+    std::erase_if(stock, [](const detail::Slot& slot) { return slot.object == 0; });
+    if (graph_) { carried_ = all_barriers; }  // for whatever the graph before has written
+    spare_ = std::move(stock);
+    state_ = std::move(state);
+    graph_ = std::move(graph);
+    record_.passes = std::move(passes);
+}
+
+/// Objects for the slots that lack one: from the stock, else new. If the back end throws, what was made goes again.
+void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& state,
+                                   std::vector<detail::Slot>& stock) {
+    Stock available(stock);
+    std::vector<std::uint32_t> made;
+    made.reserve(state.slots.size());
+    try {
+        for (std::uint32_t object = 0; object < state.slots.size(); ++object) {
+            detail::Slot& slot = state.slots[object];
+            if (!slot.owned || slot.object != 0) { continue; }
+            slot.object = available.take(slot);
+            if (slot.object != 0) { continue; }
+            create(slot, graph.declared().resources[graph.plan().owner[object]].name);
+            made.push_back(object);
+        }
+    } catch (...) {
+        for (const std::uint32_t object : made) { destroy(state.slots[object]); }
+        throw;
+    }
+}
+
+void GraphRuntime::create(detail::Slot& slot, std::string_view name) {
+    slot.object = slot.kind == ResourceKind::texture ? backend_.create_texture(name, slot.texture)
+                                                     : backend_.create_buffer(name, slot.buffer);
+}
+
+void GraphRuntime::destroy(const detail::Slot& slot) {
+    if (!slot.owned || slot.object == 0) { return; }
+    if (slot.kind == ResourceKind::texture) {
+        backend_.destroy_texture(slot.object);
+    } else {
+        backend_.destroy_buffer(slot.object);
+    }
+}
+
+void GraphRuntime::trim() {
+    for (const detail::Slot& slot : spare_) { destroy(slot); }
+    spare_.clear();
+}
+
+MemoryUse GraphRuntime::memory() const {
+    MemoryUse use;
+    const auto bytes = [](const detail::Slot& slot) {
+        return slot.kind == ResourceKind::texture ? byte_size(slot.texture) : byte_size(slot.buffer);
+    };
+    const auto add = [&](const detail::Slot& slot) {
+        if (slot.owned) { (slot.kind == ResourceKind::texture ? use.texture_bytes : use.buffer_bytes) += bytes(slot); }
+    };
+    for (const detail::Slot& slot : state_.slots) { add(slot); }
+    for (const detail::Slot& slot : spare_) {
+        add(slot);
+        use.spare_bytes += bytes(slot);
+    }
+    if (!graph_) { return use; }
+    for (std::uint32_t index = 0; index < graph_->declared().resources.size(); ++index) {
+        const detail::Resource& resource = graph_->declared().resources[index];
+        const std::uint32_t object = graph_->plan().object[index];
+        if (resource.lifetime != Lifetime::transient || object == detail::none) { continue; }
+        if (graph_->plan().owner[object] != index) { use.shared_by_aliasing_bytes += bytes(state_.slots[object]); }
+    }
+    return use;
+}
+
+}  // namespace candela

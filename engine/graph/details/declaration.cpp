@@ -1,0 +1,284 @@
+#include "engine/graph/details/declaration.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+namespace candela::detail {
+namespace {
+
+/// Tells graphs apart without a process-wide counter: no two live graphs share an address, and no two successive ones
+/// at one address the time. Never 0, which is no graph.
+std::uint32_t make_identity(const void* address) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+    auto bits = static_cast<std::uint64_t>(now) ^ (reinterpret_cast<std::uintptr_t>(address) << 16U);
+    bits *= 0x9e37'79b9'7f4a'7c15U;  // 2^64 divided by the golden ratio: spreads the low bits over the high ones
+    return static_cast<std::uint32_t>(bits >> 32U) | 1U;
+}
+
+template <class T>
+std::span<const T> part(const std::vector<T>& all, const std::vector<PassNode>& passes, std::uint32_t pass,
+                        std::uint32_t PassNode::*first) {
+    const std::size_t begin = passes[pass].*first;
+    const std::size_t end = pass + 1 < passes.size() ? passes[pass + 1].*first : all.size();
+    return std::span(all).subspan(begin, end - begin);
+}
+
+/// Whether some texture or buffer may be used so.
+bool allowed(ResourceKind kind, Usage usage, bool write) {
+    const bool texture = kind == ResourceKind::texture;
+    switch (usage) {
+        case Usage::storage:
+        case Usage::copy: return true;
+        case Usage::sampled: return texture && !write;
+        case Usage::uniform:
+        case Usage::vertex:
+        case Usage::index:
+        case Usage::indirect: return !texture && !write;
+        case Usage::depth_target: return texture;
+        case Usage::colour_target:
+        case Usage::layer_target: return texture && write;
+    }
+    return false;
+}
+
+template <class T>
+std::uint32_t size_of(const std::vector<T>& list) {
+    return static_cast<std::uint32_t>(list.size());
+}
+
+}  // namespace
+
+Declaration::Declaration() : arena_(std::make_unique<Arena>()) {
+    id = make_identity(arena_.get());
+    passes.reserve(16);
+    accesses.reserve(64);
+    resources.reserve(32);
+}
+
+std::span<const Access> Declaration::accesses_of(std::uint32_t pass) const {
+    return part(accesses, passes, pass, &PassNode::first_access);
+}
+std::span<const ComponentRead> Declaration::components_of(std::uint32_t pass) const {
+    return part(components, passes, pass, &PassNode::first_component);
+}
+std::span<const Parameter> Declaration::parameters_of(std::uint32_t pass) const {
+    return part(parameters, passes, pass, &PassNode::first_parameter);
+}
+std::span<const std::string_view> Declaration::afters_of(std::uint32_t pass) const {
+    return part(afters, passes, pass, &PassNode::first_after);
+}
+
+ResourceHandle Declaration::add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
+                                         std::size_t desc) {
+    Resource resource;
+    resource.name = arena_->store_text(name);
+    resource.kind = kind;
+    resource.lifetime = lifetime;
+    resource.desc = static_cast<std::uint32_t>(desc);
+    resources.push_back(resource);
+    return {id, size_of(resources) - 1, 0};
+}
+
+ResourceHandle Declaration::add_texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
+    if (textures.empty() || textures.back() != desc) { textures.push_back(desc); }
+    return add_resource(name, ResourceKind::texture, lifetime, textures.size() - 1);
+}
+
+ResourceHandle Declaration::add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime) {
+    if (buffers.empty() || buffers.back() != desc) { buffers.push_back(desc); }
+    return add_resource(name, ResourceKind::buffer, lifetime, buffers.size() - 1);
+}
+
+ResourceHandle Declaration::add_value(std::string_view name, std::type_index type, Lifetime lifetime) {
+    value_types.push_back(type);
+    return add_resource(name, ResourceKind::value, lifetime, value_types.size() - 1);
+}
+
+ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
+    if (!owns(of, kind)) {
+        fault(FaultCode::foreign_handle, fmt::format("history of a {} of another graph", to_string(kind)));
+        return {};
+    }
+    const Resource base = resources[of.resource];
+    if (base.lifetime == Lifetime::imported || base.history_of != none) {
+        const auto what = base.history_of != none ? "is a history itself" : "is imported";
+        fault(FaultCode::wrong_usage,
+              fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, what));
+        return {id, of.resource, of.version};
+    }
+    if (base.history != none) { return {id, base.history, 0}; }
+
+    const auto past = size_of(resources);
+    resources[of.resource].lifetime = Lifetime::persistent;
+    resources[of.resource].history = past;
+    Resource history = resources[of.resource];
+    history.history = none;
+    history.history_of = of.resource;
+    history.versions = 0;
+    history.reader = history.writer = none;
+    resources.push_back(history);
+    return {id, past, 0};
+}
+
+void Declaration::begin_pass(std::string_view name) {
+    if (declaring_) {
+        fault(FaultCode::nested_pass,
+              fmt::format("pass '{}' is declared inside pass '{}'", name, passes.back().name));
+    }
+    declaring_ = true;
+    PassNode pass;
+    pass.name = arena_->store_text(name);
+    pass.first_access = size_of(accesses);
+    pass.first_component = size_of(components);
+    pass.first_parameter = size_of(parameters);
+    pass.first_after = size_of(afters);
+    passes.push_back(pass);
+}
+
+void Declaration::end_pass() {
+    declaring_ = false;
+    check_late_writes();
+    check_attachments();
+}
+
+bool Declaration::owns(ResourceHandle handle, ResourceKind kind) const {
+    return handle.graph == id && handle.resource < resources.size() && resources[handle.resource].kind == kind &&
+           handle.version <= resources[handle.resource].versions;
+}
+
+std::string_view Declaration::writer_of(std::uint32_t resource, std::uint32_t version) const {
+    const auto made = [=](const Access& access) {
+        return access.write && access.resource == resource && access.version == version;
+    };
+    const auto index = std::find_if(accesses.begin(), accesses.end(), made) - accesses.begin();
+    const auto starts_later = [=](const PassNode& pass) { return pass.first_access > index; };
+    return std::prev(std::find_if(passes.begin(), passes.end(), starts_later))->name;
+}
+
+void Declaration::read(ResourceHandle handle, ResourceKind kind, Usage usage) {
+    const std::uint32_t pass = pass_count() - 1;
+    const std::string_view name = passes[pass].name;
+    if (!owns(handle, kind)) {
+        return fault(FaultCode::foreign_handle,
+                     fmt::format("pass '{}' reads a {} of another graph", name, to_string(kind)));
+    }
+    Resource& resource = resources[handle.resource];
+    check_usage(resource, usage, false);
+    if (handle.version < resource.versions) {
+        if (resource.writer == pass) {
+            fault(FaultCode::feedback, fmt::format("pass '{}' reads {} '{}' and overwrites it: a write from version 1 "
+                                                   "on depends on what was there by itself",
+                                                   name, to_string(kind), resource.name));
+        } else {
+            fault(FaultCode::stale_handle, fmt::format("pass '{}' reads {} '{}' as it was before pass '{}' wrote it", name,
+                                                       to_string(kind), resource.name,
+                                                       writer_of(handle.resource, handle.version + 1)));
+        }
+        return;
+    }
+    const bool given = resource.lifetime == Lifetime::imported || resource.history_of != none;
+    if (handle.version == 0 && !given) {
+        fault(FaultCode::unwritten_read,
+              fmt::format("pass '{}' reads {} '{}', which nobody has written", name, to_string(kind), resource.name));
+    }
+    resource.reader = pass;
+    accesses.push_back({handle.resource, handle.version, usage, false});
+}
+
+ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usage usage) {
+    const std::uint32_t pass = pass_count() - 1;
+    const std::string_view name = passes[pass].name;
+    if (!owns(handle, kind)) {
+        fault(FaultCode::foreign_handle,
+              fmt::format("pass '{}' writes a {} of another graph", name, to_string(kind)));
+        return handle;
+    }
+    Resource& resource = resources[handle.resource];
+    if (resource.history_of != none) {
+        fault(FaultCode::wrong_usage,
+              fmt::format("pass '{}' writes the history of {} '{}', which is read only", name, to_string(kind),
+                          resource.name));
+        return handle;
+    }
+    if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {
+        fault(FaultCode::wrong_usage,
+              fmt::format("pass '{}' writes value '{}', which the host sets", name, resource.name));
+        return handle;
+    }
+    check_usage(resource, usage, true);
+    if (resource.reader == pass) {
+        fault(FaultCode::feedback,
+              fmt::format("pass '{}' reads {} '{}' and overwrites it: a write from version 1 on depends on what was "
+                          "there by itself",
+                          name, to_string(kind), resource.name));
+    }
+    if (handle.version < resource.versions) {
+        late_writes_.push_back({handle.resource, handle.version, resource.writer});
+    }
+    resource.writer = pass;
+    accesses.push_back({handle.resource, ++resource.versions, usage, true});
+    return {id, handle.resource, resource.versions};
+}
+
+void Declaration::check_usage(const Resource& resource, Usage usage, bool write) {
+    if (resource.kind == ResourceKind::value) { return; }
+    const std::string_view verb = write ? "writes" : "reads";
+    if (!allowed(resource.kind, usage, write)) {
+        return fault(FaultCode::wrong_usage, fmt::format("pass '{}' {} {} '{}' as {}", passes.back().name, verb,
+                                                         to_string(resource.kind), resource.name, to_string(usage)));
+    }
+    if (resource.kind != ResourceKind::texture) { return; }
+    const Format format = texture(resource).format;
+    if ((usage == Usage::colour_target && is_depth(format)) || (usage == Usage::depth_target && !is_depth(format))) {
+        fault(FaultCode::wrong_usage,
+              fmt::format("pass '{}' {} texture '{}' as {}, but its format is {}", passes.back().name, verb,
+                          resource.name, to_string(usage), to_string(format)));
+    }
+}
+
+void Declaration::check_late_writes() {
+    const auto afters_here = afters_of(pass_count() - 1);
+    for (const LateWrite& late : late_writes_) {
+        if (late.writer == pass_count() - 1) { continue; }
+        const std::string_view writer = passes[late.writer].name;
+        if (std::find(afters_here.begin(), afters_here.end(), writer) != afters_here.end()) { continue; }
+        const Resource& resource = resources[late.resource];
+        fault(FaultCode::two_writers,
+              fmt::format("passes '{}' and '{}' both write version {} of {} '{}' without an order",
+                          writer_of(late.resource, late.version + 1), passes.back().name, late.version + 1,
+                          to_string(resource.kind), resource.name));
+    }
+    late_writes_.clear();
+}
+
+void Declaration::check_attachments() {
+    const Resource* first = nullptr;
+    const Resource* depth = nullptr;
+    for (const Access& access : accesses_of(pass_count() - 1)) {
+        const Resource& resource = resources[access.resource];
+        const bool is_target = access.usage == Usage::colour_target || access.usage == Usage::depth_target;
+        if (resource.kind != ResourceKind::texture || !is_target) { continue; }
+        if (access.usage == Usage::depth_target) {
+            if (depth && depth != &resource) {
+                fault(FaultCode::attachment_mismatch,
+                      fmt::format("pass '{}' has two depth targets, '{}' and '{}'", passes.back().name, depth->name,
+                                  resource.name));
+            }
+            depth = &resource;
+        }
+        const TextureDesc& desc = texture(resource);
+        if (desc.shape != TextureShape::flat) { continue; }
+        if (!first) { first = &resource; }
+        const glm::uvec2 size = texture(*first).size;
+        if (size != desc.size) {
+            fault(FaultCode::attachment_mismatch,
+                  fmt::format("pass '{}' has attachments of different sizes: '{}' is {}x{}, '{}' is {}x{}",
+                              passes.back().name, first->name, size.x, size.y, resource.name, desc.size.x,
+                              desc.size.y));
+        }
+    }
+}
+
+}  // namespace candela::detail

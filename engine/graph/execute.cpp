@@ -1,0 +1,355 @@
+#include "engine/graph/execute.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace candela {
+
+using detail::none;
+
+namespace {
+
+/// Whether a pass may run in a frame; combined as bits.
+enum Need : std::uint8_t {
+    nothing = 0,
+    may_change = 1,  // its inputs have changed, or may yet
+    certain = 2      // it runs in any case
+};
+
+template <class F>
+class OnExit {
+ public:
+    explicit OnExit(F function) : function_(std::move(function)) {}
+    OnExit(const OnExit&) = delete;
+    OnExit& operator=(const OnExit&) = delete;
+    ~OnExit() { function_(); }
+
+ private:
+    F function_;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
+
+}  // namespace
+
+// The frame
+
+const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
+    if (!graph_) { throw GraphError("no frame graph has been adopted"); }
+    require_imports();
+    notice_world(world);
+    mark_dirty(world);
+    while (mark_missing()) {}
+
+    record_.frame = frame_;
+    std::fill(state_.turned.begin(), state_.turned.end(), std::uint8_t{0});
+    Execution execution(*this, world);
+    Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
+    for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
+        const detail::Step& step = state_.steps[position];
+        PassRecord& record = record_.passes[position];
+        record.ran = false;
+        record.cpu_ms = 0;
+        carried_ = carried_ | step.barrier;
+        if (state_.need[position] == nothing) { continue; }
+        const bool changed = dirty(step, world);
+        if (!changed && (state_.need[position] & certain) == 0) { continue; }
+
+        execution.position_ = position;
+        run_step(execution, changed);
+        record.ran = true;
+        if (timing == Timing::on) {
+            const Clock::time_point now = Clock::now();
+            record.cpu_ms = milliseconds(now - last);
+            last = now;
+        }
+    }
+    cut_ = false;
+    ++frame_;
+    return record_;
+}
+
+void GraphRuntime::require_imports() const {
+    for (const std::uint32_t index : state_.imports) {
+        const detail::Slot& slot = state_.slots[graph_->plan().object[index]];
+        if (slot.object != 0 || slot.value) { continue; }
+        const detail::Resource& resource = graph_->declared().resources[index];
+        const std::string_view lack = resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
+        throw GraphError(fmt::format("imported {} '{}' {}", to_string(resource.kind), resource.name, lack));
+    }
+}
+
+/// Another world's revisions say nothing about this one's.
+void GraphRuntime::notice_world(const World& world) {
+    if (world_ == &world) { return; }
+    world_ = &world;
+    for (detail::Revision& revision : state_.revisions) { revision.tick = std::numeric_limits<Tick>::max(); }
+}
+
+bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
+    const detail::Step& next = *(&step + 1);
+    if (!step.has_run || step.side_effect) { return true; }
+    for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
+        if (state_.versions[state_.inputs[at]].stamp != state_.input_stamps[at]) { return true; }
+    }
+    for (std::uint32_t at = step.first_revision; at < next.first_revision; ++at) {
+        const detail::Revision& revision = state_.revisions[at];
+        if (revision.of(world) != revision.tick) { return true; }
+    }
+    return false;
+}
+
+/// Forward: a pass may change if it is dirty now, or reads from one that may change.
+void GraphRuntime::mark_dirty(const World& world) {
+    for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
+        const detail::Step& step = state_.steps[position];
+        const detail::Step& next = state_.steps[position + 1];
+        std::uint8_t need = step.writes_import ? certain : nothing;
+        if (dirty(step, world)) {
+            need = may_change | certain;
+        } else {
+            for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
+                if ((state_.need[state_.versions[state_.inputs[at]].producer] & may_change) != 0) { need |= may_change; }
+            }
+        }
+        state_.need[position] = need;
+    }
+}
+
+/// Backward: whoever makes what a running pass lacks must run as well. A run also takes the place of what a later pass
+/// has put into the same object, be it a later version or another resource. Gives whether that has taken something
+/// away which readers seen before may lack, so that another round is due.
+bool GraphRuntime::mark_missing() {
+    bool again = false;
+    for (std::uint32_t position = state_.step_count(); position-- > 0;) {
+        if (state_.need[position] == nothing) { continue; }
+        const detail::Step& step = state_.steps[position];
+        const detail::Step& next = state_.steps[position + 1];
+        for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
+            const detail::Version& version = state_.versions[state_.inputs[at]];
+            state_.need[version.producer] |= version.present ? nothing : certain;
+        }
+        for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
+            const std::uint32_t held = state_.holds[state_.outputs[at].slot];
+            if (held == none) { continue; }
+            detail::Version& version = state_.versions[held];
+            const bool lost = version.present & (version.producer > position);
+            again |= lost & ((state_.need[version.producer] & certain) == 0);
+            version.present &= !lost;
+        }
+    }
+    return again;
+}
+
+void GraphRuntime::run_step(Execution& execution, bool changed) {
+    detail::Step& step = state_.steps[execution.position_];
+    step.has_run = false;
+    begin_outputs(step);
+    if (carried_ != Barrier::none) { backend_.barrier(carried_); }
+    carried_ = Barrier::none;
+    begin_pass(execution.position_);
+    {
+        const OnExit end([this] { backend_.end_pass(); });
+        if (step.invoke) { step.invoke(step.function, execution); }
+    }
+    keep_record(step, execution.world(), changed);
+}
+
+/// Nothing holds while the pass runs, lest an exception leave half a result behind.
+void GraphRuntime::begin_outputs(const detail::Step& step) {
+    const detail::Step& next = *(&step + 1);
+    for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
+        const detail::Output& output = state_.outputs[at];
+        if (output.turns_over) { turn_over(output.slot); }
+        if (output.value) { state_.slots[output.slot].changed = state_.holds[output.slot] != output.version; }
+        release(output.slot);
+    }
+}
+
+void GraphRuntime::release(std::uint32_t slot) {
+    std::uint32_t& held = state_.holds[slot];
+    if (held != none) { state_.versions[held].present = false; }
+    held = none;
+}
+
+/// The present becomes the past, and what was the past is there to be filled.
+void GraphRuntime::turn_over(std::uint32_t slot) {
+    std::swap(state_.slots[slot], state_.slots[slot + 1]);
+    state_.slots[slot].filled = false;
+    state_.turned[slot] = 1;
+}
+
+void GraphRuntime::begin_pass(std::uint32_t position) {
+    const detail::Step& step = state_.steps[position];
+    const std::uint32_t end = state_.steps[position + 1].first_target;
+    if (step.first_target == end) { return backend_.begin_pass(step.name, position, nullptr); }
+
+    PassTargets targets;
+    colours_.clear();
+    for (std::uint32_t at = step.first_target; at < end; ++at) {
+        const detail::Target& target = state_.targets[at];
+        const detail::Slot& slot = state_.slots[target.slot];
+        targets.size = slot.texture.size;
+        if (target.depth) {
+            targets.depth = slot.object;
+        } else {
+            colours_.push_back(slot.object);
+        }
+    }
+    targets.colour = colours_;
+    backend_.begin_pass(step.name, position, &targets);
+}
+
+/// A pass that ran only to bring back what it had made before keeps the stamps of its results; so does a value that
+/// was set to what it was.
+void GraphRuntime::keep_record(detail::Step& step, const World& world, bool changed) {
+    const detail::Step& next = *(&step + 1);
+    for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
+        state_.input_stamps[at] = state_.versions[state_.inputs[at]].stamp;
+    }
+    for (std::uint32_t at = step.first_revision; at < next.first_revision; ++at) {
+        state_.revisions[at].tick = state_.revisions[at].of(world);
+    }
+    ++clock_;
+    for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
+        const detail::Output& output = state_.outputs[at];
+        detail::Version& version = state_.versions[output.version];
+        release(output.slot);
+        state_.holds[output.slot] = output.version;
+        version.present = true;
+        if (output.turns_over) { state_.slots[output.slot].filled = true; }
+        if (changed && (!output.value || state_.slots[output.slot].changed)) { version.stamp = clock_; }
+    }
+    step.has_run = true;
+}
+
+void GraphRuntime::invalidate() {
+    for (detail::Step& step : state_.steps) { step.has_run = false; }
+}
+
+// What passes and the host may touch
+
+const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
+    if (!graph_) { throw GraphError("no frame graph has been adopted"); }
+    if (handle.graph != graph_->declared().id) { throw GraphError("a handle is not of the adopted frame graph"); }
+    return graph_->declared().resources.at(handle.resource);
+}
+
+detail::Slot* GraphRuntime::import_slot(ResourceHandle handle) {
+    const detail::Resource& imported = resource(handle);
+    if (imported.lifetime != Lifetime::imported) {
+        throw GraphError(fmt::format("{} '{}' is not imported", to_string(imported.kind), imported.name));
+    }
+    return slot_of(handle.resource);
+}
+
+void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture,
+                        const BufferDesc& buffer) {
+    detail::Slot* const slot = import_slot(imported);
+    if (!slot) { return; }
+    slot->object = object;
+    slot->texture = texture;
+    slot->buffer = buffer;
+    touch(imported);
+}
+
+void GraphRuntime::touch(ResourceHandle imported) {
+    state_.versions[graph_->plan().version(imported.resource, 0)].stamp = ++clock_;
+}
+
+/// Until a resource has turned over in a frame, what it holds is what it held at the end of the last one.
+detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
+    const std::uint32_t past_of = graph_->declared().resources[index].history_of;
+    const std::uint32_t slot = graph_->plan().object[past_of == none ? index : past_of];
+    if (slot == none) { return nullptr; }
+    return &state_.slots[past_of != none && state_.turned[slot] ? slot + 1 : slot];
+}
+
+const void* GraphRuntime::content(ResourceHandle value) const {
+    const detail::Resource& held = resource(value);
+    const std::uint32_t slot = graph_->plan().object[value.resource];
+    if (slot == none || !state_.slots[slot].value) {
+        throw GraphError(fmt::format("value '{}' has not been set", held.name));
+    }
+    return state_.slots[slot].value.get();
+}
+
+ObjectId GraphRuntime::object(ResourceHandle handle) const {
+    (void)resource(handle);
+    const std::uint32_t slot = graph_->plan().object[handle.resource];
+    return slot == none ? 0 : state_.slots[slot].object;
+}
+
+detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
+    const detail::Resource& resource = runtime_.resource(handle);
+    const CompiledGraph& graph = *runtime_.graph_;
+    const std::uint32_t pass = graph.plan().order[position_];
+    for (const detail::Access& access : graph.declared().accesses_of(pass)) {
+        if (access.resource == handle.resource && (access.write || !write)) {
+            return *runtime_.slot_of(handle.resource);
+        }
+    }
+    throw GraphError(fmt::format("pass '{}' {} {} '{}' without having declared it",
+                                 graph.declared().passes[pass].name, write ? "writes" : "uses",
+                                 to_string(resource.kind), resource.name));
+}
+
+const void* Execution::content(ResourceHandle value) const {
+    (void)slot(value, false);
+    return runtime_.content(value);
+}
+
+bool Execution::valid(ResourceHandle history) const {
+    const detail::Slot& past = slot(history, false);
+    const std::uint32_t present_of = runtime_.resource(history).history_of;
+    if (present_of == none) {
+        throw GraphError(fmt::format("{} '{}' is not a history", to_string(past.kind), runtime_.resource(history).name));
+    }
+    const detail::Slot& present = *runtime_.slot_of(present_of);
+    return !runtime_.cut_ && past.filled && past.texture == present.texture && past.buffer == present.buffer;
+}
+
+detail::Slot& Execution::reservable(ResourceHandle handle) const {
+    detail::Slot& found = slot(handle, true);
+    const CompiledGraph& graph = *runtime_.graph_;
+    const std::uint32_t pass = graph.plan().order[position_];
+    const auto accesses = graph.declared().accesses_of(pass);
+    const bool from_start = std::any_of(accesses.begin(), accesses.end(), [&](const detail::Access& access) {
+        return access.write && access.resource == handle.resource && access.version == 1 &&
+               access.usage != Usage::colour_target && access.usage != Usage::depth_target;
+    });
+    const detail::Resource& resource = runtime_.resource(handle);
+    if (from_start && resource.lifetime == Lifetime::persistent) { return found; }
+    throw GraphError(fmt::format(
+        "pass '{}' reserves {} '{}', but may only what is persistent and what it writes from version 0, not as a target",
+        graph.declared().passes[pass].name, to_string(resource.kind), resource.name));
+}
+
+void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
+    detail::Slot& old = reservable(buffer);
+    if (count <= old.buffer.count) { return; }
+    detail::Slot grown = old;
+    grown.buffer.count = std::max(count, old.buffer.count + old.buffer.count / 2);
+    runtime_.create(grown, runtime_.resource(buffer).name);
+    runtime_.destroy(old);
+    old = grown;
+}
+
+void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
+    detail::Slot& old = reservable(texture);
+    if (desc == old.texture) { return; }
+    detail::Slot other = old;
+    other.texture = desc;
+    runtime_.create(other, runtime_.resource(texture).name);
+    runtime_.destroy(old);
+    old = other;
+}
+
+}  // namespace candela

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include <glm/vec2.hpp>
+
+namespace candela {
+
+/// One version of one resource of one graph. Declaring a write yields the next version; the older handle is then
+/// stale for passes declared later. Plain value, owns nothing.
+struct ResourceHandle {
+    std::uint32_t graph = 0;     ///< identity of the declaring FrameGraph; 0 is no graph
+    std::uint32_t resource = 0;  ///< index within the graph
+    std::uint32_t version = 0;   ///< 0: not yet written in this frame
+    bool operator==(const ResourceHandle&) const = default;
+};
+
+struct TextureHandle : ResourceHandle {};
+
+/// A GPU buffer of `T`s.
+template <class T>
+struct BufferHandle : ResourceHandle {};
+
+/// A CPU value of type `T`.
+template <class T>
+struct ValueHandle : ResourceHandle {};
+
+enum class ResourceKind : std::uint8_t { texture, buffer, value };
+[[nodiscard]] std::string_view to_string(ResourceKind kind);
+
+enum class Format : std::uint8_t { rgba8, srgb8_alpha8, rgba16f, rgba32f, rg32f, r32f, rg16f, r16f, r32ui, depth32f };
+[[nodiscard]] bool is_depth(Format format);
+[[nodiscard]] std::uint32_t bytes_per_texel(Format format);
+[[nodiscard]] std::string_view to_string(Format format);
+
+enum class TextureShape : std::uint8_t { flat, array, cube_array };
+[[nodiscard]] std::string_view to_string(TextureShape shape);
+
+/// Storage of a texture. `layers` counts faces for cube arrays (a multiple of 6).
+struct TextureDesc {
+    glm::uvec2 size{1};  ///< texels of the largest mip level
+    Format format = Format::rgba8;
+    TextureShape shape = TextureShape::flat;
+    std::uint32_t layers = 1;
+    std::uint32_t mips = 1;
+    bool operator==(const TextureDesc&) const = default;
+};
+/// Bytes of all layers and mip levels, without what a driver adds.
+[[nodiscard]] std::uint64_t byte_size(const TextureDesc& desc);
+
+/// Storage of a buffer of `count` elements, `stride` bytes apart.
+struct BufferDesc {
+    std::uint64_t count = 0;
+    std::uint32_t stride = 1;
+    bool operator==(const BufferDesc&) const = default;
+};
+[[nodiscard]] std::uint64_t byte_size(const BufferDesc& desc);
+
+/// How a pass touches a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
+enum class Usage : std::uint8_t {
+    sampled,        ///< read: texture fetches
+    storage,        ///< read or write: shader storage buffer or image; writes are incoherent
+    uniform,        ///< read: uniform buffer
+    vertex,         ///< read: vertex attributes
+    index,          ///< read: element buffer
+    indirect,       ///< read: draw or dispatch arguments
+    colour_target,  ///< write: attachment, bound by the back end before the pass runs
+    depth_target,   ///< write: attachment; read: attachment for depth tests without depth writes
+    layer_target,   ///< write: the pass attaches single layers itself
+    copy            ///< read or write: copies, clears and uploads by the GL's own commands
+};
+[[nodiscard]] std::string_view to_string(Usage usage);
+
+enum class Lifetime : std::uint8_t {
+    transient,   ///< lives between its first and last use in a frame; memory is shared where lifetimes are disjoint
+    persistent,  ///< kept from frame to frame, and across graphs that declare the same name and description
+    imported     ///< owned by the host, bound before it is used
+};
+[[nodiscard]] std::string_view to_string(Lifetime lifetime);
+
+}  // namespace candela

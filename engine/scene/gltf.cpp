@@ -1,0 +1,107 @@
+#include "engine/scene/gltf.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "engine/scene/gltf_document.hpp"
+#include "engine/scene/gltf_materials.hpp"
+#include "engine/scene/gltf_meshes.hpp"
+#include "engine/scene/gltf_nodes.hpp"
+
+namespace candela {
+
+namespace {
+
+void set_light(World&, Entity, std::monostate) {}
+
+template <class Light>
+void set_light(World& world, Entity entity, const Light& light) {
+    world.set(entity, light);
+}
+
+std::uint64_t count_triangles(const Mesh& mesh) {
+    std::uint64_t triangles = 0;
+    for (const Primitive& primitive : mesh.primitives) {
+        triangles += primitive.indices.size() / 3;
+    }
+    return triangles;
+}
+
+ImportReport create_entities(std::vector<gltf::StagedEntity> staged, World& world) {
+    ImportReport report;
+    for (gltf::StagedEntity& source : staged) {
+        const Entity entity = world.create();
+        if (source.parent) {
+            source.transform.parent = report.entities[*source.parent];
+        }
+        world.set(entity, Name{std::move(source.name)});
+        world.set(entity, source.transform);
+        if (source.mesh) {
+            report.triangles += count_triangles(*source.mesh);
+            world.set(entity, MeshInstance{std::move(source.mesh)});
+        }
+        if (source.camera) {
+            world.set(entity, *source.camera);
+        }
+        std::visit([&](const auto& light) { set_light(world, entity, light); }, source.light);
+        report.entities.push_back(entity);
+    }
+    return report;
+}
+
+ImportReport import_document(gltf::Document document, const std::filesystem::path& base_directory,
+                             World& into) {
+    const auto materials = gltf::read_materials(document, base_directory);
+    const auto meshes = gltf::read_meshes(document, materials);
+    World grown = into;  // a copy, so that running out of memory halfway leaves the world as it was
+    ImportReport report = create_entities(gltf::read_nodes(document.model, meshes), grown);
+    report.warnings = std::move(document.warnings);
+    into = std::move(grown);
+    return report;
+}
+
+/// One line of bearable length, whatever the file's strings contain.
+std::string one_line(std::string_view message) {
+    constexpr std::size_t longest = 300;
+    std::string line(message.substr(0, longest));
+    std::ranges::replace_if(
+        line, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, ' ');
+    line.erase(line.find_last_not_of(" .") + 1);
+    return line;
+}
+
+/// Runs the import; whatever it throws becomes a SceneError that names the file.
+template <class Import>
+ImportReport naming_file(std::string_view name, Import import) {
+    try {
+        return import();
+    } catch (const std::bad_alloc&) {
+        throw SceneError(fmt::format("{}: it does not fit into memory", name));
+    } catch (const std::exception& error) {
+        throw SceneError(fmt::format("{}: {}", name, one_line(error.what())));
+    }
+}
+
+}  // namespace
+
+ImportReport import_gltf(const std::filesystem::path& path, World& into) {
+    return naming_file(path.string(), [&] {
+        const std::filesystem::path directory = path.parent_path();
+        return import_document(gltf::read_document(gltf::read_file(path, "the file"), directory), directory,
+                               into);
+    });
+}
+
+ImportReport import_gltf(std::span<const unsigned char> bytes, const std::filesystem::path& base_directory,
+                         std::string_view name, World& into) {
+    return naming_file(name, [&] {
+        return import_document(gltf::read_document(bytes, base_directory), base_directory, into);
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,247 @@
+#include "engine/scene/gltf_accessors.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+using Bytes = std::span<const unsigned char>;
+
+template <class T>
+T load(const unsigned char* bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+
+/// Elements at regular distances within one buffer view.
+struct Elements {
+    const unsigned char* first;
+    std::size_t stride;
+
+    const unsigned char* operator[](std::size_t i) const { return first + i * stride; }
+};
+
+/// A run of elements as a file describes it; `owner` names it in messages.
+struct Run {
+    std::string owner;
+    int buffer_view;
+    std::size_t offset;
+    std::size_t count;
+    std::size_t component_size;
+    std::size_t element_size;
+};
+
+Elements locate(const tinygltf::Model& model, const Run& run) {
+    const Bytes bytes = buffer_view_bytes(model, run.buffer_view);
+    const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(run.buffer_view)];
+    const std::size_t stride = view.byteStride != 0 ? view.byteStride : run.element_size;
+    if (stride < run.element_size) {
+        throw SceneError(
+            fmt::format("{} has elements of {} bytes, more than the stride of {} of buffer view {}",
+                        run.owner, run.element_size, stride, run.buffer_view));
+    }
+    const bool fits = run.offset <= bytes.size() && run.element_size <= bytes.size() - run.offset &&
+                      run.count - 1 <= (bytes.size() - run.offset - run.element_size) / stride;
+    if (!fits) {
+        throw SceneError(fmt::format("{} reads past the end of buffer view {}", run.owner, run.buffer_view));
+    }
+    if ((view.byteOffset + run.offset) % run.component_size != 0) {
+        throw SceneError(
+            fmt::format("{} is not aligned to its components of {} bytes", run.owner, run.component_size));
+    }
+    return {bytes.data() + run.offset, stride};
+}
+
+std::size_t component_size(int component_type) {
+    switch (component_type) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return 1;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return 2;
+        default:
+            return 4;  // what this file reads has been checked by its callers
+    }
+}
+
+std::uint32_t load_unsigned(const unsigned char* bytes, int component_type) {
+    switch (component_type) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return *bytes;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return load<std::uint16_t>(bytes);
+        default:
+            return load<std::uint32_t>(bytes);
+    }
+}
+
+bool is_unsigned(int component_type) {
+    return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+/// Without a buffer view an accessor is all zeros, however many: only their number is in the file. No more of
+/// them are taken than the file has bytes of data, so that a few bytes cannot ask for gigabytes.
+void check_zeros(const tinygltf::Model& model, const tinygltf::Accessor& accessor, int index) {
+    const std::size_t bytes = std::accumulate(
+        model.buffers.begin(), model.buffers.end(), std::size_t{0},
+        [](std::size_t sum, const tinygltf::Buffer& buffer) { return sum + buffer.data.size(); });
+    if (accessor.count > bytes) {
+        throw SceneError(
+            fmt::format("accessor {} has no buffer view but {} elements, more than the {} bytes of data",
+                        index, accessor.count, bytes));
+    }
+}
+
+/// Replaces the elements that the sparse part lists.
+template <class Element, class Decode>
+void apply_sparse(const tinygltf::Model& model, int index, Decode decode, std::size_t element_size,
+                  std::vector<Element>& elements) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    const auto& sparse = accessor.sparse;
+    const int index_type = sparse.indices.componentType;
+    if (!is_unsigned(index_type)) {
+        throw SceneError(fmt::format("accessor {} has sparse indices that are not unsigned integers", index));
+    }
+    const auto count = static_cast<std::size_t>(sparse.count);
+    const Elements indices =
+        locate(model, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.bufferView,
+                       static_cast<std::size_t>(sparse.indices.byteOffset), count, component_size(index_type),
+                       component_size(index_type)});
+    const Elements values =
+        locate(model, {fmt::format("accessor {} (its sparse values)", index), sparse.values.bufferView,
+                       static_cast<std::size_t>(sparse.values.byteOffset), count,
+                       component_size(accessor.componentType), element_size});
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t at = load_unsigned(indices[i], index_type);
+        if (at >= elements.size()) {
+            throw SceneError(fmt::format("accessor {} has a sparse index {}, but {} elements", index, at,
+                                         elements.size()));
+        }
+        elements[at] = decode(values[i]);
+    }
+}
+
+/// All elements, each made from its bytes by `decode`. The accessor's types are known to be readable.
+template <class Element, class Decode>
+std::vector<Element> read(const tinygltf::Model& model, int index, Decode decode) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    const std::size_t component = component_size(accessor.componentType);
+    const auto components =
+        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+    const std::size_t size = component * components;
+
+    std::vector<Element> elements;
+    if (accessor.bufferView < 0) {
+        check_zeros(model, accessor, index);
+        elements.resize(accessor.count, Element{});
+    } else {
+        const Elements source = locate(model, {fmt::format("accessor {}", index), accessor.bufferView,
+                                               accessor.byteOffset, accessor.count, component, size});
+        elements.reserve(accessor.count);
+        for (std::size_t i = 0; i < accessor.count; ++i) {
+            elements.push_back(decode(source[i]));
+        }
+    }
+    if (accessor.sparse.isSparse) {
+        apply_sparse(model, index, decode, size, elements);
+    }
+    return elements;
+}
+
+template <class Vector>
+Vector load_floats(const unsigned char* bytes) {
+    Vector vector;
+    for (int i = 0; i < Vector::length(); ++i) {
+        vector[i] = load<float>(bytes + static_cast<std::size_t>(i) * sizeof(float));
+    }
+    return vector;
+}
+
+template <class Vector>
+void check_finite(const std::vector<Vector>& elements, int index) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        for (int k = 0; k < Vector::length(); ++k) {
+            if (!std::isfinite(elements[i][k])) {
+                throw SceneError(fmt::format("accessor {} has a NaN or infinity in element {}", index, i));
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Bytes buffer_view_bytes(const tinygltf::Model& model, int buffer_view) {
+    const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(buffer_view)];
+    const std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
+    if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
+        throw SceneError(
+            fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, view.buffer));
+    }
+    return Bytes(data).subspan(view.byteOffset, view.byteLength);
+}
+
+std::vector<glm::vec3> read_vectors(const tinygltf::Model& model, int index) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    if (accessor.type != TINYGLTF_TYPE_VEC3 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+        throw SceneError(
+            fmt::format("accessor {} holds positions or normals, but is not VEC3 of FLOAT", index));
+    }
+    auto vectors = read<glm::vec3>(model, index, load_floats<glm::vec3>);
+    check_finite(vectors, index);
+    return vectors;
+}
+
+std::vector<glm::vec2> read_texture_coordinates(const tinygltf::Model& model, int index) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    const int type = accessor.componentType;
+    if (accessor.type == TINYGLTF_TYPE_VEC2 && type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+        auto coordinates = read<glm::vec2>(model, index, load_floats<glm::vec2>);
+        check_finite(coordinates, index);
+        return coordinates;
+    }
+    const bool short_integers = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+    if (accessor.type != TINYGLTF_TYPE_VEC2 || !accessor.normalized ||
+        (!short_integers && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE)) {
+        throw SceneError(
+            fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
+                        "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
+                        index));
+    }
+    const float one = short_integers ? 65535.0F : 255.0F;
+    return read<glm::vec2>(model, index, [type, one](const unsigned char* bytes) {
+        const auto component = [&](std::size_t i) {
+            return static_cast<float>(load_unsigned(bytes + i * component_size(type), type)) / one;
+        };
+        return glm::vec2(component(0), component(1));
+    });
+}
+
+std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int index, std::size_t vertex_count) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    const int type = accessor.componentType;
+    if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_unsigned(type)) {
+        throw SceneError(
+            fmt::format("accessor {} holds indices, but is not SCALAR of an unsigned integer", index));
+    }
+    auto indices = read<std::uint32_t>(
+        model, index, [type](const unsigned char* bytes) { return load_unsigned(bytes, type); });
+    for (const std::uint32_t vertex : indices) {
+        if (vertex >= vertex_count) {
+            throw SceneError(fmt::format("accessor {} has index {}, but there are {} vertices", index, vertex,
+                                         vertex_count));
+        }
+    }
+    return indices;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,260 @@
+#include "engine/scene/gltf_document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/gltf_schema.hpp"
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+using Bytes = std::span<const unsigned char>;
+using Json = nlohmann::json;
+
+// The parser behind the import descends into extensions and extras by recursion. glTF's own members nest 8
+// deep.
+constexpr int deepest_nesting = 256;
+
+constexpr std::string_view lights_extension = "KHR_lights_punctual";
+
+/// The two parts of a glTF file; a .gltf has no binary part.
+struct Container {
+    Bytes json;
+    std::optional<Bytes> binary;
+};
+
+std::uint32_t read_u32(Bytes bytes, std::size_t offset) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        value = value << 8U | bytes[offset + i];
+    }
+    return value;
+}
+
+/// Takes one chunk of a .glb off the front of `rest`.
+Bytes take_chunk(Bytes& rest, std::string_view type) {
+    if (rest.size() < 8) {
+        throw SceneError("the .glb ends inside a chunk's header");
+    }
+    const std::uint32_t length = read_u32(rest, 0);
+    if (!std::ranges::equal(rest.subspan(4, 4), type)) {
+        throw SceneError(fmt::format("the .glb lacks its {} chunk", type.substr(0, type.find('\0'))));
+    }
+    if (length > rest.size() - 8) {
+        throw SceneError("the .glb ends inside a chunk");
+    }
+    const Bytes chunk = rest.subspan(8, length);
+    // The last chunk's padding may be missing; chunks in between are aligned to four bytes.
+    rest = rest.subspan(std::min<std::size_t>(rest.size(), 8 + (std::size_t{length} + 3) / 4 * 4));
+    return chunk;
+}
+
+Container split(Bytes bytes) {
+    using namespace std::string_view_literals;
+    if (bytes.empty()) {
+        throw SceneError("the file is empty");
+    }
+    if (bytes.size() < 4 || !std::ranges::equal(bytes.first(4), "glTF"sv)) {
+        return {bytes, {}};
+    }
+    if (bytes.size() < 12) {
+        throw SceneError("the .glb ends inside its header");
+    }
+    if (read_u32(bytes, 4) != 2) {
+        throw SceneError(fmt::format("the .glb has version {}; only 2 is read", read_u32(bytes, 4)));
+    }
+    const std::uint32_t length = read_u32(bytes, 8);
+    if (length < 12 || length > bytes.size()) {
+        throw SceneError(
+            fmt::format("the .glb says it has {} bytes, but {} are there", length, bytes.size()));
+    }
+    Bytes rest = bytes.subspan(12, length - 12);
+    Container container{take_chunk(rest, "JSON"sv), {}};
+    if (!rest.empty()) {
+        container.binary = take_chunk(rest, "BIN\0"sv);
+    }
+    return container;
+}
+
+Json parse_json(Bytes text) {
+    const auto limit_depth = [](int depth, Json::parse_event_t, Json&) {
+        if (depth > deepest_nesting) {
+            throw SceneError("its JSON is nested too deeply");
+        }
+        return true;
+    };
+    try {
+        return Json::parse(text.begin(), text.end(), limit_depth);
+    } catch (const Json::exception& error) {
+        const std::string_view message = error.what();
+        const std::size_t prefix = message.find("] ");  // [json.exception.parse_error.101]
+        throw SceneError(
+            fmt::format("invalid JSON: {}", prefix == message.npos ? message : message.substr(prefix + 2)));
+    }
+}
+
+/// Refuses what is required and not supported; returns a warning each for what is merely used.
+std::vector<std::string> check_extensions(const Json& document) {
+    const auto names = [&](const char* member) { return document.value(member, std::vector<std::string>{}); };
+    for (const std::string& name : names("extensionsRequired")) {
+        if (name != lights_extension) {
+            throw SceneError(fmt::format("it requires the extension {}, which is not supported", name));
+        }
+    }
+    std::vector<std::string> used = names("extensionsUsed");
+    std::ranges::sort(used);
+    used.erase(std::ranges::unique(used).begin(), used.end());
+    std::erase(used, lights_extension);
+    for (std::string& name : used) {
+        name = fmt::format("the extension {} is not supported and is ignored", name);
+    }
+    return used;
+}
+
+std::vector<unsigned char> load_buffer(const Json& buffer, std::size_t index,
+                                       const std::optional<Bytes>& binary,
+                                       const std::filesystem::path& base_directory) {
+    const auto length = buffer.at("byteLength").get<std::size_t>();
+    std::vector<unsigned char> data;
+    if (buffer.contains("uri")) {
+        data = read_uri(buffer.at("uri").get_ref<const std::string&>(), base_directory);
+    } else if (index == 0 && binary) {
+        data.assign(binary->begin(), binary->end());
+    } else {
+        throw SceneError("it has neither a \"uri\" nor a binary chunk");
+    }
+    if (data.size() < length) {
+        throw SceneError(fmt::format("it has {} of the {} bytes it declares", data.size(), length));
+    }
+    data.resize(length);
+    return data;
+}
+
+std::vector<tinygltf::Buffer> load_buffers(const Json& document, const std::optional<Bytes>& binary,
+                                           const std::filesystem::path& base_directory) {
+    const Json descriptions = document.value("buffers", Json::array());
+    std::vector<tinygltf::Buffer> buffers(descriptions.size());
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        try {
+            buffers[i].data = load_buffer(descriptions[i], i, binary, base_directory);
+        } catch (const SceneError& error) {
+            throw SceneError(fmt::format("buffer {}: {}", i, error.what()));
+        }
+    }
+    return buffers;
+}
+
+std::vector<tinygltf::Image> describe_images(const Json& document) {
+    const Json descriptions = document.value("images", Json::array());
+    std::vector<tinygltf::Image> images(descriptions.size());
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        images[i].name = descriptions[i].value("name", "");
+        images[i].uri = descriptions[i].value("uri", "");
+        images[i].bufferView = descriptions[i].value("bufferView", -1);
+        if (images[i].uri.empty() == (images[i].bufferView < 0)) {
+            throw SceneError(fmt::format("image {} needs either a \"uri\" or a \"bufferView\"", i));
+        }
+    }
+    return images;
+}
+
+/// Everything but buffers and images, which need no parser but more care than it takes.
+tinygltf::Model parse_model(Json document) {
+    for (const char* member : {"buffers", "images", "animations", "skins"}) {
+        document.erase(member);
+    }
+    const std::string text = document.dump();
+    if (text.size() > std::numeric_limits<unsigned int>::max()) {
+        throw SceneError("its JSON exceeds 4 GiB");
+    }
+
+    tinygltf::Model model;
+    std::string errors;
+    std::string warnings;
+    tinygltf::TinyGLTF parser;
+    const bool parsed = parser.LoadASCIIFromString(&model, &errors, &warnings, text.data(),
+                                                   static_cast<unsigned int>(text.size()), {});
+    if (!parsed || !errors.empty()) {
+        throw SceneError(errors.empty() ? "it is not valid glTF" : errors);
+    }
+    return model;
+}
+
+std::string percent_decoded(std::string_view uri) {
+    std::string decoded;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        unsigned char code = 0;
+        const char* digits = uri.data() + i + 1;
+        if (uri[i] == '%' && uri.size() - i > 2 &&
+            std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
+            decoded += static_cast<char>(code);
+            i += 2;
+        } else {
+            decoded += uri[i];
+        }
+    }
+    return decoded;
+}
+
+}  // namespace
+
+std::vector<unsigned char> read_file(const std::filesystem::path& path, std::string_view called) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+        throw SceneError(fmt::format("{} does not exist", called));
+    }
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+        throw SceneError(fmt::format("{} is not a file", called));
+    }
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    std::vector<unsigned char> bytes(file ? static_cast<std::size_t>(file.tellg()) : 0);
+    file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!file) {
+        throw SceneError(fmt::format("{} cannot be read", called));
+    }
+    return bytes;
+}
+
+std::vector<unsigned char> read_uri(const std::string& uri, const std::filesystem::path& base_directory) {
+    if (!uri.starts_with("data:")) {
+        return read_file(base_directory / percent_decoded(uri), uri);
+    }
+    std::vector<unsigned char> bytes;
+    std::string media_type;
+    if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) {
+        throw SceneError(fmt::format("the data URI {:.40}... is empty or of an unknown kind", uri));
+    }
+    return bytes;
+}
+
+Document read_document(Bytes bytes, const std::filesystem::path& base_directory) {
+    const Container container = split(bytes);
+    Json json = parse_json(container.json);
+    check_schema(json);
+    Document document;
+    document.warnings = check_extensions(json);
+    std::vector<tinygltf::Buffer> buffers = load_buffers(json, container.binary, base_directory);
+    std::vector<tinygltf::Image> images = describe_images(json);
+    for (const char* member : {"animations", "skins"}) {
+        if (json.contains(member)) {
+            document.warnings.push_back(fmt::format("{} are ignored", member));
+        }
+    }
+    document.model = parse_model(std::move(json));
+    document.model.buffers = std::move(buffers);
+    document.model.images = std::move(images);
+    return document;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,162 @@
+#include "engine/scene/gltf_materials.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+
+#include "engine/scene/gltf_accessors.hpp"
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+using Bytes = std::span<const unsigned char>;
+using ImageKey = std::tuple<int, Wrap, Wrap>;  // index, wrap_u, wrap_v
+using Images = std::map<ImageKey, std::shared_ptr<const Image>>;
+
+bool starts_with(Bytes bytes, std::string_view prefix) {
+    return bytes.size() >= prefix.size() && std::memcmp(bytes.data(), prefix.data(), prefix.size()) == 0;
+}
+
+Image decode(Bytes encoded) {
+    // At best, deflate packs 1,032 bytes into one (zlib's documentation) and a byte of a PNG holds 8 pixels.
+    // A JPEG spends at least a bit on 64 pixels, which is less. A header that promises more is not believed.
+    constexpr std::uint64_t most_pixels_in_a_byte = 8 * 1032;
+
+    if (!starts_with(encoded, "\x89PNG") && !starts_with(encoded, "\xFF\xD8\xFF")) {
+        throw SceneError("it is neither PNG nor JPEG");
+    }
+    if (encoded.size() > std::numeric_limits<int>::max()) {
+        throw SceneError("it exceeds 2 GiB");
+    }
+    const int size = static_cast<int>(encoded.size());
+    int width = 0;
+    int height = 0;
+    if (stbi_info_from_memory(encoded.data(), size, &width, &height, nullptr) == 0) {
+        throw SceneError("it cannot be decoded");
+    }
+    if (std::uint64_t(width) * std::uint64_t(height) > most_pixels_in_a_byte * encoded.size()) {
+        throw SceneError(fmt::format("its {} bytes cannot hold {} x {} pixels", size, width, height));
+    }
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
+        stbi_image_free);
+    if (!pixels) {
+        throw SceneError("it cannot be decoded");
+    }
+
+    Image image;
+    image.width = static_cast<std::uint32_t>(width);
+    image.height = static_cast<std::uint32_t>(height);
+    image.texels.resize(std::size_t{image.width} * image.height);
+    std::memcpy(image.texels.data(), pixels.get(), image.texels.size() * sizeof(glm::u8vec4));
+    return image;
+}
+
+std::shared_ptr<const Image> load_image(const tinygltf::Model& model, const ImageKey& key,
+                                        const std::filesystem::path& base_directory) {
+    const auto& [index, wrap_u, wrap_v] = key;
+    const tinygltf::Image& source = model.images[static_cast<std::size_t>(index)];
+    try {
+        Image image = source.bufferView >= 0 ? decode(buffer_view_bytes(model, source.bufferView))
+                                             : decode(read_uri(source.uri, base_directory));
+        image.wrap_u = wrap_u;
+        image.wrap_v = wrap_v;
+        return std::make_shared<const Image>(std::move(image));
+    } catch (const SceneError& error) {
+        throw SceneError(fmt::format("image {}: {}", index, error.what()));
+    }
+}
+
+Wrap to_wrap(int mode, int sampler) {
+    switch (mode) {
+        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+            return Wrap::repeat;
+        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+            return Wrap::mirrored_repeat;
+        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+            return Wrap::clamp_to_edge;
+        default:
+            throw SceneError(fmt::format("sampler {} has the unknown wrapping mode {}", sampler, mode));
+    }
+}
+
+/// The image that a base colour reads, with the wrapping of its sampler.
+ImageKey image_key(const tinygltf::Model& model, const tinygltf::Texture& texture) {
+    if (texture.sampler < 0) {
+        return {texture.source, Wrap::repeat, Wrap::repeat};
+    }
+    const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
+    return {texture.source, to_wrap(sampler.wrapS, texture.sampler), to_wrap(sampler.wrapT, texture.sampler)};
+}
+
+std::shared_ptr<const Image> base_colour_texture(const tinygltf::TextureInfo& info,
+                                                 const std::string& material, Document& document,
+                                                 Images& images,
+                                                 const std::filesystem::path& base_directory) {
+    if (info.index < 0) {
+        return nullptr;
+    }
+    const tinygltf::Texture& texture = document.model.textures[static_cast<std::size_t>(info.index)];
+    if (texture.source < 0) {
+        document.warnings.push_back(
+            fmt::format("{}: its texture has no PNG or JPEG image; ignored", material));
+        return nullptr;
+    }
+    if (info.texCoord != 0) {
+        document.warnings.push_back(fmt::format(
+            "{}: its texture uses coordinate set {}; only set 0 is read; ignored", material, info.texCoord));
+        return nullptr;
+    }
+    const ImageKey key = image_key(document.model, texture);
+    std::shared_ptr<const Image>& image = images[key];
+    if (!image) {
+        image = load_image(document.model, key, base_directory);
+    }
+    return image;
+}
+
+Material read_material(const tinygltf::Material& source, const std::string& label, Document& document,
+                       Images& images, const std::filesystem::path& base_directory) {
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    if (source.alphaMode != "OPAQUE") {
+        document.warnings.push_back(
+            fmt::format("{}: alpha mode {} is not supported; it is opaque", label, source.alphaMode));
+    }
+    Material material;
+    material.name = source.name;
+    for (int i = 0; i < 4; ++i) {
+        material.base_colour[i] = static_cast<float>(pbr.baseColorFactor[static_cast<std::size_t>(i)]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        material.emissive[i] = static_cast<float>(source.emissiveFactor[static_cast<std::size_t>(i)]);
+    }
+    material.base_colour_texture =
+        base_colour_texture(pbr.baseColorTexture, label, document, images, base_directory);
+    material.double_sided = source.doubleSided;
+    return material;
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Material>> read_materials(Document& document,
+                                                            const std::filesystem::path& base_directory) {
+    Images images;
+    std::vector<std::shared_ptr<const Material>> materials;
+    for (const tinygltf::Material& source : document.model.materials) {
+        const std::string label = fmt::format("material {}", materials.size());
+        materials.push_back(
+            std::make_shared<const Material>(read_material(source, label, document, images, base_directory)));
+    }
+    materials.push_back(std::make_shared<const Material>());
+    return materials;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,223 @@
+#include "engine/scene/gltf_meshes.hpp"
+
+#include <array>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "engine/scene/gltf_accessors.hpp"
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+using Corners = std::array<std::uint32_t, 3>;
+
+/// What was left out of the meshes, each reported once however often it occurs.
+struct Omissions {
+    bool points_or_lines = false;
+    bool no_positions = false;
+    bool morph_targets = false;
+    bool vertex_colours = false;
+};
+
+std::optional<int> find_attribute(const tinygltf::Primitive& source, const char* name) {
+    const auto found = source.attributes.find(name);
+    return found == source.attributes.end() ? std::nullopt : std::optional(found->second);
+}
+
+void check_count(std::string_view attribute, std::size_t count, std::size_t positions) {
+    if (count != positions) {
+        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, attribute));
+    }
+}
+
+/// A missing normal is zero until the faces provide one.
+std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& source,
+                                  int positions) {
+    std::vector<Vertex> vertices;
+    for (const glm::vec3& position : read_vectors(model, positions)) {
+        vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
+    }
+    if (const auto accessor = find_attribute(source, "NORMAL")) {
+        const std::vector<glm::vec3> normals = read_vectors(model, *accessor);
+        check_count("normals", normals.size(), vertices.size());
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            // In double precision, where the square of no float vanishes or overflows.
+            const glm::dvec3 normal(normals[i]);
+            const double length = glm::length(normal);
+            if (length > 0.0) {
+                vertices[i].normal = glm::vec3(normal / length);
+            }
+        }
+    }
+    if (const auto accessor = find_attribute(source, "TEXCOORD_0")) {
+        const std::vector<glm::vec2> coordinates = read_texture_coordinates(model, *accessor);
+        check_count("texture coordinates", coordinates.size(), vertices.size());
+        for (std::size_t i = 0; i < coordinates.size(); ++i) {
+            vertices[i].uv = coordinates[i];
+        }
+    }
+    return vertices;
+}
+
+std::vector<std::uint32_t> read_order(const tinygltf::Model& model, const tinygltf::Primitive& source,
+                                      std::size_t vertex_count) {
+    if (source.indices >= 0) {
+        return read_indices(model, source.indices, vertex_count);
+    }
+    std::vector<std::uint32_t> order(vertex_count);
+    std::iota(order.begin(), order.end(), 0U);
+    return order;
+}
+
+/// The triangles of a list, strip or fan, each wound as glTF 2.0 (section 3.7.2.1) says.
+std::vector<Corners> assemble(std::span<const std::uint32_t> order, int mode) {
+    if (order.size() < 3 || (mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0)) {
+        throw SceneError(fmt::format("it has {} indices or vertices, which make no whole number of triangles",
+                                     order.size()));
+    }
+    std::vector<Corners> triangles;
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        for (std::size_t i = 0; i < order.size(); i += 3) {
+            triangles.push_back({order[i], order[i + 1], order[i + 2]});
+        }
+        return triangles;
+    }
+    for (std::size_t i = 0; i + 2 < order.size(); ++i) {
+        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+            triangles.push_back({order[i], order[i + 1 + i % 2], order[i + 2 - i % 2]});
+        } else {
+            triangles.push_back({order[i + 1], order[i + 2], order[0]});
+        }
+    }
+    return triangles;
+}
+
+/// Unit normal of the triangle's front; zero if it has no area. In double precision, where no product of
+/// floats vanishes or overflows.
+glm::vec3 face_normal(const std::vector<Vertex>& vertices, const Corners& corners) {
+    const glm::dvec3 a(vertices[corners[0]].position);
+    const glm::dvec3 normal = glm::cross(glm::dvec3(vertices[corners[1]].position) - a,
+                                         glm::dvec3(vertices[corners[2]].position) - a);
+    const double length = glm::length(normal);
+    return length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0F);
+}
+
+std::vector<Vertex> unshare(const std::vector<Vertex>& vertices, std::vector<Corners>& triangles) {
+    std::vector<Vertex> unshared;
+    for (Corners& corners : triangles) {
+        for (std::uint32_t& corner : corners) {
+            unshared.push_back(vertices[corner]);
+            corner = static_cast<std::uint32_t>(unshared.size() - 1);
+        }
+    }
+    return unshared;
+}
+
+/// Gives each vertex without a normal that of the first face it belongs to; to one without a face, any.
+void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& triangles) {
+    for (const Corners& corners : triangles) {
+        const glm::vec3 normal = face_normal(vertices, corners);
+        for (const std::uint32_t corner : corners) {
+            if (vertices[corner].normal == glm::vec3(0.0F)) {
+                vertices[corner].normal = normal;
+            }
+        }
+    }
+    for (Vertex& vertex : vertices) {
+        if (vertex.normal == glm::vec3(0.0F)) {
+            vertex.normal = {0.0F, 0.0F, 1.0F};
+        }
+    }
+}
+
+bool is_drawn(const tinygltf::Primitive& source, Omissions& omissions) {
+    const bool triangles = source.mode >= TINYGLTF_MODE_TRIANGLES;
+    const bool positions = find_attribute(source, "POSITION").has_value();
+    omissions.points_or_lines |= !triangles;
+    omissions.no_positions |= triangles && !positions;
+    omissions.morph_targets |= !source.targets.empty();
+    omissions.vertex_colours |= find_attribute(source, "COLOR_0").has_value();
+    return triangles && positions;
+}
+
+/// Empty if all of its triangles are without area.
+Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& source) {
+    Primitive primitive;
+    primitive.vertices = read_vertices(model, source, *find_attribute(source, "POSITION"));
+    std::vector<Corners> triangles =
+        assemble(read_order(model, source, primitive.vertices.size()), source.mode);
+    std::erase_if(triangles, [&](const Corners& corners) {
+        return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
+    });
+    if (!find_attribute(source, "NORMAL")) {
+        primitive.vertices = unshare(primitive.vertices, triangles);
+    }
+    fill_normals(primitive.vertices, triangles);
+    for (const Corners& corners : triangles) {
+        primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
+    }
+    return primitive;
+}
+
+Mesh read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& source,
+               const std::vector<std::shared_ptr<const Material>>& materials, Omissions& omissions) {
+    Mesh mesh;
+    mesh.name = source.name;
+    for (const tinygltf::Primitive& part : source.primitives) {
+        if (!is_drawn(part, omissions)) {
+            continue;
+        }
+        Primitive primitive = read_primitive(model, part);
+        if (primitive.indices.empty()) {
+            continue;
+        }
+        primitive.material =
+            part.material < 0 ? materials.back() : materials[static_cast<std::size_t>(part.material)];
+        mesh.primitives.push_back(std::move(primitive));
+    }
+    return mesh;
+}
+
+void report(const Omissions& omissions, std::vector<std::string>& warnings) {
+    if (omissions.points_or_lines) {
+        warnings.emplace_back("points and lines are skipped");
+    }
+    if (omissions.no_positions) {
+        warnings.emplace_back("primitives without positions are skipped");
+    }
+    if (omissions.morph_targets) {
+        warnings.emplace_back("morph targets are ignored");
+    }
+    if (omissions.vertex_colours) {
+        warnings.emplace_back("vertex colours are ignored");
+    }
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Mesh>> read_meshes(
+    Document& document, const std::vector<std::shared_ptr<const Material>>& materials) {
+    Omissions omissions;
+    std::vector<std::shared_ptr<const Mesh>> meshes;
+    for (const tinygltf::Mesh& source : document.model.meshes) {
+        try {
+            Mesh mesh = read_mesh(document.model, source, materials, omissions);
+            meshes.push_back(mesh.primitives.empty() ? nullptr
+                                                     : std::make_shared<const Mesh>(std::move(mesh)));
+        } catch (const SceneError& error) {
+            throw SceneError(fmt::format("mesh {}: {}", meshes.size(), error.what()));
+        }
+    }
+    report(omissions, document.warnings);
+    return meshes;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,273 @@
+#include "engine/scene/gltf_nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ranges>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/scene/decompose.hpp"
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+constexpr const char* lights_extension = "KHR_lights_punctual";
+constexpr float half_pi = 1.57079632679489662F;
+
+/// A node on its way to becoming an entity.
+struct Visit {
+    int node;
+    std::optional<std::size_t> parent;
+};
+
+const tinygltf::Node& node_at(const tinygltf::Model& model, int index) {
+    return model.nodes[static_cast<std::size_t>(index)];
+}
+
+const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
+    if (model.scenes.empty()) {
+        throw SceneError("it has no scene");
+    }
+    return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
+}
+
+/// The parent of each node, -1 for a root.
+std::vector<int> find_parents(const tinygltf::Model& model) {
+    std::vector<int> parents(model.nodes.size(), -1);
+    for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) {
+        for (const int child : node_at(model, node).children) {
+            int& parent = parents[static_cast<std::size_t>(child)];
+            if (parent >= 0) {
+                throw SceneError(
+                    fmt::format("node {} has two parents, nodes {} and {}", child, parent, node));
+            }
+            parent = node;
+        }
+    }
+    return parents;
+}
+
+/// Every node hangs below a root, and the scene lists roots only, each once.
+void check_hierarchy(const tinygltf::Model& model) {
+    const std::vector<int> parents = find_parents(model);
+    std::vector<int> reached;
+    for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
+        if (parents[static_cast<std::size_t>(node)] < 0) {
+            reached.push_back(node);
+        }
+    }
+    std::vector<bool> below_a_root(parents.size(), false);
+    while (!reached.empty()) {
+        const int node = reached.back();
+        reached.pop_back();
+        below_a_root[static_cast<std::size_t>(node)] = true;
+        std::ranges::copy(node_at(model, node).children, std::back_inserter(reached));
+    }
+    if (const auto lost = std::ranges::find(below_a_root, false); lost != below_a_root.end()) {
+        throw SceneError(
+            fmt::format("node {} is its own ancestor or has one that is", lost - below_a_root.begin()));
+    }
+
+    std::vector<bool> listed(parents.size(), false);
+    for (const int node : default_scene(model).nodes) {
+        const auto i = static_cast<std::size_t>(node);
+        if (parents[i] >= 0) {
+            throw SceneError(fmt::format("node {} is a root of the scene but has a parent", node));
+        }
+        if (listed[i]) {
+            throw SceneError(fmt::format("node {} is a root of the scene twice", node));
+        }
+        listed[i] = true;
+    }
+}
+
+template <class Vector>
+void assign(Vector& vector, const std::vector<double>& numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        vector[static_cast<typename Vector::length_type>(i)] = static_cast<float>(numbers[i]);
+    }
+}
+
+bool is_finite(const Transform& transform) {
+    const auto finite = [](float x) { return std::isfinite(x); };
+    for (int i = 0; i < 3; ++i) {
+        if (!finite(transform.translation[i]) || !finite(transform.scale[i])) {
+            return false;
+        }
+    }
+    return finite(transform.rotation.w) && finite(transform.rotation.x) && finite(transform.rotation.y) &&
+           finite(transform.rotation.z);
+}
+
+std::vector<Transform> read_matrix(const std::vector<double>& numbers) {
+    glm::dmat4 matrix;
+    for (int i = 0; i < 16; ++i) {
+        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)];
+    }
+    if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
+        throw SceneError("its matrix does not end in a row of 0 0 0 1");
+    }
+    return decompose(matrix);
+}
+
+Transform read_translation_rotation_scale(const tinygltf::Node& node) {
+    Transform transform;
+    assign(transform.translation, node.translation);
+    assign(transform.scale, node.scale);
+    if (node.rotation.empty()) {
+        return transform;
+    }
+    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    const double length = glm::length(rotation);
+    if (length == 0.0) {
+        throw SceneError("its rotation is zero");
+    }
+    transform.rotation = glm::quat(rotation / length);
+    return transform;
+}
+
+/// Outermost first; more than one if the node is sheared.
+std::vector<Transform> read_transforms(const tinygltf::Node& node, int index) {
+    try {
+        std::vector<Transform> transforms = node.matrix.empty()
+                                                ? std::vector{read_translation_rotation_scale(node)}
+                                                : read_matrix(node.matrix);
+        if (!std::ranges::all_of(transforms, is_finite)) {
+            throw SceneError("its transform overflows");
+        }
+        return transforms;
+    } catch (const SceneError& error) {
+        throw SceneError(fmt::format("node {}: {}", index, error.what()));
+    }
+}
+
+Camera read_camera(const tinygltf::Camera& source, int index) {
+    const bool perspective = source.type == "perspective";
+    const double far_plane = perspective ? source.perspective.zfar : source.orthographic.zfar;
+    const bool endless = perspective && far_plane == 0.0;  // how the parser says that a camera has no zfar
+    Camera camera;
+    camera.near_plane =
+        static_cast<float>(perspective ? source.perspective.znear : source.orthographic.znear);
+    camera.far_plane = endless ? std::numeric_limits<float>::infinity() : static_cast<float>(far_plane);
+    if (camera.far_plane <= camera.near_plane) {
+        throw SceneError(fmt::format("camera {}: its zfar of {} is not beyond its znear of {}", index,
+                                     camera.far_plane, camera.near_plane));
+    }
+    if (perspective) {
+        camera.vertical_fov = static_cast<float>(source.perspective.yfov);
+    } else {
+        camera.projection = Camera::Projection::orthographic;
+        camera.half_height = static_cast<float>(source.orthographic.ymag);
+    }
+    return camera;
+}
+
+SpotLight read_cones(const tinygltf::SpotLight& source, int index) {
+    SpotLight light;
+    light.inner_cone = static_cast<float>(source.innerConeAngle);
+    light.outer_cone = std::min(static_cast<float>(source.outerConeAngle), half_pi);
+    if (light.inner_cone >= light.outer_cone) {
+        throw SceneError(fmt::format("light {}: its inner cone of {} is not inside its outer cone of {}",
+                                     index, light.inner_cone, light.outer_cone));
+    }
+    return light;
+}
+
+decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int index) {
+    glm::vec3 colour(1.0F);
+    assign(colour, source.color);
+    const auto intensity = static_cast<float>(source.intensity);
+    const float range =
+        source.range > 0.0 ? static_cast<float>(source.range) : std::numeric_limits<float>::infinity();
+
+    if (source.type == "directional") {
+        return DirectionalLight{colour, intensity};
+    }
+    if (source.type == "point") {
+        return PointLight{colour, intensity, range};
+    }
+    if (source.type != "spot") {
+        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, source.type));
+    }
+    SpotLight light = read_cones(source.spot, index);
+    light.colour = colour;
+    light.intensity = intensity;
+    light.range = range;
+    return light;
+}
+
+/// The light that the node holds, -1 for none.
+int light_of(const tinygltf::Node& node) {
+    const auto extension = node.extensions.find(lights_extension);
+    return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
+}
+
+std::string name_of(const tinygltf::Model& model, int index) {
+    const tinygltf::Node& node = node_at(model, index);
+    const auto name_in = [](const auto& list, int i) {
+        return i < 0 ? std::string() : list[static_cast<std::size_t>(i)].name;
+    };
+    for (std::string name : {node.name, name_in(model.cameras, node.camera),
+                             name_in(model.lights, light_of(node)), name_in(model.meshes, node.mesh)}) {
+        if (!name.empty()) {
+            return name;
+        }
+    }
+    return fmt::format("node {}", index);
+}
+
+StagedEntity stage(const tinygltf::Model& model, int index,
+                   const std::vector<std::shared_ptr<const Mesh>>& meshes) {
+    const tinygltf::Node& node = node_at(model, index);
+    StagedEntity entity;
+    entity.name = name_of(model, index);
+    if (node.mesh >= 0) {
+        entity.mesh = meshes[static_cast<std::size_t>(node.mesh)];
+    }
+    if (node.camera >= 0) {
+        entity.camera = read_camera(model.cameras[static_cast<std::size_t>(node.camera)], node.camera);
+    }
+    if (const int light = light_of(node); light >= 0) {
+        entity.light = read_light(model.lights[static_cast<std::size_t>(light)], light);
+    }
+    return entity;
+}
+
+}  // namespace
+
+std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
+                                     const std::vector<std::shared_ptr<const Mesh>>& meshes) {
+    check_hierarchy(model);
+    std::vector<StagedEntity> entities;
+    std::vector<Visit> ahead;  // the next one last
+    for (const int root : std::views::reverse(default_scene(model).nodes)) {
+        ahead.push_back({root, {}});
+    }
+    while (!ahead.empty()) {
+        auto [node, parent] = ahead.back();
+        ahead.pop_back();
+        const std::vector<Transform> transforms = read_transforms(node_at(model, node), node);
+        for (std::size_t i = 0; i < transforms.size(); ++i) {
+            const bool is_node = i + 1 == transforms.size();
+            StagedEntity entity = is_node ? stage(model, node, meshes) : StagedEntity{};
+            if (!is_node) {
+                entity.name = name_of(model, node) + " (shear)";
+            }
+            entity.transform = transforms[i];
+            entity.parent = parent;
+            entities.push_back(std::move(entity));
+            parent = entities.size() - 1;
+        }
+        for (const int child : std::views::reverse(node_at(model, node).children)) {
+            ahead.push_back({child, parent});
+        }
+    }
+    return entities;
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+#include "engine/scene/components.hpp"
+
+namespace candela::gltf {
+
+/// An entity to be: its components, with its parent as an index into the list that holds it.
+struct StagedEntity {
+    std::optional<std::size_t> parent;
+    std::string name;
+    Transform transform;  ///< `parent` is null
+    std::shared_ptr<const Mesh> mesh;
+    std::variant<std::monostate, PointLight, SpotLight, DirectionalLight> light;
+    std::optional<Camera> camera;
+};
+
+/// The nodes of the default scene (the first where none is named), parents before children, siblings in the
+/// file's order. A sheared node makes two entities, the first of them the second's parent (see decompose). A
+/// node without a name is called after its camera, light or mesh, or else `node N`. Throws SceneError that
+/// names the node, camera or light and the fault: two parents, a cycle, no scene.
+[[nodiscard]] std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
+                                                   const std::vector<std::shared_ptr<const Mesh>>& meshes);
+
+}  // namespace candela::gltf

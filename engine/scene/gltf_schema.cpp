@@ -1,0 +1,313 @@
+#include "engine/scene/gltf_schema.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// What is wrong with a value, put so that it follows the value's name; nothing if it is as it should be.
+using Fault = std::optional<std::string>;
+using Check = std::function<Fault(const Json& value, const Json& document)>;
+
+struct Rule {
+    std::string_view
+        path;  ///< members joined by dots; `[]` stands for each item of an array, `{}` of an object
+    Check check;
+};
+
+struct Range {
+    double lowest = -std::numeric_limits<float>::max();
+    double highest = std::numeric_limits<float>::max();
+};
+
+constexpr Range any{};
+constexpr Range unit{.lowest = 0.0, .highest = 1.0};
+constexpr Range not_negative{.lowest = 0.0};
+constexpr Range positive{.lowest = std::numeric_limits<float>::min()};
+// Up to half a turn, short of it by enough that a tangent of the half stays finite in single precision.
+constexpr Range field_of_view{.lowest = std::numeric_limits<float>::min(), .highest = 3.1415};
+// A quarter turn; files round it up as well as down.
+constexpr Range inner_cone{.lowest = 0.0, .highest = 1.570797};
+constexpr Range outer_cone{.lowest = std::numeric_limits<float>::min(), .highest = 1.570797};
+
+constexpr std::uint64_t any_size = std::numeric_limits<std::int64_t>::max();
+constexpr std::uint64_t most_elements = std::numeric_limits<std::uint32_t>::max();
+
+Fault check_number(const Json& value, const Range& range) {
+    if (!value.is_number()) {
+        return "is not a number";
+    }
+    const auto number = value.get<double>();
+    if (number < range.lowest || number > range.highest) {
+        return fmt::format("is {}, which is out of range", number);
+    }
+    return {};
+}
+
+Check number(Range range) {
+    return [range](const Json& value, const Json&) { return check_number(value, range); };
+}
+
+Check numbers(std::size_t length, Range range) {
+    return [length, range](const Json& value, const Json&) -> Fault {
+        if (!value.is_array() || value.size() != length) {
+            return fmt::format("is not {} numbers", length);
+        }
+        for (const Json& item : value) {
+            if (Fault fault = check_number(item, range)) {
+                return "holds a member that " + *fault;
+            }
+        }
+        return {};
+    };
+}
+
+Check whole(std::uint64_t lowest, std::uint64_t highest) {
+    return [lowest, highest](const Json& value, const Json&) -> Fault {
+        if (!value.is_number_integer()) {
+            return "is not a whole number";
+        }
+        if (!value.is_number_unsigned() || value.get<std::uint64_t>() < lowest ||
+            value.get<std::uint64_t>() > highest) {
+            return fmt::format("is {}, which is out of range", value.dump());
+        }
+        return {};
+    };
+}
+
+Check stride() {
+    return [](const Json& value, const Json& document) -> Fault {
+        if (Fault fault = whole(4, 252)(value, document)) {
+            return fault;
+        }
+        if (value.get<int>() % 4 != 0) {
+            return fmt::format("is {}, not a multiple of 4", value.get<int>());
+        }
+        return {};
+    };
+}
+
+Check text() {
+    return [](const Json& value, const Json&) { return value.is_string() ? Fault{} : "is not a string"; };
+}
+
+Check flag() {
+    return
+        [](const Json& value, const Json&) { return value.is_boolean() ? Fault{} : "is not true or false"; };
+}
+
+Check has(std::initializer_list<const char*> members) {
+    return [required = std::vector<const char*>(members)](const Json& value, const Json&) -> Fault {
+        if (!value.is_object()) {
+            return "is not an object";
+        }
+        for (const char* member : required) {
+            if (!value.contains(member)) {
+                return fmt::format("has no \"{}\"", member);
+            }
+        }
+        return {};
+    };
+}
+
+Check version() {
+    return [](const Json& value, const Json&) -> Fault {
+        if (!value.is_string()) {
+            return "is not a string";
+        }
+        const auto& number = value.get_ref<const std::string&>();
+        return number.starts_with("2.") ? Fault{} : fmt::format("is \"{}\"; only 2.0 is read", number);
+    };
+}
+
+/// An index into the array at `path` of the document, called `plural` in messages.
+Check index_into(const char* path, const char* plural) {
+    return [pointer = Json::json_pointer(path), plural](const Json& value, const Json& document) -> Fault {
+        if (!value.is_number_integer()) {
+            return "is not an index";
+        }
+        const std::size_t size = document.contains(pointer) ? document.at(pointer).size() : 0;
+        if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= size) {
+            return fmt::format("is {}, but there are {} {}", value.dump(), size, plural);
+        }
+        return {};
+    };
+}
+
+std::vector<Rule> rules() {
+    const Check accessor = index_into("/accessors", "accessors");
+    const Check buffer = index_into("/buffers", "buffers");
+    const Check buffer_view = index_into("/bufferViews", "buffer views");
+    const Check camera = index_into("/cameras", "cameras");
+    const Check image = index_into("/images", "images");
+    const Check light = index_into("/extensions/KHR_lights_punctual/lights", "lights");
+    const Check material = index_into("/materials", "materials");
+    const Check mesh = index_into("/meshes", "meshes");
+    const Check node = index_into("/nodes", "nodes");
+    const Check sampler = index_into("/samplers", "samplers");
+    const Check scene = index_into("/scenes", "scenes");
+    const Check texture = index_into("/textures", "textures");
+    const Check size = whole(0, any_size);
+    const Check index = whole(0, std::numeric_limits<int>::max());
+
+    return {
+        {"asset", has({"version"})},
+        {"asset.version", version()},
+        {"extensionsUsed.[]", text()},
+        {"extensionsRequired.[]", text()},
+
+        {"buffers.[]", has({"byteLength"})},
+        {"buffers.[].byteLength", whole(1, any_size)},
+        {"buffers.[].uri", text()},
+        {"bufferViews.[]", has({"buffer", "byteLength"})},
+        {"bufferViews.[].buffer", buffer},
+        {"bufferViews.[].byteOffset", size},
+        {"bufferViews.[].byteLength", whole(1, any_size)},
+        {"bufferViews.[].byteStride", stride()},
+        {"accessors.[]", has({"componentType", "count", "type"})},
+        {"accessors.[].bufferView", buffer_view},
+        {"accessors.[].byteOffset", size},
+        {"accessors.[].componentType", index},
+        {"accessors.[].count", whole(1, most_elements)},
+        {"accessors.[].type", text()},
+        {"accessors.[].normalized", flag()},
+        {"accessors.[].sparse", has({"count", "indices", "values"})},
+        {"accessors.[].sparse.count", whole(1, std::numeric_limits<int>::max())},
+        {"accessors.[].sparse.indices", has({"bufferView", "componentType"})},
+        {"accessors.[].sparse.indices.bufferView", buffer_view},
+        {"accessors.[].sparse.indices.byteOffset", index},
+        {"accessors.[].sparse.indices.componentType", index},
+        {"accessors.[].sparse.values", has({"bufferView"})},
+        {"accessors.[].sparse.values.bufferView", buffer_view},
+        {"accessors.[].sparse.values.byteOffset", index},
+
+        {"images.[].name", text()},
+        {"images.[].uri", text()},
+        {"images.[].bufferView", buffer_view},
+        {"samplers.[].wrapS", index},
+        {"samplers.[].wrapT", index},
+        {"textures.[].sampler", sampler},
+        {"textures.[].source", image},
+        {"materials.[].name", text()},
+        {"materials.[].doubleSided", flag()},
+        {"materials.[].alphaMode", text()},
+        {"materials.[].emissiveFactor", numbers(3, not_negative)},
+        {"materials.[].pbrMetallicRoughness.baseColorFactor", numbers(4, unit)},
+        {"materials.[].pbrMetallicRoughness.baseColorTexture", has({"index"})},
+        {"materials.[].pbrMetallicRoughness.baseColorTexture.index", texture},
+        {"materials.[].pbrMetallicRoughness.baseColorTexture.texCoord", index},
+        {"materials.[].pbrMetallicRoughness.metallicRoughnessTexture", has({"index"})},
+        {"materials.[].pbrMetallicRoughness.metallicRoughnessTexture.index", texture},
+        {"materials.[].normalTexture", has({"index"})},
+        {"materials.[].normalTexture.index", texture},
+        {"materials.[].occlusionTexture", has({"index"})},
+        {"materials.[].occlusionTexture.index", texture},
+        {"materials.[].emissiveTexture", has({"index"})},
+        {"materials.[].emissiveTexture.index", texture},
+
+        {"meshes.[]", has({"primitives"})},
+        {"meshes.[].name", text()},
+        {"meshes.[].primitives.[]", has({"attributes"})},
+        {"meshes.[].primitives.[].attributes.{}", accessor},
+        {"meshes.[].primitives.[].indices", accessor},
+        {"meshes.[].primitives.[].material", material},
+        {"meshes.[].primitives.[].mode", whole(0, 6)},
+
+        {"cameras.[]", has({"type"})},
+        {"cameras.[].name", text()},
+        {"cameras.[].type", text()},
+        {"cameras.[].perspective", has({"yfov", "znear"})},
+        {"cameras.[].perspective.yfov", number(field_of_view)},
+        {"cameras.[].perspective.znear", number(positive)},
+        {"cameras.[].perspective.zfar", number(positive)},
+        {"cameras.[].orthographic", has({"xmag", "ymag", "znear", "zfar"})},
+        {"cameras.[].orthographic.ymag", number(positive)},
+        {"cameras.[].orthographic.znear", number(not_negative)},
+        {"cameras.[].orthographic.zfar", number(positive)},
+
+        {"extensions.KHR_lights_punctual", has({"lights"})},
+        {"extensions.KHR_lights_punctual.lights.[]", has({"type"})},
+        {"extensions.KHR_lights_punctual.lights.[].name", text()},
+        {"extensions.KHR_lights_punctual.lights.[].type", text()},
+        {"extensions.KHR_lights_punctual.lights.[].color", numbers(3, unit)},
+        {"extensions.KHR_lights_punctual.lights.[].intensity", number(not_negative)},
+        {"extensions.KHR_lights_punctual.lights.[].range", number(positive)},
+        {"extensions.KHR_lights_punctual.lights.[].spot.innerConeAngle", number(inner_cone)},
+        {"extensions.KHR_lights_punctual.lights.[].spot.outerConeAngle", number(outer_cone)},
+
+        {"nodes.[].name", text()},
+        {"nodes.[].mesh", mesh},
+        {"nodes.[].camera", camera},
+        {"nodes.[].children.[]", node},
+        {"nodes.[].translation", numbers(3, any)},
+        {"nodes.[].rotation", numbers(4, any)},
+        {"nodes.[].scale", numbers(3, any)},
+        {"nodes.[].matrix", numbers(16, any)},
+        {"nodes.[].extensions.KHR_lights_punctual", has({"light"})},
+        {"nodes.[].extensions.KHR_lights_punctual.light", light},
+        {"scenes.[].nodes.[]", node},
+        {"scene", scene},
+    };
+}
+
+/// Applies the rule's check to each value below `value` that the rest of the rule's path leads to.
+void apply(const Rule& rule, std::string_view path, const Json& value, const std::string& name,
+           const Json& document) {
+    if (path.empty()) {
+        if (const Fault fault = rule.check(value, document)) {
+            throw SceneError(name + ' ' + *fault);
+        }
+        return;
+    }
+    const std::size_t dot = path.find('.');
+    const std::string_view step = path.substr(0, dot);
+    const std::string_view rest = dot == std::string_view::npos ? "" : path.substr(dot + 1);
+
+    const bool items = step == "[]";
+    if (items != value.is_array() || (!items && !value.is_object())) {
+        throw SceneError(fmt::format("{} is not an {}", name, items ? "array" : "object"));
+    }
+    if (items) {
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            apply(rule, rest, value[i], fmt::format("{}[{}]", name, i), document);
+        }
+    } else if (step == "{}") {
+        for (const auto& [key, member] : value.items()) {
+            apply(rule, rest, member, fmt::format("{}.{}", name, key), document);
+        }
+    } else if (const auto member = value.find(step); member != value.end()) {
+        apply(rule, rest, *member, name.empty() ? std::string(step) : fmt::format("{}.{}", name, step),
+              document);
+    }
+}
+
+}  // namespace
+
+void check_schema(const Json& document) {
+    if (!document.is_object()) {
+        throw SceneError("the document is not a JSON object");
+    }
+    if (!document.contains("asset")) {
+        throw SceneError("it has no \"asset\", so it is not glTF 2.0");
+    }
+    for (const Rule& rule : rules()) {
+        apply(rule, rule.path, document, {}, document);
+    }
+}
+
+}  // namespace candela::gltf

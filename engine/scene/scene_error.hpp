@@ -1,0 +1,13 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace candela {
+
+/// A fault in a scene or in the file it comes from; `what()` is one line that names the object and the fault.
+class SceneError : public std::runtime_error {
+ public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace candela

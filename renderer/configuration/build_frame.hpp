@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/graph/frame_graph.hpp"
+#include "renderer/configuration/configuration.hpp"
+#include "renderer/passes/bvh.hpp"
+#include "renderer/passes/lights.hpp"
+#include "renderer/passes/view.hpp"
+
+namespace candela {
+
+/// What the host feeds a frame with, and what a report reads from it.
+struct FrameHandles {
+    ValueHandle<ViewRequest> request;  ///< imported
+    TextureHandle target;              ///< imported: a framebuffer's name
+    ValueHandle<SceneMetrics> metrics;
+    ValueHandle<LightTable> lights;
+    ValueHandle<ShadowPlan> shadows;
+    std::optional<Vpls> vpls;
+};
+
+/// Declares the frame that a valid configuration asks for, at one size of target in pixels.
+/// Throws gl::ProgramError if a shader does not compile.
+[[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
+                                       glm::uvec2 size);
+
+}  // namespace candela

@@ -1,0 +1,236 @@
+#include "renderer/configuration/configuration.hpp"
+
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <type_traits>
+
+namespace candela {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 2> path_names{"forward", "deferred"};
+constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
+
+std::span<const std::string_view> names_of(ShadingPath /*type*/) { return path_names; }
+std::span<const std::string_view> names_of(Show /*type*/) { return show_names; }
+
+struct Range {
+    double least;
+    double most;
+};
+
+/// Names every member once, with the range of its values, for reading, writing and validating alike.
+/// `visitor.group(name, members)`, `visitor.member(name, value)`, `visitor.member(name, value, range)`.
+template <class Config, class Visitor>
+void visit(Config& c, Visitor& visitor) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    visitor.member("path", c.path);
+    visitor.member("show", c.show);
+    visitor.member("indirect", c.indirect);
+    visitor.group("vpls", [&] {
+        visitor.member("count", c.vpls.count, {0, 1 << 20});
+        visitor.member("bounces", c.vpls.bounces, {0, 64});
+        visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
+        visitor.member("geometry_bound", c.geometry_bound, {0, infinity});
+    });
+    visitor.group("shadows", [&] {
+        visitor.member("enabled", c.shadows.enabled);
+        visitor.member("cube_resolution", c.shadows.cube_resolution, {16, 8192});
+        visitor.member("map_resolution", c.shadows.map_resolution, {16, 8192});
+        visitor.member("budget_mib", c.shadows.budget_mib, {0, 1 << 16});
+    });
+    visitor.group("tone_map", [&] {
+        visitor.member("enabled", c.tone_map.enabled);
+        visitor.member("exposure_ev", c.tone_map.exposure_ev, {-32, 32});
+    });
+}
+
+class Writer {
+ public:
+    explicit Writer(Json& root) : json_(&root) {}
+
+    template <class Members>
+    void group(const char* name, Members members) {
+        Json* outer = std::exchange(json_, &(*json_)[name]);
+        members();
+        json_ = outer;
+    }
+    template <class T>
+    void member(const char* name, const T& value, Range /*range*/ = {}) {
+        if constexpr (std::is_enum_v<T>) {
+            (*json_)[name] = names_of(value)[static_cast<std::size_t>(value)];
+        } else if constexpr (std::is_same_v<T, float>) {
+            write_float((*json_)[name], value);
+        } else {
+            (*json_)[name] = value;
+        }
+    }
+
+ private:
+    /// JSON has no infinity; a word stands for it.
+    static void write_float(Json& json, float value) {
+        if (std::isinf(value)) {
+            json = "infinity";
+        } else {
+            json = value;
+        }
+    }
+    Json* json_;
+};
+
+/// Checks values that are already in place.
+class Validator {
+ public:
+    explicit Validator(std::vector<std::string>& faults) : faults_(&faults) {}
+
+    template <class Members>
+    void group(const char* name, Members members) {
+        const std::string outer = std::exchange(prefix_, fmt::format("{}{}.", prefix_, name));
+        members();
+        prefix_ = outer;
+    }
+    template <class T>
+    void member(const char* /*name*/, const T& /*value*/) {}
+    template <class T>
+    void member(const char* name, const T& value, Range range) {
+        const auto number = static_cast<double>(value);
+        if (number >= range.least && number <= range.most) { return; }
+        faults_->push_back(
+            fmt::format("{}{}: {} is not from {} to {}", prefix_, name, number, range.least, range.most));
+    }
+
+ private:
+    std::vector<std::string>* faults_;
+    std::string prefix_;
+};
+
+class Reader {
+ public:
+    Reader(const Json& root, std::vector<std::string>& faults) : json_(&root), faults_(&faults) {}
+
+    template <class Members>
+    void group(const char* name, Members members) {
+        known_.insert(prefix_ + name);
+        const auto found = json_->find(name);
+        if (found == json_->end()) { return; }
+        if (!found->is_object()) { return fault(name, "is not an object"); }
+        const Json* outer = std::exchange(json_, &*found);
+        const std::string outer_prefix = std::exchange(prefix_, fmt::format("{}{}.", prefix_, name));
+        members();
+        report_unknown();
+        prefix_ = outer_prefix;
+        json_ = outer;
+    }
+    template <class T>
+    void member(const char* name, T& value, Range range = {}) {
+        known_.insert(prefix_ + name);
+        const auto found = json_->find(name);
+        if (found != json_->end()) { read(name, *found, value, range); }
+    }
+    void report_unknown() {
+        for (const auto& [name, value] : json_->items()) {
+            if (!known_.contains(prefix_ + name)) { fault(name, "is unknown"); }
+        }
+    }
+
+ private:
+    void fault(std::string_view name, std::string_view what) {
+        faults_->push_back(fmt::format("{}{}: {}", prefix_, name, what));
+    }
+    void read(const char* name, const Json& json, bool& value, Range /*range*/) {
+        if (!json.is_boolean()) { return fault(name, "is not true or false"); }
+        value = json.get<bool>();
+    }
+    void read(const char* name, const Json& json, std::uint32_t& value, Range range) {
+        const bool fits = json.is_number_integer() && json.get<double>() >= range.least &&
+                          json.get<double>() <= range.most;
+        if (!fits) {
+            return fault(name, fmt::format("is not a whole number from {} to {}", range.least, range.most));
+        }
+        value = json.get<std::uint32_t>();
+    }
+    void read(const char* name, const Json& json, float& value, Range range) {
+        const bool infinite = json.is_string() && json.get<std::string>() == "infinity";
+        if (!json.is_number() && !infinite) { return fault(name, "is not a number"); }
+        const double number = infinite ? std::numeric_limits<double>::infinity() : json.get<double>();
+        if (number < range.least || number > range.most) {
+            return fault(name, fmt::format("is not from {} to {}", range.least, range.most));
+        }
+        value = static_cast<float>(number);
+    }
+    template <class E>
+        requires std::is_enum_v<E>
+    void read(const char* name, const Json& json, E& value, Range /*range*/) {
+        const auto names = names_of(value);
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (json.is_string() && json.get<std::string>() == names[i]) {
+                value = static_cast<E>(i);
+                return;
+            }
+        }
+        fault(name, fmt::format("is not one of {}", fmt::join(names, ", ")));
+    }
+
+    const Json* json_;
+    std::vector<std::string>* faults_;
+    std::string prefix_;
+    std::set<std::string> known_;
+};
+
+}  // namespace
+
+ConfigurationResult read_configuration(std::string_view text, const Configuration& base) {
+    ConfigurationResult result;
+    const Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded() || !json.is_object()) {
+        result.faults.emplace_back(json.is_discarded() ? "not valid JSON" : "not a JSON object");
+        return result;
+    }
+    Configuration configuration = base;
+    Reader reader(json, result.faults);
+    visit(configuration, reader);
+    reader.report_unknown();
+    if (result.faults.empty()) { result.configuration = configuration; }
+    return result;
+}
+
+std::string write_configuration(const Configuration& configuration) {
+    Json json;
+    Writer writer(json);
+    visit(configuration, writer);
+    return json.dump(2);
+}
+
+std::vector<std::string> validate(const Configuration& configuration) {
+    std::vector<std::string> faults;
+    Validator validator(faults);
+    visit(configuration, validator);
+    return faults;
+}
+
+std::span<const NamedConfiguration> named_configurations() {
+    static const std::array<NamedConfiguration, 4> configurations = [] {
+        Configuration forward;
+        forward.path = ShadingPath::forward;
+        Configuration direct_only;
+        direct_only.indirect = false;
+        Configuration many;
+        many.vpls.count = 2048;
+        many.vpls.bounces = 5;
+        return std::array<NamedConfiguration, 4>{
+            {{"deferred", "G-buffer, then one pass over all lights and VPLs", {}},
+             {"forward", "surfaces shaded as they are rasterised, by all lights and VPLs", forward},
+             {"direct", "deferred, without indirect light", direct_only},
+             {"many-vpls", "deferred, 2048 VPLs and five bounces", many}}};
+    }();
+    return configurations;
+}
+
+std::string_view to_string(ShadingPath path) { return path_names[static_cast<std::size_t>(path)]; }
+std::string_view to_string(Show show) { return show_names[static_cast<std::size_t>(show)]; }
+
+}  // namespace candela

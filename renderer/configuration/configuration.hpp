@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/passes/lighting.hpp"
+#include "renderer/passes/shadow_maps.hpp"
+#include "renderer/passes/tone_map.hpp"
+#include "renderer/passes/vpl_trace.hpp"
+
+namespace candela {
+
+/// How surfaces are found and shaded.
+enum class ShadingPath : std::uint8_t { forward, deferred };
+
+/// Everything that a user chooses about a frame. The defaults are what the app uses when nothing else is asked for.
+struct Configuration {
+    ShadingPath path = ShadingPath::deferred;
+    Show show = Show::total;
+    bool indirect = true;
+    VplSettings vpls;
+    float geometry_bound = 1.0F;  ///< factor on the bound of a VPL's geometry term: see bound_geometry_term
+    ShadowSettings shadows;
+    ToneMapSettings tone_map;
+    bool operator==(const Configuration&) const = default;
+};
+
+/// A configuration, or all that is wrong with it, one line a fault.
+struct ConfigurationResult {
+    std::optional<Configuration> configuration;
+    std::vector<std::string> faults;
+};
+
+/// Reads a JSON object; members that are left out keep the values of `base`. Unknown members, wrong types and values
+/// out of range are faults, each named by its place: "vpls.count: ...".
+[[nodiscard]] ConfigurationResult read_configuration(std::string_view json, const Configuration& base = {});
+
+/// All members as JSON; `read_configuration` gives the same value back.
+[[nodiscard]] std::string write_configuration(const Configuration& configuration);
+
+/// What is wrong with the values, one line a fault; empty if nothing is.
+[[nodiscard]] std::vector<std::string> validate(const Configuration& configuration);
+
+/// A configuration that the app offers by name.
+struct NamedConfiguration {
+    std::string_view name;
+    std::string_view description;
+    Configuration configuration;
+};
+[[nodiscard]] std::span<const NamedConfiguration> named_configurations();
+
+[[nodiscard]] std::string_view to_string(ShadingPath path);
+[[nodiscard]] std::string_view to_string(Show show);
+
+}  // namespace candela

@@ -1,0 +1,91 @@
+#include "renderer/gl/device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace candela::gl {
+namespace {
+
+std::string get_string(PFNGLGETSTRINGPROC get, GLenum name) {
+    const GLubyte* text = get(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+/// Ahead of the loader, which would blame a single function where the whole version is too old.
+void require_version(const GetProc& get_proc) {
+    const auto get = reinterpret_cast<PFNGLGETSTRINGPROC>(get_proc("glGetString"));
+    const auto get_integer = reinterpret_cast<PFNGLGETINTEGERVPROC>(get_proc("glGetIntegerv"));
+    if (!get || !get_integer)
+        throw GlError("the host's function look-up knows no glGetString or glGetIntegerv");
+    const std::string version = get_string(get, GL_VERSION);
+    if (version.empty()) throw GlError("no OpenGL context is current");
+
+    GLint major = 0;
+    GLint minor = 0;
+    get_integer(GL_MAJOR_VERSION, &major);
+    get_integer(GL_MINOR_VERSION, &minor);
+    if (major * 10 + minor < 45 || version.starts_with("OpenGL ES")) {
+        throw GlError(
+            fmt::format("OpenGL 4.5 is needed; {} offers {}", get_string(get, GL_RENDERER), version));
+    }
+}
+
+std::uint32_t get_unsigned(const Functions& gl, GLenum name) {
+    GLint value = 0;
+    gl.GetIntegerv(name, &value);
+    return static_cast<std::uint32_t>(value);
+}
+
+std::vector<std::string> get_extensions(const Functions& gl) {
+    std::vector<std::string> names;
+    const GLuint count = get_unsigned(gl, GL_NUM_EXTENSIONS);
+    for (GLuint i = 0; i < count; ++i) {
+        names.emplace_back(reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, i)));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Limits get_limits(const Functions& gl, bool anisotropic) {
+    Limits limits;
+    limits.texture_size = get_unsigned(gl, GL_MAX_TEXTURE_SIZE);
+    limits.texture_layers = get_unsigned(gl, GL_MAX_ARRAY_TEXTURE_LAYERS);
+    limits.colour_attachments = get_unsigned(gl, GL_MAX_COLOR_ATTACHMENTS);
+    GLint64 storage_block = 0;
+    gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage_block);
+    limits.storage_block_bytes = static_cast<std::uint64_t>(storage_block);
+    limits.uniform_block_bytes = get_unsigned(gl, GL_MAX_UNIFORM_BLOCK_SIZE);
+    limits.storage_alignment = get_unsigned(gl, GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT);
+    limits.uniform_alignment = get_unsigned(gl, GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT);
+    for (GLuint axis = 0; axis < limits.work_groups.size(); ++axis) {
+        GLint count = 0;
+        gl.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &count);
+        limits.work_groups[axis] = static_cast<std::uint32_t>(count);
+    }
+    if (anisotropic) gl.GetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &limits.anisotropy);
+    return limits;
+}
+
+Functions load_checked(const GetProc& get_proc) {
+    require_version(get_proc);
+    return load_functions(get_proc);
+}
+
+}  // namespace
+
+Device::Device(const GetProc& get_proc)
+    : functions_(load_checked(get_proc)),
+      renderer_(get_string(functions_.GetString, GL_RENDERER)),
+      version_(get_string(functions_.GetString, GL_VERSION)),
+      extensions_(get_extensions(functions_)),
+      limits_(get_limits(functions_, has_extension("GL_ARB_texture_filter_anisotropic") ||
+                                         has_extension("GL_EXT_texture_filter_anisotropic"))),
+      log_(functions_) {}
+
+bool Device::has_extension(std::string_view name) const {
+    return std::binary_search(extensions_.begin(), extensions_.end(), name);
+}
+
+}  // namespace candela::gl

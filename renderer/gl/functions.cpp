@@ -1,0 +1,26 @@
+#include "renderer/gl/functions.hpp"
+
+#include <fmt/format.h>
+
+#include "renderer/gl/error.hpp"
+
+namespace candela::gl {
+namespace {
+
+template <class Function>
+void load(const GetProc& get_proc, const char* name, Function& function) {
+    function = reinterpret_cast<Function>(get_proc(name));
+    if (!function) throw GlError(fmt::format("the OpenGL driver offers no function {}", name));
+}
+
+}  // namespace
+
+Functions load_functions(const GetProc& get_proc) {
+    Functions functions;
+#define CANDELA_GL_LOAD(name, capitals) load(get_proc, "gl" #name, functions.name);
+    CANDELA_GL_FUNCTIONS(CANDELA_GL_LOAD)
+#undef CANDELA_GL_LOAD
+    return functions;
+}
+
+}  // namespace candela::gl

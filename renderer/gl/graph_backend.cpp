@@ -1,0 +1,86 @@
+#include "renderer/gl/graph_backend.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace candela::gl {
+
+ObjectId GraphBackend::create_texture(std::string_view name, const TextureDesc& desc) {
+    Texture texture(*device_, name, desc);
+    const ObjectId id = texture.name();
+    textures_.emplace(id, std::move(texture));
+    return id;
+}
+
+ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& desc) {
+    Buffer buffer(*device_, name, desc.count * desc.stride);
+    const ObjectId id = buffer.name();
+    buffers_.emplace(id, std::move(buffer));
+    return id;
+}
+
+void GraphBackend::destroy_texture(ObjectId texture) {
+    // Framebuffers would keep the storage alive, and a later texture may get the same name.
+    std::erase_if(framebuffers_, [&](const auto& entry) { return std::ranges::count(entry.first, texture) > 0; });
+    textures_.erase(texture);
+}
+
+void GraphBackend::destroy_buffer(ObjectId buffer) { buffers_.erase(buffer); }
+
+void GraphBackend::barrier(Barrier bits) { device_->gl().MemoryBarrier(barrier_bits(bits)); }
+
+void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) {
+    const Functions& gl = device_->gl();
+    gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
+    timer_.begin_pass(index);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.Disable(GL_CULL_FACE);
+    gl.Disable(GL_BLEND);
+    gl.FrontFace(GL_CCW);
+    gl.DepthMask(GL_TRUE);
+    if (targets != nullptr) { bind_targets(*targets); }
+}
+
+void GraphBackend::end_pass() {
+    timer_.end_pass();
+    device_->gl().PopDebugGroup();
+}
+
+void GraphBackend::bind_targets(const PassTargets& targets) {
+    Attachments key(targets.colour.begin(), targets.colour.end());
+    key.push_back(targets.depth);
+    auto found = framebuffers_.find(key);
+    if (found == framebuffers_.end()) {
+        Framebuffer framebuffer(*device_, "pass targets");
+        std::uint32_t index = 0;
+        for (const ObjectId colour : targets.colour) { framebuffer.attach_colour(index++, colour); }
+        if (targets.depth != 0) { framebuffer.attach_depth(targets.depth); }
+        framebuffer.draw_buffers(index);
+        framebuffer.check();
+        found = framebuffers_.emplace(std::move(key), std::move(framebuffer)).first;
+    }
+    found->second.bind();
+    device_->gl().Viewport(0, 0, static_cast<GLsizei>(targets.size.x), static_cast<GLsizei>(targets.size.y));
+}
+
+GLbitfield barrier_bits(Barrier barrier) {
+    static constexpr std::array<std::pair<Barrier, GLbitfield>, 10> table{
+        {{Barrier::vertex_attrib, GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT},
+         {Barrier::element, GL_ELEMENT_ARRAY_BARRIER_BIT},
+         {Barrier::uniform, GL_UNIFORM_BARRIER_BIT},
+         {Barrier::texture_fetch, GL_TEXTURE_FETCH_BARRIER_BIT},
+         {Barrier::image_access, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT},
+         {Barrier::command, GL_COMMAND_BARRIER_BIT},
+         {Barrier::texture_update, GL_TEXTURE_UPDATE_BARRIER_BIT},
+         {Barrier::buffer_update, GL_BUFFER_UPDATE_BARRIER_BIT},
+         {Barrier::framebuffer, GL_FRAMEBUFFER_BARRIER_BIT},
+         {Barrier::storage, GL_SHADER_STORAGE_BARRIER_BIT}}};
+    GLbitfield bits = 0;
+    for (const auto& [planned, bit] : table) {
+        if ((barrier & planned) != Barrier::none) { bits |= bit; }
+    }
+    return bits;
+}
+
+}  // namespace candela::gl

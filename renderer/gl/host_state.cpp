@@ -1,0 +1,93 @@
+#include "renderer/gl/host_state.hpp"
+
+#include "shaders/bindings.glsl"
+
+namespace candela::gl {
+namespace {
+
+// What a host may have enabled that would change the picture.
+constexpr std::array<GLenum, 15> capabilities{GL_BLEND,
+                                              GL_COLOR_LOGIC_OP,
+                                              GL_CULL_FACE,
+                                              GL_DEPTH_CLAMP,
+                                              GL_DEPTH_TEST,
+                                              GL_FRAMEBUFFER_SRGB,
+                                              GL_MULTISAMPLE,
+                                              GL_POLYGON_OFFSET_FILL,
+                                              GL_PRIMITIVE_RESTART,
+                                              GL_RASTERIZER_DISCARD,
+                                              GL_SAMPLE_ALPHA_TO_COVERAGE,
+                                              GL_SAMPLE_MASK,
+                                              GL_SCISSOR_TEST,
+                                              GL_STENCIL_TEST,
+                                              // Seamless filtering would compare one face's depth with another's.
+                                              GL_TEXTURE_CUBE_MAP_SEAMLESS};
+
+}  // namespace
+
+HostState::HostState(const Functions& gl)
+    : gl_(&gl),
+      draw_framebuffer_(get(GL_DRAW_FRAMEBUFFER_BINDING)),
+      read_framebuffer_(get(GL_READ_FRAMEBUFFER_BINDING)),
+      program_(get(GL_CURRENT_PROGRAM)),
+      vertex_array_(get(GL_VERTEX_ARRAY_BINDING)),
+      active_texture_(get(GL_ACTIVE_TEXTURE)),
+      depth_func_(get(GL_DEPTH_FUNC)),
+      front_face_(get(GL_FRONT_FACE)),
+      cull_face_(get(GL_CULL_FACE_MODE)),
+      clip_origin_(get(GL_CLIP_ORIGIN)),
+      clip_depth_(get(GL_CLIP_DEPTH_MODE)) {
+    gl.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
+    gl.GetBooleanv(GL_COLOR_WRITEMASK, colour_mask_.data());
+    gl.GetIntegerv(GL_VIEWPORT, viewport_.data());
+    gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour_.data());
+    gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
+    for (const GLenum capability : capabilities) {
+        enabled_.push_back(gl.IsEnabled(capability) == GL_TRUE);
+        gl.Disable(capability);
+    }
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.CullFace(GL_BACK);
+    gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+HostState::~HostState() {
+    const Functions& gl = *gl_;
+    for (GLuint unit = 0; unit <= UNIT_LAST; ++unit) {
+        gl.BindTextureUnit(unit, 0);
+        gl.BindSampler(unit, 0);
+    }
+    for (GLuint binding = 0; binding <= BINDING_LAST; ++binding) {
+        gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
+    }
+    gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    for (std::size_t i = 0; i < capabilities.size(); ++i) {
+        if (enabled_[i]) {
+            gl.Enable(capabilities[i]);
+        } else {
+            gl.Disable(capabilities[i]);
+        }
+    }
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_framebuffer_));
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_framebuffer_));
+    gl.UseProgram(static_cast<GLuint>(program_));
+    gl.BindVertexArray(static_cast<GLuint>(vertex_array_));
+    gl.ActiveTexture(static_cast<GLenum>(active_texture_));
+    gl.DepthFunc(static_cast<GLenum>(depth_func_));
+    gl.FrontFace(static_cast<GLenum>(front_face_));
+    gl.CullFace(static_cast<GLenum>(cull_face_));
+    gl.ClipControl(static_cast<GLenum>(clip_origin_), static_cast<GLenum>(clip_depth_));
+    gl.DepthMask(depth_mask_);
+    gl.ColorMask(colour_mask_[0], colour_mask_[1], colour_mask_[2], colour_mask_[3]);
+    gl.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+    gl.ClearColor(clear_colour_[0], clear_colour_[1], clear_colour_[2], clear_colour_[3]);
+    gl.ClearDepthf(clear_depth_);
+}
+
+GLint HostState::get(GLenum what) const {
+    GLint value = 0;
+    gl_->GetIntegerv(what, &value);
+    return value;
+}
+
+}  // namespace candela::gl

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "renderer/gl/functions.hpp"
+
+namespace candela::gl {
+
+/// Puts the host's state aside and sets what rendering assumes: depth in [0, 1] (glClipControl), and nothing enabled
+/// that a host may have turned on. At its end the host finds its framebuffers, program, vertex array, viewport,
+/// enables, depth, colour and clip state as they were. Texture units, samplers, indexed buffers and the indirect
+/// buffer that rendering used are left unbound.
+class HostState {
+ public:
+    explicit HostState(const Functions& gl);
+    ~HostState();
+    HostState(const HostState&) = delete;
+    HostState& operator=(const HostState&) = delete;
+
+ private:
+    [[nodiscard]] GLint get(GLenum what) const;
+
+    const Functions* gl_;
+    GLint draw_framebuffer_;
+    GLint read_framebuffer_;
+    GLint program_;
+    GLint vertex_array_;
+    GLint active_texture_;
+    GLint depth_func_;
+    GLint front_face_;
+    GLint cull_face_;
+    GLint clip_origin_;
+    GLint clip_depth_;
+    GLboolean depth_mask_ = GL_TRUE;
+    std::array<GLint, 4> viewport_{};
+    std::array<GLboolean, 4> colour_mask_{};
+    std::array<GLfloat, 4> clear_colour_{};
+    GLfloat clear_depth_ = 0.0F;
+    std::vector<bool> enabled_;
+};
+
+}  // namespace candela::gl

@@ -1,0 +1,259 @@
+#include "renderer/gl/objects.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace candela::gl {
+namespace {
+
+using Create = void(APIENTRY*)(GLsizei, GLuint*);
+
+GLuint create(Create create_names) {
+    GLuint name = 0;
+    create_names(1, &name);
+    return name;
+}
+
+template <class CreateTyped>
+GLuint create(CreateTyped create_names, GLenum target) {
+    GLuint name = 0;
+    create_names(target, 1, &name);
+    return name;
+}
+
+GLenum label_namespace(ObjectKind kind) {
+    switch (kind) {
+        case ObjectKind::buffer:
+            return GL_BUFFER;
+        case ObjectKind::texture:
+            return GL_TEXTURE;
+        case ObjectKind::framebuffer:
+            return GL_FRAMEBUFFER;
+        case ObjectKind::vertex_array:
+            return GL_VERTEX_ARRAY;
+        case ObjectKind::sampler:
+            return GL_SAMPLER;
+        case ObjectKind::query:
+            return GL_QUERY;
+        case ObjectKind::program:
+            return GL_PROGRAM;
+    }
+    return GL_NONE;
+}
+
+void delete_object(const Functions& gl, ObjectKind kind, GLuint name) {
+    switch (kind) {
+        case ObjectKind::buffer:
+            return gl.DeleteBuffers(1, &name);
+        case ObjectKind::texture:
+            return gl.DeleteTextures(1, &name);
+        case ObjectKind::framebuffer:
+            return gl.DeleteFramebuffers(1, &name);
+        case ObjectKind::vertex_array:
+            return gl.DeleteVertexArrays(1, &name);
+        case ObjectKind::sampler:
+            return gl.DeleteSamplers(1, &name);
+        case ObjectKind::query:
+            return gl.DeleteQueries(1, &name);
+        case ObjectKind::program:
+            return gl.DeleteProgram(name);
+    }
+}
+
+std::string_view framebuffer_status(GLenum status) {
+    switch (status) {
+        case GL_FRAMEBUFFER_INCOMPLETE_ATTACHMENT:
+            return "an attachment cannot be drawn into";
+        case GL_FRAMEBUFFER_INCOMPLETE_MISSING_ATTACHMENT:
+            return "there is no attachment";
+        case GL_FRAMEBUFFER_INCOMPLETE_DRAW_BUFFER:
+            return "a draw buffer has no attachment";
+        case GL_FRAMEBUFFER_INCOMPLETE_LAYER_TARGETS:
+            return "layered and flat attachments are mixed";
+        case GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE:
+            return "attachments differ in samples";
+        case GL_FRAMEBUFFER_UNSUPPORTED:
+            return "the driver does not support this combination of formats";
+        default:
+            return "its state cannot be had";
+    }
+}
+
+}  // namespace
+
+Object::Object(Device& device, ObjectKind kind, GLuint name, std::string_view label)
+    : device_(&device), kind_(kind), name_(name) {
+    if (name == 0) throw GlError(fmt::format("the driver gives no object for \"{}\"", label));
+    ++device.live_.objects[static_cast<std::size_t>(kind)];
+    const std::string_view shown = label.substr(0, 255);  // what every driver takes
+    gl().ObjectLabel(label_namespace(kind), name, static_cast<GLsizei>(shown.size()), shown.data());
+}
+
+Object::Object(Object&& other) noexcept
+    : device_(std::exchange(other.device_, nullptr)),
+      kind_(other.kind_),
+      name_(std::exchange(other.name_, 0)),
+      bytes_(std::exchange(other.bytes_, 0)) {}
+
+Object& Object::operator=(Object&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    device_ = std::exchange(other.device_, nullptr);
+    kind_ = other.kind_;
+    name_ = std::exchange(other.name_, 0);
+    bytes_ = std::exchange(other.bytes_, 0);
+    return *this;
+}
+
+Object::~Object() {
+    release();
+}
+
+void Object::set_bytes(std::uint64_t bytes) {
+    ObjectCounts& live = device_->live_;
+    std::uint64_t& total = kind_ == ObjectKind::texture ? live.texture_bytes : live.buffer_bytes;
+    total += bytes - bytes_;
+    bytes_ = bytes;
+}
+
+void Object::release() noexcept {
+    if (!device_) return;
+    set_bytes(0);
+    --device_->live_.objects[static_cast<std::size_t>(kind_)];
+    delete_object(gl(), kind_, name_);
+    device_ = nullptr;
+    name_ = 0;
+}
+
+Buffer::Buffer(Device& device, std::string_view label, std::uint64_t size)
+    : Object(device, ObjectKind::buffer, create(device.gl().CreateBuffers), label) {
+    const auto fail = [&] {
+        throw GlError(fmt::format("buffer \"{}\": no memory for {} bytes", label, size));
+    };
+    if (size > static_cast<std::uint64_t>(PTRDIFF_MAX)) fail();
+    const auto stored =
+        static_cast<GLsizeiptr>(std::max<std::uint64_t>(size, 4));  // the GL has no empty storage
+    gl().NamedBufferStorage(name(), stored, nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (gl().GetError() == GL_OUT_OF_MEMORY) fail();
+    set_bytes(size);
+}
+
+void Buffer::bind_base(GLenum target, GLuint index) const {
+    gl().BindBufferBase(target, index, name());
+}
+
+void Buffer::write(std::span<const std::byte> data, std::uint64_t offset) {
+    if (offset > bytes() || data.size() > bytes() - offset) {
+        throw GlError(fmt::format("an upload of {} bytes at {} does not fit a buffer of {} bytes",
+                                  data.size(), offset, bytes()));
+    }
+    gl().NamedBufferSubData(name(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()),
+                            data.data());
+}
+
+void Buffer::read(std::span<std::byte> data) const {
+    gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl().GetNamedBufferSubData(name(), 0, static_cast<GLsizeiptr>(data.size()), data.data());
+}
+
+Sampler::Sampler(Device& device, std::string_view label, const SamplerDesc& desc)
+    : Object(device, ObjectKind::sampler, create(device.gl().CreateSamplers), label) {
+    const std::array parameters = {
+        std::pair{GL_TEXTURE_MIN_FILTER, desc.min_filter}, std::pair{GL_TEXTURE_MAG_FILTER, desc.mag_filter},
+        std::pair{GL_TEXTURE_WRAP_S, desc.wrap_u},         std::pair{GL_TEXTURE_WRAP_T, desc.wrap_v},
+        std::pair{GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE},
+    };
+    for (const auto& [parameter, value] : parameters) {
+        gl().SamplerParameteri(name(), static_cast<GLenum>(parameter), value);
+    }
+    if (desc.compare != GL_NONE) {
+        gl().SamplerParameteri(name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+        gl().SamplerParameteri(name(), GL_TEXTURE_COMPARE_FUNC, desc.compare);
+    }
+    const float anisotropy = std::min(desc.anisotropy, device.limits().anisotropy);
+    if (anisotropy > 1.0F) gl().SamplerParameterf(name(), GL_TEXTURE_MAX_ANISOTROPY, anisotropy);
+}
+
+void Sampler::bind(GLuint unit) const {
+    gl().BindSampler(unit, name());
+}
+
+Framebuffer::Framebuffer(Device& device, std::string_view label)
+    : Object(device, ObjectKind::framebuffer, create(device.gl().CreateFramebuffers), label) {}
+
+void Framebuffer::attach_colour(std::uint32_t index, GLuint texture, std::uint32_t level) {
+    gl().NamedFramebufferTexture(name(), GL_COLOR_ATTACHMENT0 + index, texture, static_cast<GLint>(level));
+}
+
+void Framebuffer::attach_depth(GLuint texture, std::uint32_t level) {
+    gl().NamedFramebufferTexture(name(), GL_DEPTH_ATTACHMENT, texture, static_cast<GLint>(level));
+}
+
+void Framebuffer::attach_colour_layer(std::uint32_t index, GLuint texture, std::uint32_t layer,
+                                      std::uint32_t level) {
+    gl().NamedFramebufferTextureLayer(name(), GL_COLOR_ATTACHMENT0 + index, texture,
+                                      static_cast<GLint>(level), static_cast<GLint>(layer));
+}
+
+void Framebuffer::attach_depth_layer(GLuint texture, std::uint32_t layer, std::uint32_t level) {
+    gl().NamedFramebufferTextureLayer(name(), GL_DEPTH_ATTACHMENT, texture, static_cast<GLint>(level),
+                                      static_cast<GLint>(layer));
+}
+
+void Framebuffer::draw_buffers(std::uint32_t count) {
+    std::vector<GLenum> buffers(count);
+    for (std::uint32_t i = 0; i < count; ++i) buffers[i] = GL_COLOR_ATTACHMENT0 + i;
+    if (count == 0) buffers.push_back(GL_NONE);
+    gl().NamedFramebufferDrawBuffers(name(), static_cast<GLsizei>(buffers.size()), buffers.data());
+}
+
+void Framebuffer::check() const {
+    const GLenum status = gl().CheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER);
+    if (status == GL_FRAMEBUFFER_COMPLETE) return;
+    std::array<char, 256> label{};
+    gl().GetObjectLabel(GL_FRAMEBUFFER, name(), static_cast<GLsizei>(label.size()), nullptr, label.data());
+    throw GlError(
+        fmt::format("framebuffer \"{}\" is incomplete: {}", label.data(), framebuffer_status(status)));
+}
+
+void Framebuffer::bind() const {
+    gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, name());
+}
+
+VertexArray::VertexArray(Device& device, std::string_view label)
+    : Object(device, ObjectKind::vertex_array, create(device.gl().CreateVertexArrays), label) {}
+
+void VertexArray::vertex_buffer(GLuint buffer, std::uint32_t stride, std::uint64_t offset, GLuint binding) {
+    gl().VertexArrayVertexBuffer(name(), binding, buffer, static_cast<GLintptr>(offset),
+                                 static_cast<GLsizei>(stride));
+}
+
+void VertexArray::index_buffer(GLuint buffer) {
+    gl().VertexArrayElementBuffer(name(), buffer);
+}
+
+void VertexArray::attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
+                            GLuint binding) {
+    gl().EnableVertexArrayAttrib(name(), index);
+    gl().VertexArrayAttribFormat(name(), index, components, type, GL_FALSE, offset);
+    gl().VertexArrayAttribBinding(name(), index, binding);
+}
+
+void VertexArray::integer_attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
+                                    GLuint binding) {
+    gl().EnableVertexArrayAttrib(name(), index);
+    gl().VertexArrayAttribIFormat(name(), index, components, type, offset);
+    gl().VertexArrayAttribBinding(name(), index, binding);
+}
+
+void VertexArray::bind() const {
+    gl().BindVertexArray(name());
+}
+
+Query::Query(Device& device, std::string_view label, GLenum target)
+    : Object(device, ObjectKind::query, create(device.gl().CreateQueries, target), label) {}
+
+}  // namespace candela::gl

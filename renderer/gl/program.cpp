@@ -1,0 +1,177 @@
+#include "renderer/gl/program.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace candela::gl {
+namespace {
+
+GLenum stage_of(std::string_view file) {
+    if (file.ends_with(".vert")) return GL_VERTEX_SHADER;
+    if (file.ends_with(".frag")) return GL_FRAGMENT_SHADER;
+    if (file.ends_with(".geom")) return GL_GEOMETRY_SHADER;
+    if (file.ends_with(".comp")) return GL_COMPUTE_SHADER;
+    throw ProgramError(fmt::format("shaders/{}: a stage file ends in .vert, .frag, .geom or .comp", file));
+}
+
+template <class Length, class Log>
+std::string info_log(Length get_parameter, Log get_log, GLuint object) {
+    GLint length = 0;
+    get_parameter(object, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
+    GLsizei written = 0;
+    get_log(object, static_cast<GLsizei>(log.size()), &written, log.data());
+    log.resize(static_cast<std::size_t>(written));
+    return log;
+}
+
+/// A compiled stage.
+class Shader {
+ public:
+    Shader(const Functions& gl, GLenum stage, const ShaderSource& source)
+        : gl_(gl), name_(gl.CreateShader(stage)) {
+        const char* text = source.text.data();
+        const auto length = static_cast<GLint>(source.text.size());
+        gl_.ShaderSource(name_, 1, &text, &length);
+        gl_.CompileShader(name_);
+    }
+    ~Shader() { gl_.DeleteShader(name_); }
+    Shader(const Shader&) = delete;
+    Shader& operator=(const Shader&) = delete;
+
+    [[nodiscard]] GLuint name() const { return name_; }
+    /// The driver's messages where it did not compile.
+    [[nodiscard]] std::optional<std::string> failure() const {
+        GLint compiled = GL_FALSE;
+        gl_.GetShaderiv(name_, GL_COMPILE_STATUS, &compiled);
+        if (compiled == GL_TRUE) return std::nullopt;
+        return info_log(gl_.GetShaderiv, gl_.GetShaderInfoLog, name_);
+    }
+
+ private:
+    const Functions& gl_;
+    GLuint name_;
+};
+
+}  // namespace
+
+Program::Program(Device& device, std::string_view label, std::span<const GLuint> shaders)
+    : Object(device, ObjectKind::program, device.gl().CreateProgram(), label) {
+    link(label, shaders);
+    find_uniforms();
+}
+
+void Program::link(std::string_view label, std::span<const GLuint> shaders) const {
+    for (const GLuint shader : shaders) gl().AttachShader(name(), shader);
+    gl().LinkProgram(name());
+    for (const GLuint shader : shaders) gl().DetachShader(name(), shader);
+    GLint linked = GL_FALSE;
+    gl().GetProgramiv(name(), GL_LINK_STATUS, &linked);
+    if (linked == GL_TRUE) return;
+    throw ProgramError(fmt::format("{} do not link: {}", label,
+                                   info_log(gl().GetProgramiv, gl().GetProgramInfoLog, name())));
+}
+
+void Program::find_uniforms() {
+    GLint count = 0;
+    GLint longest = 0;
+    gl().GetProgramInterfaceiv(name(), GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
+    gl().GetProgramInterfaceiv(name(), GL_UNIFORM, GL_MAX_NAME_LENGTH, &longest);
+    for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+        std::string uniform(static_cast<std::size_t>(longest), '\0');
+        GLsizei length = 0;
+        gl().GetProgramResourceName(name(), GL_UNIFORM, i, longest, &length, uniform.data());
+        uniform.resize(static_cast<std::size_t>(length));
+        const GLint location = gl().GetProgramResourceLocation(name(), GL_UNIFORM, uniform.c_str());
+        if (location < 0) continue;  // a member of a block
+        if (uniform.ends_with("[0]")) uniform.resize(uniform.size() - 3);
+        locations_.emplace(std::move(uniform), location);
+    }
+}
+
+void Program::use() const {
+    gl().UseProgram(name());
+}
+
+GLint Program::location(std::string_view uniform) const {
+    const auto found = locations_.find(uniform);
+    return found == locations_.end() ? -1 : found->second;
+}
+
+void Program::set(std::string_view uniform, bool value) const {
+    set(uniform, value ? 1 : 0);
+}
+void Program::set(std::string_view uniform, int value) const {
+    gl().ProgramUniform1i(name(), location(uniform), value);
+}
+void Program::set(std::string_view uniform, std::uint32_t value) const {
+    gl().ProgramUniform1ui(name(), location(uniform), value);
+}
+void Program::set(std::string_view uniform, float value) const {
+    gl().ProgramUniform1f(name(), location(uniform), value);
+}
+void Program::set(std::string_view uniform, const glm::vec2& value) const {
+    gl().ProgramUniform2fv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::vec3& value) const {
+    gl().ProgramUniform3fv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::vec4& value) const {
+    gl().ProgramUniform4fv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::ivec2& value) const {
+    gl().ProgramUniform2iv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::ivec3& value) const {
+    gl().ProgramUniform3iv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::uvec2& value) const {
+    gl().ProgramUniform2uiv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::uvec3& value) const {
+    gl().ProgramUniform3uiv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::uvec4& value) const {
+    gl().ProgramUniform4uiv(name(), location(uniform), 1, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::mat3& value) const {
+    gl().ProgramUniformMatrix3fv(name(), location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, const glm::mat4& value) const {
+    gl().ProgramUniformMatrix4fv(name(), location(uniform), 1, GL_FALSE, glm::value_ptr(value));
+}
+void Program::set(std::string_view uniform, std::span<const float> values) const {
+    gl().ProgramUniform1fv(name(), location(uniform), static_cast<GLsizei>(values.size()), values.data());
+}
+void Program::set(std::string_view uniform, std::span<const glm::vec4> values) const {
+    gl().ProgramUniform4fv(name(), location(uniform), static_cast<GLsizei>(values.size()),
+                           reinterpret_cast<const float*>(values.data()));
+}
+void Program::set(std::string_view uniform, std::span<const glm::mat4> values) const {
+    gl().ProgramUniformMatrix4fv(name(), location(uniform), static_cast<GLsizei>(values.size()), GL_FALSE,
+                                 reinterpret_cast<const float*>(values.data()));
+}
+
+Program compile(Device& device, const ShaderLibrary& library, const std::vector<std::string>& stages,
+                const std::vector<Define>& defines) {
+    std::vector<std::unique_ptr<const Shader>> shaders;
+    std::vector<GLuint> names;
+    for (const std::string& stage : stages) {
+        const GLenum kind = stage_of(stage);
+        const ShaderSource source = assemble(library, stage, defines);
+        shaders.push_back(std::make_unique<const Shader>(device.gl(), kind, source));
+        names.push_back(shaders.back()->name());
+        if (const auto log = shaders.back()->failure()) {
+            throw ProgramError(
+                fmt::format("shaders/{} does not compile:\n{}", stage, map_log(*log, source.files)));
+        }
+    }
+    return Program(device, fmt::format("{}", fmt::join(stages, " and ")), names);
+}
+
+}  // namespace candela::gl

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "renderer/gl/objects.hpp"
+#include "renderer/gl/shader_source.hpp"
+
+namespace candela::gl {
+
+/// A linked program. Uniforms are set by name, whether or not the program is in use. A name that the program
+/// has no active uniform for is ignored, at the price of one look-up: drivers drop uniforms that a variant
+/// does not need. Arrays go by their name without "[0]", and are set from their first element.
+class Program : public Object {
+ public:
+    Program() = default;
+    /// Links compiled shaders, which stay the caller's. Throws ProgramError with the linker's messages.
+    Program(Device& device, std::string_view label, std::span<const GLuint> shaders);
+
+    void use() const;
+
+    /// Whether `name` is an active uniform outside of blocks.
+    [[nodiscard]] bool has(std::string_view uniform) const { return locations_.contains(uniform); }
+
+    void set(std::string_view uniform, bool value) const;
+    void set(std::string_view uniform, int value) const;
+    void set(std::string_view uniform, std::uint32_t value) const;
+    void set(std::string_view uniform, float value) const;
+    void set(std::string_view uniform, const glm::vec2& value) const;
+    void set(std::string_view uniform, const glm::vec3& value) const;
+    void set(std::string_view uniform, const glm::vec4& value) const;
+    void set(std::string_view uniform, const glm::ivec2& value) const;
+    void set(std::string_view uniform, const glm::ivec3& value) const;
+    void set(std::string_view uniform, const glm::uvec2& value) const;
+    void set(std::string_view uniform, const glm::uvec3& value) const;
+    void set(std::string_view uniform, const glm::uvec4& value) const;
+    void set(std::string_view uniform, const glm::mat3& value) const;
+    void set(std::string_view uniform, const glm::mat4& value) const;
+    void set(std::string_view uniform, std::span<const float> values) const;
+    void set(std::string_view uniform, std::span<const glm::vec4> values) const;
+    void set(std::string_view uniform, std::span<const glm::mat4> values) const;
+
+ private:
+    void link(std::string_view label, std::span<const GLuint> shaders) const;
+    void find_uniforms();
+    /// -1, which the GL ignores, for names that are not active.
+    [[nodiscard]] GLint location(std::string_view uniform) const;
+
+    std::map<std::string, GLint, std::less<>> locations_;
+};
+
+/// Compiles and links the stage files, whose extensions say what they are: .vert, .frag, .geom or .comp.
+/// `compile(device, library, {"gbuffer.vert", "gbuffer.frag"}, {{"VPL_VISIBILITY", "0"}})`.
+/// Throws ProgramError with the driver's messages, by file and line.
+[[nodiscard]] Program compile(Device& device, const ShaderLibrary& library,
+                              const std::vector<std::string>& stages,
+                              const std::vector<Define>& defines = {});
+
+}  // namespace candela::gl

@@ -1,0 +1,59 @@
+#include "renderer/gpu.hpp"
+
+#include <array>
+#include <cstddef>
+#include <fmt/ranges.h>
+
+#include "engine/scene/components.hpp"
+#include "shaders/bindings.glsl"
+
+namespace candela {
+namespace {
+
+gl::VertexArray make_mesh_vertices(gl::Device& device) {
+    gl::VertexArray array(device, "mesh vertices");
+    array.attribute(ATTRIBUTE_POSITION, 3, GL_FLOAT, offsetof(Vertex, position));
+    array.attribute(ATTRIBUTE_NORMAL, 3, GL_FLOAT, offsetof(Vertex, normal));
+    array.attribute(ATTRIBUTE_UV, 2, GL_FLOAT, offsetof(Vertex, uv));
+    array.integer_attribute(ATTRIBUTE_INSTANCE, 1, GL_UNSIGNED_INT, 0, 1);
+    device.gl().VertexArrayBindingDivisor(array.name(), 1, 1);
+    return array;
+}
+
+gl::Texture make_white(gl::Device& device) {
+    gl::Texture texture(device, "white", TextureDesc{});
+    const std::array<std::byte, 4> texel{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
+    texture.upload(texel);
+    return texture;
+}
+
+}  // namespace
+
+Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
+    : device_(get_proc),
+      shaders_(std::move(shaders)),
+      mesh_vertices_(make_mesh_vertices(device_)),
+      no_vertices_(device_, "no vertices"),
+      white_(make_white(device_)),
+      layer_target_(device_, "layer target"),
+      shadow_sampler_(device_, "shadow sampler", {.compare = GL_GEQUAL}) {
+    layer_target_.draw_buffers(0);
+}
+
+const gl::Program& Gpu::program(const std::vector<std::string>& stages) {
+    const auto found = programs_.find(stages);
+    if (found != programs_.end()) { return found->second; }
+    return programs_.emplace(stages, gl::compile(device_, shaders_, stages)).first->second;
+}
+
+void Gpu::bind_storage(GLuint binding, GLuint buffer) const {
+    gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
+}
+
+void Gpu::draw_fullscreen(const gl::Program& program) const {
+    program.use();
+    no_vertices_.bind();
+    gl().DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace candela

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/bvh/bvh.hpp"
+#include "shaders/bindings.glsl"
+
+/// The structs that shaders read, byte for byte as std430 lays them out; their twins, with the meaning and unit of
+/// each member, are in shaders/types.glsl.
+namespace candela::gpu {
+
+struct Instance {
+    glm::vec4 world[3];
+    std::uint32_t material;
+    std::uint32_t pad0 = 0;
+    std::uint32_t pad1 = 0;
+    std::uint32_t pad2 = 0;
+};
+
+enum MaterialFlags : std::uint32_t { double_sided = 1, wrap_u_shift = 1, wrap_v_shift = 3 };
+
+struct Material {
+    glm::vec4 base_colour;
+    std::uint32_t first_texel = 0;
+    std::uint32_t texel_width = 0;
+    std::uint32_t texel_height = 0;
+    std::uint32_t flags = 0;
+};
+
+enum class LightKind : std::uint32_t { point, spot, directional };
+
+struct Light {
+    glm::vec3 position{0.0F};
+    LightKind kind = LightKind::point;
+    glm::vec3 direction{0.0F, 0.0F, -1.0F};
+    float range = 0.0F;
+    glm::vec3 intensity{0.0F};
+    std::int32_t shadow = -1;
+    glm::vec2 shape{0.0F};
+    float cos_inner = 0.0F;
+    float cos_outer = 0.0F;
+    bool operator==(const Light&) const = default;
+};
+
+enum class ShadowKind : std::uint32_t { cube, perspective, orthographic };
+
+struct Shadow {
+    glm::mat4 from_world{1.0F};
+    glm::vec3 axis{0.0F};
+    float texel = 0.0F;
+    float near_plane = 0.0F;
+    std::uint32_t layer = 0;
+    ShadowKind kind = ShadowKind::cube;
+    std::uint32_t pad0 = 0;
+    bool operator==(const Shadow&) const = default;
+};
+
+struct Vpl {
+    glm::vec3 position;
+    std::uint32_t path;
+    glm::vec3 normal;
+    std::uint32_t bounce;
+    glm::vec3 flux;
+    std::uint32_t pad0;
+};
+
+using BvhNode = candela::BvhNode;
+
+struct TraceTriangle {
+    glm::vec3 a;
+    std::uint32_t material;
+    glm::vec3 edge_ab;
+    std::uint32_t id;
+    glm::vec3 edge_ac;
+    std::uint32_t pad0 = 0;
+    glm::vec2 uv_a;
+    glm::vec2 uv_b;
+    glm::vec2 uv_c;
+    glm::vec2 pad1{0.0F};
+};
+
+struct Path {
+    glm::vec3 flux;
+    std::uint32_t light;
+    std::uint32_t index;
+    std::uint32_t seed;
+    std::uint32_t first_vpl;
+    std::uint32_t vpl_count;
+    bool operator==(const Path&) const = default;
+};
+
+struct FluxAccount {
+    glm::vec3 emitted;
+    float pad0;
+    glm::vec3 absorbed;
+    float pad1;
+    glm::vec3 escaped;
+    float pad2;
+    glm::vec3 truncated;
+    float pad3;
+    glm::vec3 roulette;
+    float pad4;
+};
+
+/// Arguments of glMultiDrawElementsIndirect, as the GL lays them out.
+struct DrawCommand {
+    std::uint32_t index_count;
+    std::uint32_t instance_count;
+    std::uint32_t first_index;
+    std::int32_t base_vertex;
+    std::uint32_t base_instance;
+};
+
+static_assert(BVH_STACK_SIZE >= bvh_max_depth);
+
+}  // namespace candela::gpu

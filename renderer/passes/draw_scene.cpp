@@ -1,0 +1,72 @@
+#include "renderer/passes/draw_scene.hpp"
+
+#include "engine/graph/frame_graph.hpp"
+
+namespace candela {
+namespace {
+
+void multi_draw(const gl::Functions& gl, std::size_t first, std::size_t count) {
+    const auto offset = reinterpret_cast<const void*>(first * sizeof(gpu::DrawCommand));
+    gl.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), 0);
+}
+
+}  // namespace
+
+void read_meshes(Pass& pass, const SceneData& scene) {
+    pass.read(scene.layout);
+    pass.read(scene.vertices, Usage::vertex);
+    pass.read(scene.instance_ids, Usage::vertex);
+    pass.read(scene.indices, Usage::index);
+    pass.read(scene.draws, Usage::indirect);
+    pass.read(scene.instances, Usage::storage);
+}
+
+void read_materials(Pass& pass, const SceneData& scene) { pass.read(scene.materials, Usage::storage); }
+
+void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
+    gl::VertexArray& vertices = gpu.mesh_vertices();
+    vertices.vertex_buffer(run.object(scene.vertices), sizeof(Vertex), 0, 0);
+    vertices.vertex_buffer(run.object(scene.instance_ids), sizeof(std::uint32_t), 0, 1);
+    vertices.index_buffer(run.object(scene.indices));
+    vertices.bind();
+    gpu.gl().BindBuffer(GL_DRAW_INDIRECT_BUFFER, run.object(scene.draws));
+    gpu.bind_storage(BINDING_INSTANCES, run.object(scene.instances));
+}
+
+void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
+    multi_draw(gpu.gl(), 0, run.value(scene.layout).drawables.size());
+}
+
+void begin_surfaces(const Gpu& gpu) {
+    const gl::Functions& gl = gpu.gl();
+    gl.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+    gl.ClearDepthf(0.0F);
+    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_GREATER);
+}
+
+void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program) {
+    const gl::Functions& gl = gpu.gl();
+    bind_meshes(gpu, run, scene);
+    gpu.bind_storage(BINDING_MATERIALS, run.object(scene.materials));
+    program.use();
+    for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
+        if (group.texture) {
+            group.texture->texture.bind(UNIT_BASE_COLOUR);
+            group.texture->sampler.bind(UNIT_BASE_COLOUR);
+        } else {
+            gpu.white().bind(UNIT_BASE_COLOUR);
+            gl.BindSampler(UNIT_BASE_COLOUR, 0);
+        }
+        gl.FrontFace(group.mirrored ? GL_CW : GL_CCW);
+        if (group.double_sided) {
+            gl.Disable(GL_CULL_FACE);
+        } else {
+            gl.Enable(GL_CULL_FACE);
+        }
+        multi_draw(gl, group.first_draw, group.draw_count);
+    }
+}
+
+}  // namespace candela

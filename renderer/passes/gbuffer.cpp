@@ -1,0 +1,27 @@
+#include "renderer/passes/gbuffer.hpp"
+
+#include "engine/graph/execute.hpp"
+#include "renderer/passes/draw_scene.hpp"
+
+namespace candela {
+
+Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<CameraView> view, glm::uvec2 size) {
+    return graph.add("gbuffer", [&](Pass& pass) {
+        read_meshes(pass, scene);
+        read_materials(pass, scene);
+        pass.read(view);
+        const gl::Program& program = gpu.program({"mesh_surface.vert", "gbuffer.frag"});
+        const Gbuffer out{
+            .albedo = pass.write(graph.texture("albedo", {size, Format::rgba16f}), Usage::colour_target),
+            .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target),
+            .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target)};
+        pass.run([=, &gpu, &program](Execution& run) {
+            begin_surfaces(gpu);
+            program.set("clip_from_world", run.value(view).clip_from_world);
+            draw_surfaces(gpu, run, scene, program);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,74 @@
+#include "renderer/passes/lighting.hpp"
+
+#include <limits>
+#include <numbers>
+
+#include "engine/graph/execute.hpp"
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+
+LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
+                              ValueHandle<ShadowPlan> plan) {
+    return graph.add("light-upload", [&](Pass& pass) {
+        pass.read(lights);
+        pass.read(plan);
+        const LightBuffers out{
+            .lights = pass.write(graph.buffer<gpu::Light>("light buffer", 1, Lifetime::persistent), Usage::copy),
+            .shadows = pass.write(graph.buffer<gpu::Shadow>("shadow buffer", 1, Lifetime::persistent), Usage::copy)};
+        pass.run([=, &gpu](Execution& run) {
+            const LightTable& table = run.value(lights);
+            const ShadowPlan& shadows = run.value(plan);
+            std::vector<gpu::Light> records;
+            for (std::size_t i = 0; i < table.entries.size(); ++i) {
+                records.push_back(table.entries[i].light);
+                records.back().shadow = shadows.shadow_of_light[i];
+            }
+            upload<gpu::Light>(gpu, run, out.lights, records);
+            upload<gpu::Shadow>(gpu, run, out.shadows, shadows.shadows);
+        });
+        return out;
+    });
+}
+
+float bound_geometry_term(float factor, std::uint32_t vpl_count, float area) {
+    if (area <= 0.0F) { return std::numeric_limits<float>::max(); }
+    const float bound = factor * std::numbers::pi_v<float> * static_cast<float>(vpl_count) / area;
+    return std::min(bound, std::numeric_limits<float>::max());
+}
+
+void read_lighting(Pass& pass, const Lighting& lighting) {
+    pass.read(lighting.lights);
+    pass.read(lighting.metrics);
+    pass.read(lighting.buffers.lights, Usage::storage);
+    pass.read(lighting.buffers.shadows, Usage::storage);
+    pass.read(lighting.shadows.cubes, Usage::sampled);
+    pass.read(lighting.shadows.maps, Usage::sampled);
+    if (lighting.vpls) {
+        pass.read(lighting.vpls->paths);
+        pass.read(lighting.vpls->vpls, Usage::storage);
+    }
+    pass.parameter(lighting.show);
+    pass.parameter(lighting.geometry_bound);
+}
+
+void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, const Lighting& lighting) {
+    gpu.bind_storage(BINDING_LIGHTS, run.object(lighting.buffers.lights));
+    gpu.bind_storage(BINDING_SHADOWS, run.object(lighting.buffers.shadows));
+    gpu.gl().BindTextureUnit(UNIT_SHADOW_CUBES, run.object(lighting.shadows.cubes));
+    gpu.gl().BindTextureUnit(UNIT_SHADOW_MAPS, run.object(lighting.shadows.maps));
+    gpu.shadow_sampler().bind(UNIT_SHADOW_CUBES);
+    gpu.shadow_sampler().bind(UNIT_SHADOW_MAPS);
+
+    const auto lights = static_cast<std::uint32_t>(run.value(lighting.lights).entries.size());
+    program.set("light_count", lighting.show == Show::indirect ? 0U : lights);
+    const bool indirect = lighting.vpls && lighting.show != Show::direct;
+    const std::uint32_t vpls = indirect ? run.value(lighting.vpls->paths).vpl_count : 0U;
+    program.set("vpl_count", vpls);
+    if (vpls == 0) { return; }
+    gpu.bind_storage(BINDING_VPLS, run.object(lighting.vpls->vpls));
+    program.set("geometry_bound",
+                bound_geometry_term(lighting.geometry_bound, vpls, run.value(lighting.metrics).area));
+}
+
+}  // namespace candela

@@ -1,0 +1,78 @@
+#include "renderer/passes/view.hpp"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/graph/execute.hpp"
+#include "engine/scene/hierarchy.hpp"
+
+namespace candela {
+namespace {
+
+/// Reversed depth in [0, 1]: near / z without a far plane, otherwise the usual rational (or, orthographic, linear)
+/// map of [near, far] to [1, 0].
+glm::mat4 projection(const Camera& camera, float aspect) {
+    const float n = camera.near_plane;
+    const float f = camera.far_plane;
+    glm::mat4 m(0.0F);
+    if (camera.projection == Camera::Projection::orthographic) {
+        m[0][0] = 1.0F / (camera.half_height * aspect);
+        m[1][1] = 1.0F / camera.half_height;
+        m[2][2] = 1.0F / (f - n);
+        m[3][2] = f / (f - n);
+        m[3][3] = 1.0F;
+        return m;
+    }
+    const float focal = 1.0F / std::tan(camera.vertical_fov * 0.5F);
+    const bool infinite = std::isinf(f);
+    m[0][0] = focal / aspect;
+    m[1][1] = focal;
+    m[2][2] = infinite ? 0.0F : n / (f - n);
+    m[2][3] = -1.0F;
+    m[3][2] = infinite ? n : n * f / (f - n);
+    return m;
+}
+
+/// The camera's pose without its scale.
+glm::mat4 rigid(const glm::mat4& world_from_camera) {
+    const glm::vec3 z = glm::normalize(glm::vec3(world_from_camera[2]));
+    const glm::vec3 x = glm::normalize(glm::cross(glm::vec3(world_from_camera[1]), z));
+    return {glm::vec4(x, 0.0F), glm::vec4(glm::cross(z, x), 0.0F), glm::vec4(z, 0.0F), world_from_camera[3]};
+}
+
+}  // namespace
+
+CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request) {
+    const glm::vec2 size(request.size);
+    glm::mat4 jittered(1.0F);
+    jittered[3] = glm::vec4(-2.0F * request.jitter / size, 0.0F, 1.0F);
+    const glm::mat4 pose = rigid(world_from_camera);
+    // In doubles: the inverse of a view from far away loses the digits that shading needs.
+    const glm::dmat4 clip_from_world =
+        glm::dmat4(jittered) * glm::dmat4(projection(camera, size.x / size.y)) * glm::inverse(glm::dmat4(pose));
+    return {glm::mat4(clip_from_world), glm::mat4(glm::inverse(clip_from_world)), glm::vec3(pose[3])};
+}
+
+void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size) {
+    program.set("clip_from_world", view.clip_from_world);
+    program.set("world_from_clip", view.world_from_clip);
+    program.set("target_size", glm::vec2(size));
+}
+
+ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request) {
+    return graph.add("view", [&](Pass& pass) {
+        pass.read(request);
+        pass.read<Camera>();
+        pass.read<Transform>();
+        const auto view = pass.write(graph.value<CameraView>("view"));
+        pass.run([=](Execution& run) {
+            const ViewRequest& wanted = run.value(request);
+            const auto& camera = run.world().get<Camera>(wanted.camera);
+            run.set(view, make_view(camera, world_matrix(run.world(), wanted.camera), wanted));
+        });
+        return view;
+    });
+}
+
+}  // namespace candela

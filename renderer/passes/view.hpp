@@ -1,0 +1,38 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include "engine/ecs/world.hpp"
+#include "engine/graph/frame_graph.hpp"
+#include "engine/scene/components.hpp"
+#include "renderer/gl/program.hpp"
+
+namespace candela {
+
+/// What the host asks of a frame.
+struct ViewRequest {
+    Entity camera;              ///< an entity with a Camera
+    glm::uvec2 size{1};         ///< pixels
+    glm::vec2 jitter{0.0F};     ///< pixels by which samples move off their pixels' centres, +x right, +y up
+    bool operator==(const ViewRequest&) const = default;
+};
+
+/// Matrices of the viewpoint. Clip space is the GL's with depth in [0, 1], reversed: 1 at the near plane.
+struct CameraView {
+    glm::mat4 clip_from_world{1.0F};
+    glm::mat4 world_from_clip{1.0F};
+    glm::vec3 eye{0.0F};  ///< world space, metres
+    bool operator==(const CameraView&) const = default;
+};
+
+/// View of the camera with this local-to-world matrix. An infinite far plane is one.
+[[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request);
+
+/// Sets the uniforms by which shaders go between pixels and the world.
+void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size);
+
+/// Node `view` (CPU). Throws EntityError if the requested camera is none.
+[[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
+
+}  // namespace candela

@@ -1,0 +1,187 @@
+#include "renderer/renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+#include "engine/graph/compile.hpp"
+#include "engine/graph/describe.hpp"
+#include "renderer/gl/host_state.hpp"
+
+namespace candela {
+namespace {
+
+gl::ShaderLibrary shader_library(const std::filesystem::path& directory) {
+    return directory.empty() ? gl::ShaderLibrary(gl::embedded_shaders()) : gl::ShaderLibrary(directory);
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Frames end also where a pass throws.
+class TimedFrame {
+ public:
+    TimedFrame(gl::Timer& timer, std::uint64_t index) : timer_(timer) { timer_.begin_frame(index); }
+    ~TimedFrame() { timer_.end_frame(); }
+    TimedFrame(const TimedFrame&) = delete;
+    TimedFrame& operator=(const TimedFrame&) = delete;
+
+ private:
+    gl::Timer& timer_;
+};
+
+FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index, double cpu_ms) {
+    FrameReport report{.index = index, .cpu_ms = cpu_ms, .gpu_ms = 0.0, .passes = {}};
+    for (const PassRecord& pass : passes) {
+        report.passes.push_back({std::string(pass.name), pass.ran, pass.cpu_ms, 0.0});
+    }
+    return report;
+}
+
+/// Standard error of the sum of as many independent terms, per channel.
+glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
+    if (terms.size() < 2) { return glm::dvec3(0.0); }
+    const auto n = static_cast<double>(terms.size());
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& term : terms) { sum += term; }
+    glm::dvec3 squares(0.0);
+    for (const glm::dvec3& term : terms) { squares += (term - sum / n) * (term - sum / n); }
+    return glm::sqrt(squares * n / (n - 1.0));
+}
+
+EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
+    EnergyAccount total;
+    std::vector<glm::dvec3> roulette;
+    for (const gpu::FluxAccount& account : accounts) {
+        total.emitted += account.emitted;
+        total.absorbed += account.absorbed;
+        total.escaped += account.escaped;
+        total.truncated += account.truncated;
+        total.roulette += account.roulette;
+        roulette.emplace_back(account.roulette);
+    }
+    total.roulette_error = standard_error(roulette);
+    return total;
+}
+
+}  // namespace
+
+Renderer::Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
+    : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
+    adopt(configuration_, size_);
+}
+
+std::vector<std::string> Renderer::configure(const Configuration& configuration) {
+    std::vector<std::string> faults = validate(configuration);
+    if (!faults.empty() || configuration == configuration_) { return faults; }
+    try {
+        adopt(configuration, size_);
+    } catch (const gl::GlError& error) {
+        faults.emplace_back(error.what());
+    }
+    return faults;
+}
+
+void Renderer::adopt(const Configuration& configuration, glm::uvec2 size) {
+    FrameGraph graph;
+    FrameHandles frame = build_frame(graph, gpu_, configuration, size);
+    runtime_.adopt(compile(std::move(graph)).take());
+    frame_ = frame;
+    configuration_ = configuration;
+    size_ = size;
+    last_passes_.clear();
+}
+
+void Renderer::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
+    const std::uint32_t most = device().limits().texture_size;
+    if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
+        throw gl::GlError(fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
+                                      target.size.x, target.size.y, most));
+    }
+    const gl::HostState host_state(gpu_.gl());
+    if (target.size != size_) { adopt(configuration_, target.size); }
+    runtime_.set(frame_.request, ViewRequest{camera, target.size, jitter});
+    runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
+
+    const auto start = std::chrono::steady_clock::now();
+    const std::uint64_t index = next_frame_++;
+    {
+        const TimedFrame timed(backend_.timer(), index);
+        last_passes_ = runtime_.run(world, Timing::on).passes;
+    }
+    pending_.push_back(to_report(last_passes_, index, milliseconds_since(start)));
+    match_times(backend_.timer().collect());
+}
+
+void Renderer::match_times(const std::vector<gl::FrameTime>& times) {
+    for (const gl::FrameTime& time : times) {
+        // A frame that threw has times but no report.
+        if (pending_.empty() || pending_.front().index != time.frame) { continue; }
+        FrameReport report = std::move(pending_.front());
+        pending_.pop_front();
+        report.gpu_ms = time.ms;
+        for (const gl::PassTime& pass : time.passes) { report.passes[pass.pass].gpu_ms = pass.ms; }
+        arrived_.push_back(std::move(report));
+        if (arrived_.size() > kept_frames) { arrived_.pop_front(); }
+    }
+}
+
+std::vector<FrameReport> Renderer::take_frames(bool wait) {
+    match_times(wait ? backend_.timer().finish() : backend_.timer().collect());
+    std::vector<FrameReport> frames(std::make_move_iterator(arrived_.begin()), std::make_move_iterator(arrived_.end()));
+    arrived_.clear();
+    return frames;
+}
+
+void Renderer::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
+    const gl::HostState host_state(gpu_.gl());
+    gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
+    std::vector<glm::vec4> texels;
+    texels.reserve(radiance.size());
+    for (const glm::vec3& pixel : radiance) { texels.emplace_back(pixel, 1.0F); }
+    texture.upload(std::as_bytes(std::span(texels)));
+    candela::tone_map(gpu_, tone_map_program(gpu_), texture.name(), target.framebuffer, target.size,
+                      configuration_.tone_map);
+}
+
+std::string Renderer::describe(GraphFormat format) const {
+    const CompiledGraph& graph = *runtime_.graph();
+    switch (format) {
+        case GraphFormat::dot: return describe_dot(graph);
+        case GraphFormat::json: return describe_json(graph);
+        case GraphFormat::text: break;
+    }
+    return describe_text(graph);
+}
+
+VplReport Renderer::report_vpls(const Vpls& vpls) const {
+    const VplPaths& plan = runtime_.value(vpls.paths);
+    auto placed = backend_.buffer(runtime_.object(vpls.vpls)).download<gpu::Vpl>();
+    auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
+    placed.resize(plan.vpl_count);
+    accounts.resize(plan.paths.size());
+    const auto alive = std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
+    return {.requested = configuration_.vpls.count,
+            .alive = static_cast<std::uint32_t>(alive),
+            .paths = static_cast<std::uint32_t>(plan.paths.size()),
+            .flux = sum_up(accounts)};
+}
+
+Report Renderer::report() {
+    const ShadowPlan& shadows = runtime_.value(frame_.shadows);
+    Report report{
+        .gl_renderer = device().renderer(),
+        .triangles = runtime_.value(frame_.metrics).triangles,
+        .vpls = std::nullopt,
+        .lights = {.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
+                   .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
+                   .without_shadow = shadows.lights_without},
+        .memory = runtime_.memory()};
+    if (frame_.vpls && configuration_.show != Show::direct) { report.vpls = report_vpls(*frame_.vpls); }
+    return report;
+}
+
+}  // namespace candela

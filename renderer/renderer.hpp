@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/ecs/world.hpp"
+#include "engine/graph/execute.hpp"
+#include "renderer/configuration/build_frame.hpp"
+#include "renderer/configuration/configuration.hpp"
+#include "renderer/gl/graph_backend.hpp"
+#include "renderer/gpu.hpp"
+
+namespace candela {
+
+/// Where a frame goes: a framebuffer of the host's (0: its window), drawn from the lower left corner on.
+struct Target {
+    GLuint framebuffer = 0;
+    glm::uvec2 size{1};  ///< pixels
+};
+
+/// GPU and CPU time of one pass in one frame, in milliseconds. A pass that had nothing to do takes none.
+struct PassReport {
+    std::string name;
+    bool ran = false;
+    double cpu_ms = 0.0;
+    double gpu_ms = 0.0;
+};
+
+struct FrameReport {
+    std::uint64_t index = 0;
+    double cpu_ms = 0.0;
+    double gpu_ms = 0.0;
+    std::vector<PassReport> passes;
+};
+
+/// Where the light went, in the lights' unit of flux: emitted = absorbed + escaped + truncated + roulette.
+struct EnergyAccount {
+    glm::dvec3 emitted{0.0};
+    glm::dvec3 absorbed{0.0};
+    glm::dvec3 escaped{0.0};
+    glm::dvec3 truncated{0.0};       ///< still reflected when the last bounce was reached
+    glm::dvec3 roulette{0.0};        ///< lost where paths ended early, less what their continuation was weighted up by
+    glm::dvec3 roulette_error{0.0};  ///< standard error of `roulette`, whose expectation is zero
+};
+
+/// What became of the VPLs.
+struct VplReport {
+    std::uint32_t requested = 0;
+    std::uint32_t alive = 0;
+    std::uint32_t paths = 0;
+    EnergyAccount flux;
+};
+
+struct LightReport {
+    std::uint32_t count = 0;
+    std::uint32_t with_shadow = 0;
+    std::uint32_t without_shadow = 0;  ///< that should cast shadows but found no room in the budget
+};
+
+/// The state after the last frame.
+struct Report {
+    std::string gl_renderer;
+    std::uint64_t triangles = 0;
+    std::optional<VplReport> vpls;  ///< none without indirect light
+    LightReport lights;
+    MemoryUse memory;
+};
+
+enum class GraphFormat : std::uint8_t { text, dot, json };
+
+/// Renders worlds. One instance belongs to one GL context, which is current in every call, the destructor included.
+/// Several instances share nothing.
+class Renderer {
+ public:
+    /// `get_proc` gives the addresses of GL functions, as glfwGetProcAddress does. Shaders come with the library, or,
+    /// for those who work on them, from a directory. Throws gl::GlError if the context offers less than OpenGL 4.5.
+    explicit Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {});
+
+    /// Takes a configuration from the next frame on. Gives what is wrong with it, a line each; then the present one
+    /// goes on. Scene data, VPLs and shadow maps that both configurations want alike are kept.
+    [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
+    [[nodiscard]] const Configuration& configuration() const { return configuration_; }
+
+    /// Renders the world as the camera (an entity with a Camera) sees it; only what changed since the last frame is
+    /// done anew. `jitter` moves the samples off the pixels' centres, in pixels. Leaves the host's GL state as
+    /// gl::HostState says. Throws EntityError if there is no such camera, SceneError for impossible hierarchies, and
+    /// gl::GlError where the driver runs out of memory; the next call then takes up from there.
+    void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
+
+    /// Tone-maps a picture of linear radiance that was averaged elsewhere; row 0 is the bottom.
+    void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
+
+    /// Times of the frames whose GPU times have arrived since the last call, in order; nothing waits for the GPU,
+    /// unless `wait` asks for all. Of frames that nobody takes the latest `kept_frames` are kept.
+    [[nodiscard]] std::vector<FrameReport> take_frames(bool wait = false);
+    static constexpr std::size_t kept_frames = 1024;
+
+    /// Reads back what the last frame left; waits for the GPU.
+    [[nodiscard]] Report report();
+
+    /// The graph of the present configuration.
+    [[nodiscard]] std::string describe(GraphFormat format) const;
+
+    /// Which passes ran in the last frame.
+    [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
+
+    [[nodiscard]] gl::Device& device() { return gpu_.device(); }
+
+ private:
+    void adopt(const Configuration& configuration, glm::uvec2 size);
+    void match_times(const std::vector<gl::FrameTime>& times);
+    [[nodiscard]] VplReport report_vpls(const Vpls& vpls) const;
+
+    Gpu gpu_;
+    gl::GraphBackend backend_;
+    GraphRuntime runtime_;
+    Configuration configuration_;
+    glm::uvec2 size_{1};
+    FrameHandles frame_;
+    std::vector<PassRecord> last_passes_;
+    std::uint64_t next_frame_ = 0;
+    std::deque<FrameReport> pending_;  // GPU times have not arrived
+    std::deque<FrameReport> arrived_;  // nobody has taken
+};
+
+}  // namespace candela

@@ -1,0 +1,126 @@
+#include "sandbox/capture.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sandbox/output_file.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+/// Turns tone mapping off while it lives.
+class LinearOutput {
+ public:
+    explicit LinearOutput(Renderer& renderer) : renderer_(renderer), before_(renderer.configuration()) {
+        Configuration linear = before_;
+        linear.tone_map.enabled = false;
+        const std::vector<std::string> faults = renderer_.configure(linear);
+        if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
+    }
+    ~LinearOutput() {
+        // The renderer had it before; where it still failed, the linear one goes on.
+        static_cast<void>(renderer_.configure(before_));
+    }
+    LinearOutput(const LinearOutput&) = delete;
+    LinearOutput& operator=(const LinearOutput&) = delete;
+
+ private:
+    Renderer& renderer_;
+    Configuration before_;
+};
+
+/// One frame made of several: what they took together.
+FrameReport sum_up(const std::vector<FrameReport>& frames) {
+    if (frames.empty()) return {};
+    FrameReport sum = frames.front();
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        sum.cpu_ms += frames[i].cpu_ms;
+        sum.gpu_ms += frames[i].gpu_ms;
+        for (std::size_t pass = 0; pass < sum.passes.size(); ++pass) {
+            sum.passes[pass].ran |= frames[i].passes[pass].ran;
+            sum.passes[pass].cpu_ms += frames[i].passes[pass].cpu_ms;
+            sum.passes[pass].gpu_ms += frames[i].passes[pass].gpu_ms;
+        }
+    }
+    return sum;
+}
+
+/// Between the GL's order of rows and that of files.
+void flip_rows(std::vector<glm::vec3>& pixels, glm::uvec2 size) {
+    const auto row = [&](std::uint32_t y) { return pixels.begin() + static_cast<std::ptrdiff_t>(y) * size.x; };
+    for (std::uint32_t y = 0; y < size.y / 2; ++y) std::swap_ranges(row(y), row(y + 1), row(size.y - 1 - y));
+}
+
+}  // namespace
+
+glm::vec2 pixel_jitter(int sample) {
+    // The powers of 1/p, p being the real root of x³ = x + 1.
+    constexpr glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
+    const glm::dvec2 point = glm::fract(0.5 + step * static_cast<double>(sample));
+    return glm::vec2(point - 0.5);
+}
+
+Capture::Canvas::Canvas(gl::Device& device, glm::uvec2 size, Format format)
+    : colour(device, "capture", {.size = size, .format = format}), framebuffer(device, "capture") {
+    framebuffer.attach_colour(0, colour.name());
+    framebuffer.draw_buffers(1);
+    framebuffer.check();
+}
+
+Capture::Capture(Renderer& renderer, glm::ivec2 size)
+    : renderer_(&renderer),
+      size_(size),
+      linear_(renderer.device(), size_, Format::rgba32f),
+      encoded_(renderer.device(), size_, Format::rgba8) {}
+
+void Capture::add_frame(const World& world, Entity camera, glm::vec2 jitter, std::vector<glm::vec3>& sum) {
+    renderer_->render(world, camera, {linear_.framebuffer.name(), size_}, jitter);
+    const std::vector<float> rgba = linear_.colour.read_floats();
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += glm::vec3(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
+}
+
+Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report) {
+    const LinearOutput linear(*renderer_);
+    const std::vector<FrameReport> earlier = renderer_->take_frames(true);
+    std::vector<glm::vec3> sum(static_cast<std::size_t>(size_.x) * size_.y);
+    std::vector<FrameReport> frames;
+    for (int sample = 0; sample < samples; ++sample) {
+        add_frame(world, camera, pixel_jitter(sample), sum);
+        for (FrameReport& frame : renderer_->take_frames(true)) frames.push_back(std::move(frame));
+    }
+    for (glm::vec3& pixel : sum) pixel /= static_cast<float>(samples);
+    flip_rows(sum, size_);
+    report = {sum_up(frames), renderer_->report()};
+    return {glm::ivec2(size_), std::move(sum)};
+}
+
+std::vector<std::uint8_t> Capture::tone_mapped(const Picture& picture) {
+    std::vector<glm::vec3> radiance = picture.pixels;
+    flip_rows(radiance, size_);
+    renderer_->tone_map(radiance, {encoded_.framebuffer.name(), size_});
+    const std::vector<std::byte> rgba = encoded_.colour.read();
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(3 * radiance.size());
+    for (std::uint32_t y = size_.y; y-- > 0;) {
+        const std::size_t row = static_cast<std::size_t>(y) * size_.x;
+        for (std::size_t texel = 4 * row; texel < 4 * (row + size_.x); texel += 4) {
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                rgb.push_back(std::to_integer<std::uint8_t>(rgba[texel + channel]));
+        }
+    }
+    return rgb;
+}
+
+void Capture::write(const std::filesystem::path& path, const Picture& picture) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".exr") return write_exr(path, picture);
+    if (extension == ".pfm") return write_pfm(path, picture);
+    write_png(path, picture.size, tone_mapped(picture));
+}
+
+}  // namespace candela::sandbox

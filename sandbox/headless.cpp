@@ -1,0 +1,70 @@
+#include "sandbox/headless.hpp"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sandbox/capture.hpp"
+#include "sandbox/output_file.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+GraphFormat graph_format(const fs::path& path) {
+    const std::string extension = lower_extension(path);
+    if (extension == ".dot") return GraphFormat::dot;
+    return extension == ".json" ? GraphFormat::json : GraphFormat::text;
+}
+
+/// Frames of a numbered series each have a file; without numbers the last frame is the picture.
+bool is_written(const fs::path& out, int frame, int frames) {
+    return numbered(out, frame) != out || frame == frames - 1;
+}
+
+}  // namespace
+
+std::optional<fs::path> picture_path(const Options& options) {
+    if (options.out || options.report || options.describe_graph) return options.out;
+    return "candela.png";
+}
+
+void apply(Renderer& renderer, const Configuration& configuration) {
+    const std::vector<std::string> faults = renderer.configure(configuration);
+    if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
+}
+
+void run_headless(const HeadlessContext& context, const Scene& scene, Entity camera,
+                  const Configuration& configuration, const Options& options, glm::ivec2 size) {
+    Renderer renderer(context.get_proc());
+    apply(renderer, configuration);
+    Capture capture(renderer, size);
+    const std::optional<fs::path> out = picture_path(options);
+    const int frames = options.frames.value_or(1);
+
+    RunReport run{context.description(), scene.path.string(), size, configuration, {}, {}};
+    for (int frame = 0; frame < frames; ++frame) {
+        CaptureReport captured;
+        const Picture picture = capture.render(scene.world, camera, options.samples, captured);
+        captured.frame.index = static_cast<std::uint64_t>(frame);
+        run.frames.push_back(std::move(captured.frame));
+        run.state = std::move(captured.state);
+        if (out && is_written(*out, frame, frames)) capture.write(numbered(*out, frame), picture);
+    }
+    write_documents(options, run, renderer);
+
+    fmt::print("{} on {}, {}x{}\n", run.context, run.state.gl_renderer, size.x, size.y);
+    fmt::print("{}", to_table(run.frames.back(), run.state));
+    if (out) fmt::print("picture          {}\n", fs::absolute(numbered(*out, frames - 1)).string());
+}
+
+void write_documents(const Options& options, const RunReport& report, const Renderer& renderer) {
+    if (options.report) write_text(*options.report, to_json(report));
+    if (options.describe_graph)
+        write_text(*options.describe_graph, renderer.describe(graph_format(*options.describe_graph)));
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,197 @@
+#include "sandbox/options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include "sandbox/output_file.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int largest_side = 16384;  // of a texture, on most drivers
+constexpr std::string_view frame_number = "%d";
+
+/// A flag whose value is one of a few words.
+template <typename Target, typename Value>
+void add_choice(CLI::App& app, const std::string& flag, Target& target,
+                std::vector<std::pair<std::string, Value>> choices, const std::string& help) {
+    std::vector<std::string> words;
+    words.reserve(choices.size());
+    for (const auto& choice : choices) words.push_back(choice.first);
+    const auto choose = [&target, choices = std::move(choices)](const std::string& word) {
+        const auto is_word = [&](const auto& choice) { return choice.first == word; };
+        target = std::find_if(choices.begin(), choices.end(), is_word)->second;
+    };
+    app.add_option_function<std::string>(flag, choose, help)
+        ->type_name(fmt::format("{}", fmt::join(words, "|")))
+        ->check([words](const std::string& word) {
+            const bool known = std::find(words.begin(), words.end(), word) != words.end();
+            return known ? std::string() : fmt::format("'{}' is none of {}", word, fmt::join(words, ", "));
+        });
+}
+
+/// Faults are worded by the caller, so that no two flags word the same fault differently.
+[[noreturn]] void fail(std::string_view flag, std::string_view value, std::string_view fault) {
+    throw CLI::ValidationError(std::string(flag), fmt::format("'{}' {}", value, fault));
+}
+
+/// The whole of `text` as a number from `least` on.
+template <typename Number>
+std::optional<Number> parse_number(std::string_view text, Number least) {
+    Number number{};
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = fault == std::errc() && end == text.data() + text.size();
+    return whole && number >= least ? std::optional(number) : std::nullopt;
+}
+
+template <typename Number, typename Target>
+void add_number(CLI::App& app, const std::string& flag, Target& target, Number least,
+                const std::string& help) {
+    const auto store = [flag, &target, least](const std::string& text) {
+        const std::optional<Number> number = parse_number(text, least);
+        if (!number) {
+            fail(flag, text,
+                 fmt::format("is no whole number from {} to {}", least, std::numeric_limits<Number>::max()));
+        }
+        target = *number;
+    };
+    app.add_option_function<std::string>(flag, store, help)->type_name("N");
+}
+
+glm::ivec2 parse_size(const std::string& text) {
+    const std::string_view view = text;
+    const std::size_t cross = std::min(view.find('x'), view.size());
+    const std::optional<int> width = parse_number(view.substr(0, cross), 1);
+    const std::optional<int> height = parse_number(view.substr(std::min(cross + 1, view.size())), 1);
+    if (width && height && std::max(*width, *height) <= largest_side) return {*width, *height};
+    fail("--size", text, fmt::format("is no size from 1x1 to {0}x{0}", largest_side));
+}
+
+/// A file that will be written: its format is known and its folder is there.
+fs::path parse_output(std::string_view flag, const std::string& text,
+                      const std::vector<std::string_view>& extensions) {
+    fs::path path = text;
+    const std::string extension = lower_extension(path);
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+        fail(flag, text, fmt::format("does not end in {}", fmt::join(extensions, ", ")));
+    }
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) fail(flag, text, "lies in a folder that does not exist");
+    return path;
+}
+
+void add_output(CLI::App& app, const std::string& flag, std::optional<fs::path>& target,
+                const std::vector<std::string_view>& extensions, const std::string& help) {
+    const auto store = [flag, &target, extensions](const std::string& text) {
+        target = parse_output(flag, text, extensions);
+    };
+    app.add_option_function<std::string>(flag, store, help)
+        ->type_name(fmt::format("FILE{}", fmt::join(extensions, "|")));
+}
+
+void declare(CLI::App& app, Options& options) {
+    app.set_help_flag("--help", "print this and exit");
+    app.set_version_flag("--version", "candela " CANDELA_VERSION, "print the version and exit");
+    app.add_option("SCENE", options.scene, "default: the shipped Cornell box")->type_name("FILE.gltf|.glb");
+    app.add_flag("--headless", options.headless, "no window: render, write, exit");
+    add_choice<ContextChoice, ContextChoice>(app, "--context", options.context,
+                                             {{"auto", ContextChoice::automatic},
+                                              {"window", ContextChoice::window},
+                                              {"egl", ContextChoice::egl},
+                                              {"osmesa", ContextChoice::osmesa}},
+                                             "auto: a window if there is a display, else EGL, else OSMesa");
+    app.add_option_function<std::string>(
+           "--size", [&options](const std::string& text) { options.size = parse_size(text); },
+           "pixels; default: 1280x720 in a window, 512x512 headless")
+        ->type_name("WxH");
+    add_number(app, "--frames", options.frames, 1, "default: 1 headless, no end in a window");
+    add_number(app, "--samples", options.samples, 1,
+               "average N frames jittered within the pixel; default: 1");
+    app.add_option("--camera", options.camera, "default: the scene's first, else one that sees all of it")->type_name("NAME|INDEX");
+    add_choice<std::optional<Show>, Show>(
+        app, "--show", options.show,
+        {{"total", Show::total}, {"direct", Show::direct}, {"indirect", Show::indirect}},
+        "what goes into the picture");
+    add_choice<std::optional<ShadingPath>, ShadingPath>(
+        app, "--path", options.path, {{"forward", ShadingPath::forward}, {"deferred", ShadingPath::deferred}},
+        "how visible surfaces meet their lights");
+    add_choice<std::optional<bool>, bool>(app, "--indirect", options.indirect, {{"on", true}, {"off", false}},
+                                          "light by way of surfaces");
+    add_number(app, "--vpls", options.vpls, 0U, "virtual point lights");
+    add_number(app, "--bounces", options.bounces, 0U, "indirect bounces: 0 is direct light only");
+    add_number(app, "--seed", options.seed, 0U, "of the light paths");
+    app.add_option("--config", options.config, "configuration; flags override it")
+        ->type_name("FILE.json")
+        ->check(CLI::ExistingFile.description(""));
+    app.add_flag("--print-config", options.print_config, "print the whole configuration as JSON and exit");
+    add_output(app, "--out", options.out, {".png", ".exr", ".pfm"},
+               "picture: PNG tone-mapped, EXR and PFM linear radiance; %d numbers frames; default headless: "
+               "candela.png, unless a report or a graph is asked for");
+    add_output(app, "--report", options.report, {".json"}, "times, counts and the energy account");
+    add_output(app, "--describe-graph", options.describe_graph, {".txt", ".dot", ".json"},
+               "the compiled frame graph");
+    app.add_flag("--list-configs", options.list_configs, "print the named configurations and exit");
+}
+
+/// What no flag can tell alone.
+void check_together(Options& options) {
+    const bool windowless = options.context == ContextChoice::egl || options.context == ContextChoice::osmesa;
+    if (options.headless && options.context == ContextChoice::window) {
+        throw CLI::ValidationError("--headless", "there is no window for --context window");
+    }
+    options.headless = options.headless || windowless;
+    const bool numbers =
+        options.out && options.out->filename().string().find(frame_number) != std::string::npos;
+    if (options.out && !numbers && options.frames.value_or(1) > 1) {
+        fail("--out", options.out->string(),
+             fmt::format("needs a %d to number its {} frames", *options.frames));
+    }
+}
+
+std::string one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
+}  // namespace
+
+std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments) {
+    CLI::App app("Real-time global illumination by instant radiosity", "candela");
+    Options options;
+    declare(app, options);
+    try {
+        app.parse(count, arguments);
+        check_together(options);
+        return options;
+    } catch (const CLI::CallForHelp&) {
+        return EarlyExit{0, app.help()};
+    } catch (const CLI::CallForVersion& version) {
+        return EarlyExit{0, fmt::format("{}\n", version.what())};
+    } catch (const CLI::ParseError& fault) {
+        return EarlyExit{2, fmt::format("candela: {}\n", one_line(fault.what()))};
+    }
+}
+
+fs::path numbered(const fs::path& out, int frame) {
+    std::string name = out.filename().string();
+    const std::string number = fmt::format("{}", frame);
+    for (auto at = name.find(frame_number); at != std::string::npos; at = name.find(frame_number, at)) {
+        name.replace(at, frame_number.size(), number);
+    }
+    return out.parent_path() / name;
+}
+
+}  // namespace candela::sandbox

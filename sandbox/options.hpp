@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include <glm/vec2.hpp>
+
+#include "renderer/configuration/configuration.hpp"
+
+namespace candela::sandbox {
+
+/// Where the GL context comes from. `automatic`: a window if there is a display, else EGL, else OSMesa.
+enum class ContextChoice : std::uint8_t { automatic, window, egl, osmesa };
+
+/// The command line. What it left out and a configuration file may hold is nullopt, so that only flags that
+/// were given override the file.
+struct Options {
+    std::optional<std::filesystem::path> scene;  ///< default: the shipped Cornell box
+    bool headless = false;                       ///< also set by a `context` that has no windows
+    ContextChoice context = ContextChoice::automatic;
+    std::optional<glm::ivec2> size;     ///< pixels; default: 1280x720 in a window, 512x512 headless
+    std::optional<int> frames;          ///< default: 1 headless, no end in a window
+    int samples = 1;                    ///< frames averaged, jittered within the pixel
+    std::optional<std::string> camera;  ///< name or index; default: the scene's first
+
+    std::optional<Show> show;
+    std::optional<ShadingPath> path;
+    std::optional<bool> indirect;
+    std::optional<std::uint32_t> vpls;
+    std::optional<std::uint32_t> bounces;  ///< indirect ones: 1 is light, surface, seen surface
+    std::optional<std::uint32_t> seed;
+    std::optional<std::filesystem::path> config;
+    bool print_config = false;
+
+    std::optional<std::filesystem::path> out;             ///< .png, .exr or .pfm; default: see picture_path
+    std::optional<std::filesystem::path> report;          ///< .json
+    std::optional<std::filesystem::path> describe_graph;  ///< .txt, .dot or .json
+    bool list_configs = false;
+};
+
+/// Nothing is left to do: `text`, one line and its end where it is a fault, belongs on stdout if `status` is
+/// 0 and on stderr otherwise.
+struct EarlyExit {
+    int status = 0;
+    std::string text;
+};
+
+/// Reads the command line; `arguments[0]` is the program. Looks at no file beyond whether it, or the folder
+/// that is to hold it, is there. Faults have exit status 2.
+[[nodiscard]] std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments);
+
+/// The picture's file name for frame `frame`: every "%d" in the name becomes its number.
+[[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& out, int frame);
+
+}  // namespace candela::sandbox

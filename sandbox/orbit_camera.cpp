@@ -1,0 +1,58 @@
+#include "sandbox/orbit_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/mat3x3.hpp>
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr glm::vec3 vertical(0.0F, 1.0F, 0.0F);
+constexpr glm::vec3 right(1.0F, 0.0F, 0.0F);
+constexpr float steepest = 0.49F * glm::pi<float>();
+
+/// The elevation by which to turn so that the view does not come steeper than allowed, unless it already was.
+float limited_turn(float elevation, float turn) {
+    const float most = std::max(steepest, std::abs(elevation));
+    return std::clamp(elevation + turn, -most, most) - elevation;
+}
+
+}  // namespace
+
+OrbitCamera look_from(const glm::mat4& world_from_camera, const glm::vec3& target, float least_distance) {
+    const glm::vec3 z = glm::normalize(glm::vec3(world_from_camera[2]));
+    const glm::vec3 x = glm::normalize(glm::cross(glm::vec3(world_from_camera[1]), z));
+    OrbitCamera camera{glm::vec3(world_from_camera[3]), glm::quat_cast(glm::mat3(x, glm::cross(z, x), z)), 1.0F};
+    camera.distance = std::max(glm::dot(target - camera.eye, camera.forward()), least_distance);
+    return camera;
+}
+
+OrbitCamera orbited(const OrbitCamera& camera, glm::vec2 angles) {
+    const glm::vec3 pivot = camera.pivot();
+    const float elevation = std::asin(std::clamp(-camera.forward().y, -1.0F, 1.0F));
+    const glm::quat around = glm::angleAxis(angles.x, vertical);
+    const glm::quat over = glm::angleAxis(-limited_turn(elevation, angles.y), right);
+    OrbitCamera turned = camera;
+    turned.rotation = glm::normalize(around * camera.rotation * over);
+    turned.eye = pivot - turned.distance * turned.forward();
+    return turned;
+}
+
+OrbitCamera panned(const OrbitCamera& camera, glm::vec2 metres) {
+    OrbitCamera moved = camera;
+    moved.eye += camera.rotation * glm::vec3(metres, 0.0F);
+    return moved;
+}
+
+OrbitCamera zoomed(const OrbitCamera& camera, float factor) {
+    OrbitCamera moved = camera;
+    moved.distance *= factor;
+    moved.eye = camera.pivot() - moved.distance * moved.forward();
+    return moved;
+}
+
+}  // namespace candela::sandbox

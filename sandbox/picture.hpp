@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace candela::sandbox {
+
+/// A picture of linear RGB radiance. Pixel (x, y) is `pixels[y * size.x + x]`; row 0 is at the top.
+struct Picture {
+    glm::ivec2 size{0};
+    std::vector<glm::vec3> pixels;
+};
+
+// Writers leave a whole file or none; all throw std::runtime_error that names the file and the fault.
+
+/// `rgb` is tone-mapped and sRGB-encoded: three bytes a pixel, row 0 at the top, no padding.
+void write_png(const std::filesystem::path& path, glm::ivec2 size, std::span<const std::uint8_t> rgb);
+
+/// Channels R, G and B as 32-bit floats, losslessly compressed.
+void write_exr(const std::filesystem::path& path, const Picture& picture);
+
+/// Portable float map: "PF", little-endian, rows from the bottom up.
+void write_pfm(const std::filesystem::path& path, const Picture& picture);
+
+/// Channels R, G and B of a scan-line or tiled OpenEXR file, of half or full floats.
+[[nodiscard]] Picture read_exr(const std::filesystem::path& path);
+
+/// Portable float map in colour ("PF") and little-endian.
+[[nodiscard]] Picture read_pfm(const std::filesystem::path& path);
+
+}  // namespace candela::sandbox

@@ -1,0 +1,112 @@
+#include "sandbox/report.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <nlohmann/json.hpp>
+
+namespace candela::sandbox {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const glm::dvec3& rgb) {
+    return {rgb.r, rgb.g, rgb.b};
+}
+
+Json to_json(const FrameReport& frame) {
+    Json passes = Json::array();
+    for (const PassReport& pass : frame.passes) {
+        passes.push_back(
+            {{"name", pass.name}, {"ran", pass.ran}, {"cpu_ms", pass.cpu_ms}, {"gpu_ms", pass.gpu_ms}});
+    }
+    return {{"index", frame.index}, {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"passes", passes}};
+}
+
+Json to_json(const VplReport& vpls) {
+    Json flux;
+    for (const EnergyLine& line : energy_lines(vpls.flux)) flux[line.name] = to_json(line.value);
+    flux["roulette_error"] = to_json(vpls.flux.roulette_error);
+    return {{"requested", vpls.requested}, {"alive", vpls.alive}, {"paths", vpls.paths}, {"flux", flux}};
+}
+
+Json to_json(const LightReport& lights) {
+    return {{"count", lights.count},
+            {"with_shadow", lights.with_shadow},
+            {"without_shadow", lights.without_shadow}};
+}
+
+Json to_json(const MemoryUse& memory) {
+    return {{"texture_bytes", memory.texture_bytes},
+            {"buffer_bytes", memory.buffer_bytes},
+            {"shared_by_aliasing_bytes", memory.shared_by_aliasing_bytes}};
+}
+
+std::string pass_table(const FrameReport& frame) {
+    std::string table = fmt::format("{:<16} {:>4} {:>10} {:>10}\n", "pass", "ran", "CPU ms", "GPU ms");
+    for (const PassReport& pass : frame.passes) {
+        table += fmt::format("{:<16} {:>4} {:>10.3f} {:>10.3f}\n", pass.name, pass.ran ? "yes" : "-", pass.cpu_ms,
+                             pass.gpu_ms);
+    }
+    return table + fmt::format("{:<21} {:>10.3f} {:>10.3f}\n", "frame", frame.cpu_ms, frame.gpu_ms);
+}
+
+std::string vpl_table(const VplReport& vpls) {
+    std::string table =
+        fmt::format("VPLs             {} alive of {} requested, on {} paths\n", vpls.alive, vpls.requested, vpls.paths);
+    for (const EnergyLine& line : energy_lines(vpls.flux)) {
+        table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r, line.value.g,
+                             line.value.b);
+    }
+    return table + fmt::format("  unaccounted for {:.2e} of the emitted flux\n", relative_residual(vpls.flux));
+}
+
+}  // namespace
+
+std::string to_json(const RunReport& report) {
+    Json frames = Json::array();
+    for (const FrameReport& frame : report.frames) frames.push_back(to_json(frame));
+    const Json json = {{"version", CANDELA_VERSION},
+                       {"gl_renderer", report.state.gl_renderer},
+                       {"context", report.context},
+                       {"scene", report.scene},
+                       {"triangles", report.state.triangles},
+                       {"size", {report.size.x, report.size.y}},
+                       {"config", Json::parse(write_configuration(report.configuration))},
+                       {"frames", frames},
+                       {"vpls", report.state.vpls ? to_json(*report.state.vpls) : Json(nullptr)},
+                       {"lights", to_json(report.state.lights)},
+                       {"memory", to_json(report.state.memory)}};
+    // A path may hold bytes that are no text.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_table(const FrameReport& frame, const Report& state) {
+    std::string table = pass_table(frame);
+    table += fmt::format("triangles        {}\n", state.triangles);
+    table += fmt::format("lights           {}, {} with a shadow map, {} that found no room for one\n", state.lights.count,
+                         state.lights.with_shadow, state.lights.without_shadow);
+    return state.vpls ? table + vpl_table(*state.vpls) : table;
+}
+
+double relative_residual(const EnergyAccount& flux) {
+    const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;
+    double largest = 0.0;
+    for (int channel = 0; channel < 3; ++channel) {
+        if (flux.emitted[channel] > 0.0)
+            largest = std::max(largest, glm::abs(rest[channel]) / flux.emitted[channel]);
+    }
+    return largest;
+}
+
+std::vector<EnergyLine> energy_lines(const EnergyAccount& flux) {
+    return {{"emitted", flux.emitted},
+            {"absorbed", flux.absorbed},
+            {"escaped", flux.escaped},
+            {"truncated", flux.truncated},
+            {"roulette", flux.roulette}};
+}
+
+}  // namespace candela::sandbox

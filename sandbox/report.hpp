@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "renderer/renderer.hpp"
+
+namespace candela::sandbox {
+
+/// What a run leaves in report.json.
+struct RunReport {
+    std::string context;  ///< "window", "EGL device /dev/dri/card0", "OSMesa", ...
+    std::string scene;
+    glm::ivec2 size{0};  ///< pixels
+    Configuration configuration;
+    std::vector<FrameReport> frames;
+    Report state;  ///< after the last frame
+};
+
+/// As JSON; energies by colour, times in milliseconds, memory in bytes.
+[[nodiscard]] std::string to_json(const RunReport& report);
+
+/// A short table for the terminal: passes with their times, then counts and the energy account.
+[[nodiscard]] std::string to_table(const FrameReport& frame, const Report& state);
+
+/// Flux that the account does not explain, relative to what was emitted: the largest of the three channels.
+[[nodiscard]] double relative_residual(const EnergyAccount& flux);
+
+/// An item of the account, for tables.
+struct EnergyLine {
+    const char* name;
+    glm::dvec3 value;
+};
+[[nodiscard]] std::vector<EnergyLine> energy_lines(const EnergyAccount& flux);
+
+}  // namespace candela::sandbox

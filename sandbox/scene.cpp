@@ -1,0 +1,111 @@
+#include "sandbox/scene.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/bvh/box.hpp"
+#include "engine/scene/components.hpp"
+#include "engine/scene/gltf.hpp"
+#include "engine/scene/hierarchy.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<std::size_t> parse_index(const std::string& text) {
+    std::size_t index = 0;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool whole = fault == std::errc() && end == text.data() + text.size();
+    return whole ? std::optional(index) : std::nullopt;
+}
+
+std::string list_cameras(const World& world, const std::vector<Entity>& all) {
+    std::vector<std::string> names;
+    names.reserve(all.size());
+    for (const Entity camera : all) names.push_back(fmt::format("{} '{}'", names.size(), name_of(world, camera)));
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+Entity find_camera(const World& world, const std::vector<Entity>& all, const std::string& wanted) {
+    const auto is_wanted = [&](Entity camera) { return name_of(world, camera) == wanted; };
+    const auto named = std::find_if(all.begin(), all.end(), is_wanted);
+    if (named != all.end()) return *named;
+    const std::optional<std::size_t> index = parse_index(wanted);
+    if (index && *index < all.size()) return all[*index];
+    throw SceneError(fmt::format("no camera '{}'; the scene has {}", wanted, list_cameras(world, all)));
+}
+
+/// From above and a little to the right, just far enough back for the whole scene.
+Entity add_framing_camera(World& world, float aspect) {
+    const glm::vec3 away = glm::normalize(glm::vec3(0.4F, 0.3F, 1.0F));
+    const Bounds scene = bounds(world);
+    const float radius = scene.radius > 0.0F ? scene.radius : 1.0F;
+    Camera camera;
+    const float half_height = std::tan(camera.vertical_fov * 0.5F);
+    const float half_angle = std::atan(half_height * std::min(aspect, 1.0F));
+    camera.near_plane = radius * 1e-3F;
+
+    const Entity entity = world.create();
+    world.set(entity, Name{"whole scene"});
+    world.set(entity, Transform{.translation = scene.centre + away * (radius / std::sin(half_angle)),
+                                .rotation = glm::quatLookAt(-away, glm::vec3(0.0F, 1.0F, 0.0F))});
+    world.set(entity, camera);
+    return entity;
+}
+
+}  // namespace
+
+fs::path shipped_scene() {
+    const fs::path name = "cornell.gltf";
+    std::error_code ignored;
+    const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / "scenes" / name;
+    return fs::exists(beside, ignored) ? beside : fs::path(CANDELA_SCENES) / name;
+}
+
+Scene load_scene(const fs::path& path) {
+    Scene scene{path, {}, {}};
+    scene.warnings = import_gltf(path, scene.world).warnings;
+    return scene;
+}
+
+Bounds bounds(const World& world) {
+    Box box;
+    for (auto [entity, instance] : world.view<MeshInstance>()) {
+        const glm::mat4 to_world = world_matrix(world, entity);
+        for (const Primitive& primitive : instance.mesh->primitives) {
+            for (const Vertex& vertex : primitive.vertices)
+                box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));
+        }
+    }
+    if (box.lower.x > box.upper.x) return {};
+    return {(box.lower + box.upper) * 0.5F, glm::length(box.upper - box.lower) * 0.5F};
+}
+
+std::vector<Entity> cameras(const World& world) {
+    std::vector<Entity> all;
+    for (auto [entity, camera] : world.view<Camera>()) all.push_back(entity);
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+Entity choose_camera(World& world, const std::optional<std::string>& wanted, float aspect) {
+    const std::vector<Entity> all = cameras(world);
+    if (wanted) return find_camera(world, all, *wanted);
+    return all.empty() ? add_framing_camera(world, aspect) : all.front();
+}
+
+std::string name_of(const World& world, Entity entity) {
+    const Name* name = world.find<Name>(entity);
+    return name != nullptr && !name->value.empty() ? name->value : fmt::format("entity {}", entity.index);
+}
+
+}  // namespace candela::sandbox

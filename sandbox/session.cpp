@@ -1,0 +1,121 @@
+#include "sandbox/session.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "renderer/context/headless.hpp"
+#include "sandbox/choose_configuration.hpp"
+#include "sandbox/headless.hpp"
+#include "sandbox/scene.hpp"
+#include "sandbox/window.hpp"
+#include "sandbox/window_session.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr int faulty_input = 2;
+constexpr int no_driver = 3;
+constexpr glm::ivec2 window_size{1280, 720};
+constexpr glm::ivec2 headless_size{512, 512};
+
+/// The exception's words, on one line.
+int report_fault(const std::exception& fault, int status) {
+    std::string line = fault.what();
+    for (char& c : line) c = c == '\n' ? ' ' : c;
+    fmt::print(stderr, "candela: {}\n", line);
+    return status;
+}
+
+bool is_set(const char* variable) {
+    const char* value = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): nothing sets variables
+    return value != nullptr && *value != '\0';
+}
+
+bool has_display() {
+    return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY");
+}
+
+std::vector<ContextKind> headless_kinds(ContextChoice choice) {
+    switch (choice) {
+        case ContextChoice::egl: return {ContextKind::egl};
+        case ContextChoice::osmesa: return {ContextKind::osmesa};
+        case ContextChoice::automatic:
+        case ContextChoice::window: break;
+    }
+    return {ContextKind::egl, ContextKind::osmesa};
+}
+
+/// A window, or null where the headless contexts are next. What failed goes into `tried`.
+std::unique_ptr<Window> open_window(const Options& options, glm::ivec2 size, std::vector<std::string>& tried) {
+    const bool wanted = options.context == ContextChoice::window;
+    if (options.headless || (!wanted && !has_display())) return nullptr;
+    try {
+        return std::make_unique<Window>(size, "Candela");
+    } catch (const ContextError& fault) {
+        if (wanted) throw;
+        tried.emplace_back(fault.what());
+        return nullptr;
+    }
+}
+
+std::unique_ptr<HeadlessContext> open_headless(ContextChoice choice, std::vector<std::string>& tried) {
+    for (const ContextKind kind : headless_kinds(choice)) {
+        try {
+            auto context = HeadlessContext::create(kind);
+            context->make_current();
+            return context;
+        } catch (const ContextError& fault) {
+            tried.emplace_back(fault.what());
+        }
+    }
+    throw ContextError(fmt::format("no OpenGL 4.5 context: {}", fmt::join(tried, "; ")));
+}
+
+float aspect(glm::ivec2 size) {
+    return static_cast<float>(size.x) / static_cast<float>(size.y);
+}
+
+void run_session(const Options& options) {
+    const Configuration configuration = choose_configuration(options);
+    if (options.list_configs || options.print_config) {
+        fmt::print("{}", options.list_configs ? list_configurations() : write_configuration(configuration) + "\n");
+        return;
+    }
+    Scene scene = load_scene(options.scene.value_or(shipped_scene()));
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "candela: {}\n", warning);
+
+    std::vector<std::string> tried;
+    const glm::ivec2 size_in_window = options.size.value_or(window_size);
+    if (const std::unique_ptr<Window> window = open_window(options, size_in_window, tried)) {
+        const Entity camera = choose_camera(scene.world, options.camera, aspect(size_in_window));
+        return run_window(*window, scene, camera, configuration, options);
+    }
+    for (const std::string& fault : tried) fmt::print(stderr, "candela: no window: {}\n", fault);
+    const glm::ivec2 size = options.size.value_or(headless_size);
+    const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
+    const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
+    run_headless(*context, scene, camera, configuration, options, size);
+}
+
+}  // namespace
+
+int run(const Options& options) {
+    try {
+        run_session(options);
+        return 0;
+    } catch (const ContextError& fault) {
+        return report_fault(fault, no_driver);
+    } catch (const std::exception& fault) {
+        return report_fault(fault, faulty_input);
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "renderer/gl/functions.hpp"
+
+struct GLFWwindow;
+
+namespace candela::sandbox {
+
+/// What people did, in their order, so that a slow frame loses nothing of it. Positions are in window coordinates:
+/// from the upper left corner, in the units of the desktop, of which a pixel may be a fraction.
+struct InputEvent {
+    enum class Kind : std::uint8_t { press, release, move, scroll, key };
+    Kind kind = Kind::move;
+    int code = 0;               ///< GLFW_MOUSE_BUTTON_... or GLFW_KEY_...
+    int modifiers = 0;          ///< GLFW_MOD_...
+    glm::vec2 position{0.0F};   ///< of the pointer
+    float scrolled = 0.0F;      ///< notches; positive away from the user
+};
+
+/// A window with a current OpenGL 4.5 core context.
+class Window {
+ public:
+    /// `size` in window coordinates. Throws ContextError with what GLFW says if there is no display or no driver.
+    Window(glm::ivec2 size, const std::string& title);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    [[nodiscard]] static gl::GetProc get_proc();
+    [[nodiscard]] GLFWwindow* handle() const { return handle_; }
+
+    [[nodiscard]] glm::ivec2 size() const;              ///< window coordinates; 0x0 while minimised
+    [[nodiscard]] glm::ivec2 framebuffer_size() const;  ///< pixels
+    [[nodiscard]] bool should_close() const;
+    void close();
+
+    /// Input since the last call. Waits up to `seconds` for some.
+    [[nodiscard]] std::vector<InputEvent> take_events(double seconds);
+    /// Shows what was drawn.
+    void swap();
+
+ private:
+    /// GLFW itself, for as long as a window lives.
+    struct Library {
+        Library();
+        ~Library();
+        Library(const Library&) = delete;
+        Library& operator=(const Library&) = delete;
+    };
+
+    void listen();
+    [[nodiscard]] static Window& of(GLFWwindow* handle);
+    void record(InputEvent event);
+
+    Library library_;
+    GLFWwindow* handle_ = nullptr;
+    std::vector<InputEvent> events_;
+};
+
+}  // namespace candela::sandbox

@@ -1,0 +1,30 @@
+// Binding points and limits, shared by GLSL and C++.
+
+#define BINDING_INSTANCES 0
+#define BINDING_MATERIALS 1
+#define BINDING_LIGHTS 2
+#define BINDING_SHADOWS 3
+#define BINDING_VPLS 4
+#define BINDING_BVH_NODES 5
+#define BINDING_TRIANGLES 6
+#define BINDING_TEXELS 7
+#define BINDING_PATHS 8
+#define BINDING_CONTINUATION 9
+#define BINDING_FLUX 10
+#define BINDING_LAST 10
+
+#define UNIT_BASE_COLOUR 0
+#define UNIT_SHADOW_CUBES 1
+#define UNIT_SHADOW_MAPS 2
+#define UNIT_ALBEDO 3
+#define UNIT_NORMAL 4
+#define UNIT_DEPTH 5
+#define UNIT_RADIANCE 6
+#define UNIT_LAST 6
+
+#define ATTRIBUTE_POSITION 0
+#define ATTRIBUTE_NORMAL 1
+#define ATTRIBUTE_UV 2
+#define ATTRIBUTE_INSTANCE 3
+
+#define BVH_STACK_SIZE 48

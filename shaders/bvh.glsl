@@ -1,0 +1,89 @@
+// Traversal of the bounding-volume hierarchy; the twin of engine/bvh, formula for formula.
+#include "bindings.glsl"
+#include "types.glsl"
+
+layout(std430, binding = BINDING_BVH_NODES) readonly restrict buffer BvhNodes { BvhNode bvh_nodes[]; };
+layout(std430, binding = BINDING_TRIANGLES) readonly restrict buffer Triangles { TraceTriangle triangles[]; };
+
+struct Hit {
+    float t;
+    vec2 barycentric;  // weights of b and c
+    uint triangle;     // in the triangle buffer
+};
+
+const uint NO_TRIANGLE = 0xffffffffu;
+
+uniform uint triangle_count;
+
+// Distance at which the ray enters the box, or infinity. Kay and Kajiya's slabs.
+float enter_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_direction, float t_min, float t_max) {
+    vec3 t0 = (lower - origin) * inverse_direction;
+    vec3 t1 = (upper - origin) * inverse_direction;
+    vec3 near = min(t0, t1);
+    vec3 far = max(t0, t1);
+    float enter = max(max(near.x, near.y), max(near.z, t_min));
+    float leave = min(min(far.x, far.y), min(far.z, t_max));
+    // Widened by the rounding of the products (Ize, "Robust BVH Ray Traversal", 2013).
+    return enter <= leave * 1.00001 ? enter : 1.0 / 0.0;
+}
+
+// Components near zero are moved away from it: 0 × infinity would be NaN in the slabs.
+vec3 safe_inverse(vec3 direction) {
+    const float tiny = 1e-20;
+    vec3 safe = mix(direction, mix(vec3(tiny), vec3(-tiny), lessThan(direction, vec3(0.0))),
+                    lessThan(abs(direction), vec3(tiny)));
+    return 1.0 / safe;
+}
+
+// Möller and Trumbore (1997), two-sided. Takes the nearer of two hits, at equal distance that of the lower id.
+void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, inout Hit hit) {
+    TraceTriangle triangle = triangles[index];
+    vec3 p = cross(direction, triangle.edge_ac);
+    float determinant = dot(triangle.edge_ab, p);
+    if (determinant == 0.0) return;
+    float inverse = 1.0 / determinant;
+    vec3 s = origin - triangle.a;
+    float u = dot(s, p) * inverse;
+    vec3 q = cross(s, triangle.edge_ab);
+    float v = dot(direction, q) * inverse;
+    float t = dot(triangle.edge_ac, q) * inverse;
+    if (u < 0.0 || v < 0.0 || u + v > 1.0 || t <= t_min) return;
+    bool nearer = t < hit.t;
+    bool tie = t == hit.t && hit.triangle != NO_TRIANGLE && triangle.id < triangles[hit.triangle].id;
+    if (nearer || tie) hit = Hit(t, vec2(u, v), index);
+}
+
+// Nearest triangle with t in (t_min, t_max), whichever side it shows; `triangle` is NO_TRIANGLE if there is none.
+Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
+    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE);
+    if (triangle_count == 0u) return hit;
+    vec3 inverse_direction = safe_inverse(direction);
+    uint stack[BVH_STACK_SIZE];
+    uint depth = 0u;
+    uint node = 0u;
+    bool going = true;
+    while (going) {
+        uint first = bvh_nodes[node].first;
+        uint count = bvh_nodes[node].count;
+        for (uint i = 0u; i < count; ++i) intersect_triangle(first + i, origin, direction, t_min, hit);
+
+        bool descend = false;
+        if (count == 0u) {
+            BvhNode left = bvh_nodes[first];
+            BvhNode right = bvh_nodes[first + 1u];
+            float t_left = enter_box(left.lower, left.upper, origin, inverse_direction, t_min, hit.t);
+            float t_right = enter_box(right.lower, right.upper, origin, inverse_direction, t_min, hit.t);
+            bool left_first = t_left <= t_right;
+            float t_near = min(t_left, t_right);
+            float t_far = max(t_left, t_right);
+            descend = !isinf(t_near);
+            if (descend) node = left_first ? first : first + 1u;
+            if (!isinf(t_far)) stack[depth++] = left_first ? first + 1u : first;
+        }
+        if (!descend) {
+            going = depth > 0u;
+            if (going) node = stack[--depth];
+        }
+    }
+    return hit;
+}

@@ -1,0 +1,13 @@
+#include "mesh_surface.glsl"
+#include "light_list_all.glsl"
+#include "lighting.glsl"
+
+uniform mat4 world_from_clip;
+uniform vec2 target_size;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+    Surface surface = unpack_surface(fragment_surface(), gl_FragCoord.xyz, target_size, world_from_clip);
+    radiance = vec4(reflected_radiance(surface), 1.0);
+}

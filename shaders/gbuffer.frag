@@ -1,0 +1,10 @@
+#include "mesh_surface.glsl"
+
+layout(location = 0) out vec4 albedo;
+layout(location = 1) out vec2 packed_normal;
+
+void main() {
+    PackedSurface surface = fragment_surface();
+    albedo = vec4(surface.albedo, 1.0);
+    packed_normal = surface.normal;
+}

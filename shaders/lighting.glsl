@@ -1,0 +1,49 @@
+// The one evaluator of light: real lights with their shadows, and virtual point lights. A shading path finds the
+// surface and, by including a light list before this file, says which lights to visit.
+#include "bindings.glsl"
+#include "lights.glsl"
+#include "shadow.glsl"
+#include "surface.glsl"
+#include "types.glsl"
+
+layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
+layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
+
+uniform uint light_count;
+uniform uint vpl_count;
+uniform float geometry_bound;  // of a VPL's geometry term, 1/m²
+
+vec3 irradiance_from_light(Light light, Surface surface) {
+    Incident incident = incident_light(light, surface.position);
+    float cos_surface = dot(surface.normal, incident.direction);
+    if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
+    float visibility = shadow_visibility(light.shadow, surface.position, surface.normal, light.position);
+    return incident.irradiance * (cos_surface * visibility);
+}
+
+// Geometry term cos θ cos θ' / r² between the surface and a VPL, bounded: Keller, "Instant Radiosity" (1997), with
+// the singularity at r = 0 cut off. Multiplied by flux/π it is the irradiance.
+float geometry_term(Vpl vpl, Surface surface) {
+    vec3 to_vpl = vpl.position - surface.position;
+    float distance2 = max(dot(to_vpl, to_vpl), 1e-12);
+    float cos_surface = max(dot(surface.normal, to_vpl), 0.0);
+    float cos_vpl = max(-dot(vpl.normal, to_vpl), 0.0);
+    return min(cos_surface * cos_vpl / (distance2 * distance2), geometry_bound);
+}
+
+// Share of the VPL's light that reaches the surface. VPLs shine through walls as yet.
+float vpl_visibility(uint index, Surface surface) { return 1.0; }
+
+// Radiance that the surface reflects: ρ/π times its irradiance.
+vec3 reflected_radiance(Surface surface) {
+    vec3 direct = vec3(0.0);
+    for (uint i = 0u; i < light_list_size(light_count); ++i) {
+        direct += irradiance_from_light(lights[light_list_entry(i)], surface);
+    }
+    vec3 indirect = vec3(0.0);
+    for (uint i = 0u; i < vpl_list_size(vpl_count); ++i) {
+        uint index = vpl_list_entry(i);
+        indirect += vpls[index].flux * (geometry_term(vpls[index], surface) * vpl_visibility(index, surface));
+    }
+    return surface.albedo / PI * (direct + indirect / PI);
+}

@@ -1,0 +1,46 @@
+// Reflectance where a traced ray hits: the base colour with its image, read from the texel buffer, since a compute
+// shader cannot choose among textures. The images there are reduced; a diffuse bounce needs no more.
+#include "bindings.glsl"
+#include "bvh.glsl"
+#include "maths.glsl"
+#include "types.glsl"
+
+layout(std430, binding = BINDING_MATERIALS) readonly restrict buffer Materials { Material materials[]; };
+layout(std430, binding = BINDING_TEXELS) readonly restrict buffer Texels { uint texels[]; };  // sRGB, 8 bits a channel
+
+const uint WRAP_REPEAT = 0u;
+const uint WRAP_MIRRORED = 1u;
+
+bool is_double_sided(uint material) { return (materials[material].flags & MATERIAL_DOUBLE_SIDED) != 0u; }
+
+int wrap(int x, int size, uint mode) {
+    if (mode == WRAP_REPEAT) return x - size * int(floor(float(x) / float(size)));
+    if (mode == WRAP_MIRRORED) {
+        int m = x - 2 * size * int(floor(float(x) / float(2 * size)));
+        return m < size ? m : 2 * size - 1 - m;
+    }
+    return clamp(x, 0, size - 1);
+}
+
+vec3 texel(Material material, ivec2 at) {
+    int x = wrap(at.x, int(material.texel_width), (material.flags >> MATERIAL_WRAP_U_SHIFT) & MATERIAL_WRAP_MASK);
+    int y = wrap(at.y, int(material.texel_height), (material.flags >> MATERIAL_WRAP_V_SHIFT) & MATERIAL_WRAP_MASK);
+    return srgb_decode(unpackUnorm4x8(texels[material.first_texel + uint(y) * material.texel_width + uint(x)]).rgb);
+}
+
+vec3 bilinear_texel(Material material, vec2 uv) {
+    vec2 at = uv * vec2(material.texel_width, material.texel_height) - 0.5;
+    ivec2 corner = ivec2(floor(at));
+    vec2 f = at - vec2(corner);
+    vec3 top = mix(texel(material, corner), texel(material, corner + ivec2(1, 0)), f.x);
+    vec3 bottom = mix(texel(material, corner + ivec2(0, 1)), texel(material, corner + ivec2(1, 1)), f.x);
+    return mix(top, bottom, f.y);
+}
+
+vec3 hit_albedo(TraceTriangle triangle, vec2 barycentric) {
+    Material material = materials[triangle.material];
+    vec3 albedo = material.base_colour.rgb;
+    if (material.texel_width == 0u) return albedo;
+    vec2 uv = triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
+    return albedo * bilinear_texel(material, uv);
+}

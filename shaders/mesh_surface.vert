@@ -1,0 +1,15 @@
+#include "mesh.glsl"
+
+uniform mat4 clip_from_world;
+
+out vec3 normal;
+out vec2 uv;
+flat out uint material_index;
+
+void main() {
+    Instance instance = instances[vertex_instance];
+    normal = world_normal(instance);
+    uv = vertex_uv;
+    material_index = instance.material;
+    gl_Position = clip_from_world * vec4(world_position(instance), 1.0);
+}

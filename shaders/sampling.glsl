@@ -1,0 +1,61 @@
+// Low-discrepancy points whose indices stay put: Owen-scrambled Sobol pairs after Burley, "Practical Hash-based
+// Owen Scrambling" (JCGT 2020).
+#include "maths.glsl"
+
+uint hash(uint x) {
+    // Finalizer of MurmurHash3 (Appleby).
+    x ^= x >> 16;
+    x *= 0x85ebca6bu;
+    x ^= x >> 13;
+    x *= 0xc2b2ae35u;
+    return x ^ (x >> 16);
+}
+
+uint hash_combine(uint seed, uint value) {
+    return hash(seed ^ (value * 0x9e3779b9u + 0x7f4a7c15u));
+}
+
+// Laine-Karras permutation of bit-reversed values (Burley, listing 1), between two bit reversals: listing 3.
+uint owen_scramble(uint x, uint seed) {
+    x = bitfieldReverse(x);
+    x += seed;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    x ^= x * 0x8d22f6e6u;
+    return bitfieldReverse(x);
+}
+
+// First two dimensions of the Sobol sequence: a (0, 2)-sequence in base 2.
+uvec2 sobol_2d(uint index) {
+    uint y = 0u;
+    for (uint v = 0x80000000u, i = index; i != 0u; i >>= 1u, v ^= v >> 1u) {
+        if ((i & 1u) != 0u) y ^= v;
+    }
+    return uvec2(bitfieldReverse(index), y);
+}
+
+// Point `index` of the scrambled sequence number `pair`, in [0, 1)². Pair 0 keeps its order, so that its prefixes
+// are well distributed; the others are shuffled against it.
+vec2 sample_2d(uint index, uint pair, uint seed) {
+    uint pair_seed = hash_combine(seed, pair);
+    uint i = pair == 0u ? index : owen_scramble(index, hash_combine(pair_seed, 2u));
+    uvec2 bits = sobol_2d(i);
+    bits.x = owen_scramble(bits.x, hash_combine(pair_seed, 0u));
+    bits.y = owen_scramble(bits.y, hash_combine(pair_seed, 1u));
+    return vec2(bits >> 8u) * (1.0 / 16777216.0);
+}
+
+// Uniform in the cone of directions around `axis` whose cosines are in [cos_min, 1].
+vec3 direction_at(vec3 axis, float cos_theta, float u) {
+    vec3 tangent, bitangent;
+    basis_around(axis, tangent, bitangent);
+    float sin_theta = sqrt(max(0.0, 1.0 - cos_theta * cos_theta));
+    float phi = 2.0 * PI * u;
+    return sin_theta * (cos(phi) * tangent + sin(phi) * bitangent) + cos_theta * axis;
+}
+
+// Density cos θ / π over the hemisphere of `normal`.
+vec3 cosine_direction(vec3 normal, vec2 u) {
+    return direction_at(normal, sqrt(1.0 - u.x), u.y);
+}

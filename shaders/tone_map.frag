@@ -1,0 +1,17 @@
+#include "bindings.glsl"
+#include "maths.glsl"
+
+layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
+
+uniform float exposure;   // multiplies radiance
+uniform bool curve;       // off: radiance goes out as it is, linear
+
+layout(location = 0) out vec4 colour;
+
+// Narkowicz, "ACES Filmic Tone Mapping Curve" (2015).
+vec3 filmic(vec3 x) { return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
+
+void main() {
+    vec3 linear = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
+    colour = vec4(curve ? srgb_encode(filmic(linear * exposure)) : linear, 1.0);
+}

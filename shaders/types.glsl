@@ -1,0 +1,104 @@
+// Structs that the GPU and the CPU both see; their twins are in renderer/gpu_types.hpp.
+// Layout std430; a test compares every offset and stride with what the driver reports.
+
+struct Instance {
+    vec4 world[3];  // rows of the local-to-world matrix
+    uint material;
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+struct Material {
+    vec4 base_colour;     // linear
+    uint first_texel;     // of its reduced base-colour image in the texel buffer
+    uint texel_width;     // 0: no texture
+    uint texel_height;
+    uint flags;           // MATERIAL_*
+};
+
+#define MATERIAL_DOUBLE_SIDED 1u
+#define MATERIAL_WRAP_U_SHIFT 1u
+#define MATERIAL_WRAP_V_SHIFT 3u
+#define MATERIAL_WRAP_MASK 3u
+
+struct Light {
+    vec3 position;   // metres; directional: centre of the footprint, outside the scene
+    uint kind;       // LIGHT_*
+    vec3 direction;  // unit, the way the light travels
+    float range;     // metres
+    vec3 intensity;  // candela; directional: lux
+    int shadow;      // index into the shadows, -1: none
+    vec2 shape;      // spot: scale and offset of the cone's falloff; directional: half extents of the footprint
+    float cos_inner;
+    float cos_outer;
+};
+
+#define LIGHT_POINT 0u
+#define LIGHT_SPOT 1u
+#define LIGHT_DIRECTIONAL 2u
+
+struct Shadow {
+    mat4 from_world;  // to clip space; unused by cubes
+    vec3 axis;        // the map's viewing direction; unused by cubes
+    float texel;      // width of a texel at unit distance (tangent units); directional: metres
+    float near_plane; // metres, of perspective maps
+    uint layer;       // of the map array, or cube of the cube array
+    uint kind;        // SHADOW_*
+    uint pad0;
+};
+
+#define SHADOW_CUBE 0u
+#define SHADOW_PERSPECTIVE 1u
+#define SHADOW_ORTHOGRAPHIC 2u
+
+struct Vpl {
+    vec3 position;  // metres, on the surface
+    uint path;      // that placed it
+    vec3 normal;    // unit; it emits into this half-space
+    uint bounce;    // 1 for the first surface that the light meets
+    vec3 flux;      // reflected flux, lm or W as the lights have it; zero: not alive
+    uint pad0;
+};
+
+struct BvhNode {
+    vec3 lower;
+    uint first;
+    vec3 upper;
+    uint count;
+};
+
+struct TraceTriangle {
+    vec3 a;
+    uint material;
+    vec3 edge_ab;
+    uint id;  // in the caller's numbering
+    vec3 edge_ac;
+    uint pad0;
+    vec2 uv_a;
+    vec2 uv_b;
+    vec2 uv_c;
+    vec2 pad1;
+};
+
+struct Path {
+    vec3 flux;        // carried at the start
+    uint light;
+    uint index;       // within the light's sequence
+    uint seed;        // of the light's sequence
+    uint first_vpl;
+    uint vpl_count;   // bounces that the path may make, at least 1
+};
+
+struct FluxAccount {
+    vec3 emitted;
+    float pad0;
+    vec3 absorbed;
+    float pad1;
+    vec3 escaped;
+    float pad2;
+    vec3 truncated;
+    float pad3;
+    vec3 roulette;  // lost where the path was ended early, less what its continuation was weighted up by
+    float pad4;
+};

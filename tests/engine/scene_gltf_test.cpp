@@ -1,0 +1,350 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "engine/scene/hierarchy.hpp"
+#include "tests/engine/gltf_builder.hpp"
+
+using namespace candela;
+using namespace candela::test;
+
+namespace {
+
+using Points = std::vector<glm::vec3>;
+
+const Points right_corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+
+/// Four corners of a unit square in the plane z = 0.
+GltfBuilder square() {
+    GltfBuilder file;
+    file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+    return file;
+}
+
+/// Makes the first primitive's texture coordinates of a triangle from one accessor.
+template <class T>
+std::vector<glm::vec2> texture_coordinates(const std::vector<T>& values, int component_type,
+                                           bool normalised) {
+    GltfBuilder file = right_triangle();
+    const std::size_t accessor = file.add_accessor(values, component_type, "VEC2", 2);
+    // Rows of a vertex attribute start at multiples of 4 bytes.
+    if (sizeof(T) * 2 < 4) {
+        file.document["bufferViews"].back()["byteStride"] = 4;
+    }
+    file.document["accessors"].back()["normalized"] = normalised;
+    file.document["accessors"].back()["count"] = 3;
+    file.primitive()["attributes"]["TEXCOORD_0"] = accessor;
+    std::vector<glm::vec2> coordinates;
+    for (const Vertex& corner : Imported(file).corners()) {
+        coordinates.push_back(corner.uv);
+    }
+    return coordinates;
+}
+
+}  // namespace
+
+TEST_SUITE("glTF geometry") {
+    TEST_CASE("the least of files: a triangle") {
+        const Imported imported(right_triangle());
+        CHECK(imported.positions() == right_corners);
+        CHECK(imported.report.triangles == 1);
+        CHECK(imported.report.warnings.empty());
+        REQUIRE(imported.report.entities.size() == 1);
+        const Entity entity = imported.report.entities[0];
+        CHECK(imported.world.get<Name>(entity).value == "node 0");
+        CHECK(imported.world.get<Transform>(entity) == Transform{});
+        CHECK(imported.primitive().material->base_colour == glm::vec4(1.0F));
+        CHECK_FALSE(imported.primitive().material->double_sided);
+        for (const Vertex& corner : imported.corners()) {
+            CHECK(corner.normal == glm::vec3(0, 0, 1));
+            CHECK(corner.uv == glm::vec2(0.0F));
+        }
+    }
+
+    TEST_CASE("indices of every type say the same") {
+        const Points expected{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
+        GltfBuilder file = square();
+        SUBCASE("unsigned bytes") {
+            file.primitive()["indices"] =
+                file.add_accessor(std::vector<std::uint8_t>{0, 1, 2, 2, 1, 3}, 5121, "SCALAR", 1);
+        }
+        SUBCASE("unsigned shorts") {
+            file.primitive()["indices"] =
+                file.add_accessor(std::vector<std::uint16_t>{0, 1, 2, 2, 1, 3}, 5123, "SCALAR", 1);
+        }
+        SUBCASE("unsigned ints") {
+            file.primitive()["indices"] =
+                file.add_accessor(std::vector<std::uint32_t>{0, 1, 2, 2, 1, 3}, 5125, "SCALAR", 1);
+        }
+        SUBCASE("none") {
+            file = GltfBuilder();
+            file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0});
+        }
+        CHECK(Imported(file).positions() == expected);
+    }
+
+    TEST_CASE("strips and fans are wound as the specification says") {
+        GltfBuilder file = square();
+        SUBCASE("strip: every second triangle is turned round") {
+            file.primitive()["mode"] = 5;
+            CHECK(Imported(file).positions() ==
+                  Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+        }
+        SUBCASE("fan: all share the first vertex, which comes last") {
+            file = GltfBuilder();
+            file.add_primitive({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})["mode"] = 6;
+            CHECK(Imported(file).positions() ==
+                  Points{{1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}});
+        }
+        for (const Vertex& corner : Imported(file).corners()) {
+            CHECK(corner.normal == glm::vec3(0, 0, 1));
+        }
+    }
+
+    TEST_CASE("points and lines are skipped and reported once") {
+        GltfBuilder file = right_triangle();
+        for (const int mode : {0, 1, 2, 3}) {
+            file.add_primitive({0, 0, 0, 1, 0, 0})["mode"] = mode;
+        }
+        const Imported imported(file);
+        CHECK(imported.mesh().primitives.size() == 1);
+        CHECK(imported.report.warnings == std::vector<std::string>{"points and lines are skipped"});
+    }
+
+    TEST_CASE("a mesh without triangles gives no instance") {
+        GltfBuilder file;
+        file.add_primitive({0, 0, 0, 1, 0, 0})["mode"] = 1;
+        const Imported imported(file);
+        CHECK(imported.world.count<MeshInstance>() == 0);
+        CHECK(imported.report.entities.size() == 1);
+    }
+
+    TEST_CASE("interleaved attributes are read by their stride") {
+        GltfBuilder file;
+        const std::size_t view = file.add_view(std::vector<float>{0, 0, 0, 0, 0, 1, 0.25F, 0.5F,  //
+                                                                  1, 0, 0, 0, 3, 0, 0.75F, 1.0F,  //
+                                                                  0, 1, 0, 2, 0, 0, -2.0F, 7.0F});
+        file.document["bufferViews"][view]["byteStride"] = 32;
+        int offset = 0;
+        for (const char* name : {"POSITION", "NORMAL", "TEXCOORD_0"}) {
+            const bool vec2 = offset == 24;
+            file.document["meshes"][0]["primitives"][0]["attributes"][name] =
+                file.add("accessors", {{"bufferView", view},
+                                       {"byteOffset", offset},
+                                       {"componentType", 5126},
+                                       {"count", 3},
+                                       {"type", vec2 ? "VEC2" : "VEC3"}});
+            offset += 12;
+        }
+        // Normals come out at unit length.
+        CHECK(Imported(file).corners() == std::vector<Vertex>{{{0, 0, 0}, {0, 0, 1}, {0.25F, 0.5F}},
+                                                              {{1, 0, 0}, {0, 1, 0}, {0.75F, 1.0F}},
+                                                              {{0, 1, 0}, {1, 0, 0}, {-2.0F, 7.0F}}});
+    }
+
+    TEST_CASE("texture coordinates come as floats or as normalised integers") {
+        using Coordinates = std::vector<glm::vec2>;
+        CHECK(texture_coordinates<float>({0, 1, 0.5F, 2, -1, 0}, 5126, false) ==
+              Coordinates{{0, 1}, {0.5F, 2}, {-1, 0}});
+        CHECK(texture_coordinates<std::uint8_t>({0, 255, 0, 0, 51, 102, 0, 0, 255, 0, 0, 0}, 5121, true) ==
+              Coordinates{{0, 1}, {0.2F, 0.4F}, {1, 0}});
+        CHECK(texture_coordinates<std::uint16_t>({0, 65535, 13107, 26214, 65535, 0}, 5123, true) ==
+              Coordinates{{0, 1}, {0.2F, 0.4F}, {1, 0}});
+    }
+
+    TEST_CASE("a sparse accessor replaces the elements it lists") {
+        GltfBuilder file = right_triangle();
+        const std::size_t indices = file.add_view(std::vector<std::uint16_t>{0, 2});
+        const std::size_t values = file.add_view(std::vector<float>{0, 0, 5, 0, 1, 5});
+        Json& accessor = file.document["accessors"][0];
+        accessor["sparse"] = {{"count", 2},
+                              {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
+                              {"values", {{"bufferView", values}}}};
+        CHECK(Imported(file).positions() == Points{{0, 0, 5}, {1, 0, 0}, {0, 1, 5}});
+        accessor.erase("bufferView");  // what is not listed is then zero
+        accessor["sparse"]["indices"]["byteOffset"] = 0;
+        CHECK(Imported(file).report.triangles == 1);
+        CHECK(Imported(file).positions() == Points{{0, 0, 5}, {0, 0, 0}, {0, 1, 5}});
+    }
+
+    TEST_CASE("missing normals are the faces', so vertices are not shared") {
+        GltfBuilder file;
+        // Two faces of a roof that share a ridge along z.
+        file.add_primitive({-1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 0})["indices"] = 1;
+        file.add_indices({0, 2, 1, 1, 2, 3});
+        const std::vector<Vertex> corners = Imported(file).corners();
+        const float half = std::sqrt(0.5F);
+        for (std::size_t i = 0; i < 6; ++i) {
+            const glm::vec3 expected(i < 3 ? -half : half, half, 0.0F);
+            CHECK(glm::distance(corners[i].normal, expected) < 1e-6F);
+        }
+    }
+
+    TEST_CASE("a normal of length zero becomes the face's") {
+        GltfBuilder file = right_triangle();
+        file.primitive()["attributes"]["NORMAL"] = file.add_vectors({0, 0, 0, 1, 0, 0, 1e-30F, 0, 0});
+        const std::vector<Vertex> corners = Imported(file).corners();
+        CHECK(corners[0].normal == glm::vec3(0, 0, 1));
+        CHECK(corners[1].normal == glm::vec3(1, 0, 0));
+        CHECK(corners[2].normal == glm::vec3(1, 0, 0));  // short, but with a direction
+    }
+
+    TEST_CASE("triangles without area are dropped, however small or large the others") {
+        GltfBuilder file;
+        file.add_primitive({0, 0, 0, 1,      0, 0, 2, 0,      0,  //
+                            0, 0, 0, 1e-30F, 0, 0, 0, 1e-30F, 0,  //
+                            0, 0, 0, 1e30F,  0, 0, 0, 1e30F,  0,  //
+                            1, 1, 1, 1,      1, 1, 2, 2,      2});
+        const Imported imported(file);
+        CHECK(imported.report.triangles == 2);
+        for (const Vertex& corner : imported.corners()) {
+            CHECK(corner.normal == glm::vec3(0, 0, 1));
+        }
+    }
+}
+
+TEST_SUITE("glTF scenes") {
+    TEST_CASE("nodes become entities with names, transforms and parents") {
+        GltfBuilder file = right_triangle();
+        file.document["nodes"] = Json::parse(R"([
+            {"name": "root", "children": [1, 2], "translation": [1, 2, 3], "scale": [2, 2, -2]},
+            {"name": "turned", "rotation": [0, 0, 0.70710678, 0.70710678]},
+            {"name": "by matrix", "matrix": [0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 5, 6, 7, 1]}])");
+        const Imported imported(file);
+        REQUIRE(imported.report.entities.size() == 3);
+        const Entity root = imported.find("root");
+        CHECK(imported.world.get<Transform>(root).scale == glm::vec3(2, 2, -2));
+        CHECK(imported.world.get<Transform>(imported.find("turned")).parent == root);
+        const auto in_world = [&](const char* name, const glm::vec3& point) {
+            return glm::vec3(world_matrix(imported.world, imported.find(name)) * glm::vec4(point, 1.0F));
+        };
+        // (1, 0, 0) turned is (0, 1, 0), doubled and moved (1, 4, 3). Tolerance: the file's eight digits.
+        CHECK(glm::distance(in_world("turned", {1, 0, 0}), glm::vec3(1, 4, 3)) < 1e-5F);
+        // (1, 1, 1) is (-3, 2, 4) + (5, 6, 7) = (2, 8, 11) in the root.
+        CHECK(glm::distance(in_world("by matrix", {1, 1, 1}), glm::vec3(5, 18, -19)) < 1e-4F);
+    }
+
+    TEST_CASE("a sheared matrix is kept exactly, for the node and for its children") {
+        GltfBuilder file = right_triangle();
+        file.document["nodes"] = Json::parse(R"([
+            {"name": "sheared", "children": [1], "matrix": [1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 9, 8, 7, 1]},
+            {"name": "child", "translation": [0, 2, 0]}])");
+        const Imported imported(file);
+        CHECK(imported.report.entities.size() == 3);
+        const glm::vec3 origin = world_matrix(imported.world, imported.find("child"))[3];
+        CHECK(glm::distance(origin, glm::vec3(10, 10, 7)) < 1e-5F);  // some roundings of numbers near 10
+    }
+
+    TEST_CASE("only the default scene is imported, the first where none is named") {
+        GltfBuilder file = right_triangle();
+        file.document["nodes"] = Json::parse(R"([{"name": "a"}, {"name": "b"}])");
+        file.document["scenes"] = Json::parse(R"([{"nodes": [0]}, {"nodes": [1]}])");
+        CHECK(Imported(file).find("a"));
+        CHECK_FALSE(Imported(file).find("b"));
+        file.document["scene"] = 1;
+        CHECK_FALSE(Imported(file).find("a"));
+        CHECK(Imported(file).find("b"));
+    }
+
+    TEST_CASE("instances share their mesh, meshes their material") {
+        GltfBuilder file = right_triangle();
+        file.document["materials"] = Json::parse(R"([{"name": "paint"}])");
+        file.document["nodes"] = Json::parse(R"([{"mesh": 0, "children": [1]}, {"mesh": 0}])");
+        file.primitive()["material"] = 0;
+        file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 1})["material"] = 0;
+        const Imported imported(file);
+        const auto& entities = imported.report.entities;
+        CHECK(imported.world.get<MeshInstance>(entities[0]) == imported.world.get<MeshInstance>(entities[1]));
+        CHECK(imported.mesh().primitives[0].material == imported.mesh().primitives[1].material);
+        CHECK(imported.report.triangles == 4);
+    }
+
+    TEST_CASE("what the world held before stays") {
+        World world;
+        const Entity before = world.create();
+        world.set(before, Name{"before"});
+        const ImportReport report = import_gltf(right_triangle().gltf(), {}, "test.gltf", world);
+        CHECK(world.size() == 2);
+        CHECK(world.get<Name>(before).value == "before");
+        CHECK(world.alive(report.entities[0]));
+    }
+
+    TEST_CASE("lights have the extension's values and defaults") {
+        GltfBuilder file = right_triangle();
+        file.document["extensionsUsed"] = {"KHR_lights_punctual"};
+        file.document["extensionsRequired"] = {"KHR_lights_punctual"};
+        file.document["extensions"]["KHR_lights_punctual"]["lights"] = Json::parse(R"([
+            {"type": "point"},
+            {"type": "point", "color": [1, 0.5, 0.25], "intensity": 20, "range": 3},
+            {"type": "spot", "spot": {}},
+            {"type": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 1.57079632679}, "range": 9},
+            {"type": "directional", "intensity": 3, "color": [0, 0, 1]}])");
+        file.document["nodes"] = Json::array();
+        file.document["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+        for (int i = 0; i < 5; ++i) {
+            file.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}});
+        }
+        const Imported imported(file);
+        CHECK(imported.report.warnings.empty());
+        const World& world = imported.world;
+        const std::vector<Entity>& entities = imported.report.entities;
+        CHECK(world.get<PointLight>(entities[0]) == PointLight{});
+        CHECK(world.get<PointLight>(entities[1]) == PointLight{{1, 0.5F, 0.25F}, 20.0F, 3.0F});
+        CHECK(world.get<SpotLight>(entities[2]) == SpotLight{});
+        SpotLight wide;
+        wide.range = 9.0F;
+        wide.inner_cone = 0.1F;
+        wide.outer_cone = 1.57079632679F;
+        CHECK(world.get<SpotLight>(entities[3]) == wide);
+        CHECK(world.get<DirectionalLight>(entities[4]) == DirectionalLight{{0, 0, 1}, 3.0F});
+    }
+
+    TEST_CASE("cameras of both kinds") {
+        GltfBuilder file = right_triangle();
+        file.document["cameras"] = Json::parse(R"([
+            {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25, "aspectRatio": 2}},
+            {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.25, "zfar": 100}},
+            {"type": "orthographic", "name": "plan", "orthographic": {"xmag": 9, "ymag": 3, "znear": 0, "zfar": 8}}])");
+        file.document["nodes"] =
+            Json::parse(R"([{"camera": 0, "children": [1, 2]}, {"camera": 1}, {"camera": 2}])");
+        const Imported imported(file);
+        const auto camera = [&](std::size_t i) {
+            return imported.world.get<Camera>(imported.report.entities[i]);
+        };
+        const float infinity = std::numeric_limits<float>::infinity();
+        CHECK(camera(0) == Camera{Camera::Projection::perspective, 0.5F, 1.0F, 0.25F, infinity});
+        CHECK(camera(1) == Camera{Camera::Projection::perspective, 0.5F, 1.0F, 0.25F, 100.0F});
+        CHECK(camera(2).projection == Camera::Projection::orthographic);
+        CHECK(camera(2).half_height == 3.0F);
+        CHECK(camera(2).near_plane == 0.0F);
+        CHECK(camera(2).far_plane == 8.0F);
+        CHECK(imported.find("plan") ==
+              imported.report.entities[2]);  // a nameless node is called after its camera
+    }
+
+    TEST_CASE("extensions that are merely used are reported once each") {
+        GltfBuilder file = right_triangle();
+        file.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_lights_punctual",
+                                           "KHR_materials_unlit"};
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{"the extension KHR_materials_unlit is not supported and is ignored"});
+    }
+
+    TEST_CASE("100,000 nodes, each the parent of the next") {
+        GltfBuilder file = right_triangle();
+        Json nodes = Json::array();
+        for (int i = 0; i < 99'999; ++i) {
+            nodes.push_back({{"children", Json::array({i + 1})}});
+        }
+        nodes.push_back({{"mesh", 0}});
+        file.document["nodes"] = std::move(nodes);
+        const Imported imported(file);
+        CHECK(imported.report.entities.size() == 100'000);
+        CHECK(world_matrix(imported.world, imported.report.entities.back()) == glm::mat4(1.0F));
+    }
+}

@@ -1,0 +1,495 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tests/engine/gltf_builder.hpp"
+
+using namespace candela;
+using namespace candela::test;
+
+namespace {
+
+const std::filesystem::path cornell =
+    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "sandbox" / "scenes" / "cornell.gltf";
+
+Bytes read(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// What the import has to say about the file; "imported" if nothing. Checks that a failure leaves the world
+/// alone and that its message is one line that starts with the file's name.
+std::string fault_of(const Bytes& file) {
+    World world;
+    const Entity before = world.create();
+    world.set(before, Name{"before"});
+    const auto names = world.revision<Name>();
+    try {
+        (void)import_gltf(file, {}, "broken.gltf", world);
+    } catch (const SceneError& error) {
+        const std::string message = error.what();
+        CHECK(world.size() == 1);
+        CHECK(world.revision<Name>() == names);
+        CHECK(world.revision<Transform>() == 0);
+        CHECK(message.find('\n') == std::string::npos);
+        CHECK(message.size() < 400);
+        REQUIRE(message.starts_with("broken.gltf: "));
+        return message.substr(13);
+    }
+    return "imported";
+}
+
+std::string fault_of(const GltfBuilder& file) {
+    return fault_of(file.gltf());
+}
+
+/// A file in which everything that the import reads occurs.
+GltfBuilder complete_scene() {
+    GltfBuilder file;
+    file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0});                                           // accessor 0
+    file.primitive()["indices"] = file.add_indices({0, 1, 2});                                 // accessor 1
+    file.primitive()["attributes"]["NORMAL"] = file.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, 1});  // accessor 2
+    file.primitive()["attributes"]["TEXCOORD_0"] =
+        file.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, 5126, "VEC2", 2);  // accessor 3
+    file.primitive()["material"] = 0;
+    const std::size_t indices = file.add_view(std::vector<std::uint32_t>{1});
+    const std::size_t values = file.add_view(std::vector<float>{2, 0, 0});
+    file.document["accessors"][0]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", indices}, {"componentType", 5125}}},
+        {"values", {{"bufferView", values}}}};
+    file.document.update(Json::parse(R"({
+        "materials": [{"emissiveFactor": [0, 0, 0], "doubleSided": true, "normalTexture": {"index": 0},
+                       "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}}],
+        "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 10497, "wrapT": 10497}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1, "zfar": 2}},
+                    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 1, "zfar": 2}}],
+        "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "spot", "color": [1, 1, 1], "intensity": 1, "range": 1,
+             "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}}]}},
+        "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "a", "mesh": 0, "camera": 0, "children": [1, 2], "translation": [0, 0, 0],
+                   "rotation": [0, 0, 0, 1], "scale": [1, 1, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+                  {"camera": 1}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]})"));
+    file.add("images", {{"uri", sixteen_bit_png}});
+    return file;
+}
+
+/// One change to the document of the complete scene and what must be said about it.
+struct Defect {
+    std::string where;  ///< JSON pointer
+    std::string value;  ///< JSON text; empty: the member is removed
+    std::string fault;
+};
+
+void check(const std::vector<Defect>& defects) {
+    for (const Defect& defect : defects) {
+        CAPTURE(defect.where);
+        CAPTURE(defect.value);
+        GltfBuilder file = complete_scene();
+        const Json::json_pointer where(defect.where);
+        if (!defect.value.empty()) {
+            file.document[where] = Json::parse(defect.value);
+        } else {
+            REQUIRE(file.document.contains(where));
+            file.document[where.parent_pointer()].erase(where.back());
+        }
+        CHECK(fault_of(file) == defect.fault);
+    }
+}
+
+// Random edits of a sound file either import or say what is wrong; anything else is a crash, and the
+// sanitizers'.
+void mutate(const Bytes& sound, unsigned int seed, int rounds) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::size_t n) {
+        return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+    };
+    int refused = 0;
+    for (int round = 0; round < rounds; ++round) {
+        Bytes file = sound;
+        for (std::size_t edits = 1 + below(3); edits > 0 && !file.empty(); --edits) {
+            const auto at = file.begin() + static_cast<std::ptrdiff_t>(below(file.size()));
+            switch (below(5)) {
+                case 0:
+                    *at = static_cast<unsigned char>(*at ^ 1U << below(8));
+                    break;
+                case 1:
+                    *at = static_cast<unsigned char>(below(256));
+                    break;
+                case 2:
+                    *at = static_cast<unsigned char>('0' + below(10));
+                    break;
+                case 3:
+                    file.erase(at,
+                               at + std::min<std::ptrdiff_t>(file.end() - at, 1 + std::ptrdiff_t(below(8))));
+                    break;
+                default:
+                    file.erase(at, file.end());
+                    break;
+            }
+        }
+        refused += fault_of(file) != "imported" ? 1 : 0;
+    }
+    // Most edits hit something, but one in a number's last digit or in a name is harmless.
+    CHECK(refused > rounds / 4);
+    CHECK(refused < rounds);
+}
+
+}  // namespace
+
+TEST_SUITE("malformed glTF") {
+    TEST_CASE("the complete scene itself is sound") {
+        CHECK(fault_of(complete_scene()) == "imported");
+        CHECK(fault_of(complete_scene().glb()) == "imported");
+    }
+
+    TEST_CASE("references to what does not exist, negative ones included") {
+        check({
+            {"/nodes/0/mesh", "1", "nodes[0].mesh is 1, but there are 1 meshes"},
+            {"/nodes/0/mesh", "-1", "nodes[0].mesh is -1, but there are 1 meshes"},
+            {"/nodes/0/mesh", "\"0\"", "nodes[0].mesh is not an index"},
+            {"/nodes/0/mesh", "4294967296", "nodes[0].mesh is 4294967296, but there are 1 meshes"},
+            {"/nodes/0/camera", "2", "nodes[0].camera is 2, but there are 2 cameras"},
+            {"/nodes/0/children/1", "3", "nodes[0].children[1] is 3, but there are 3 nodes"},
+            {"/nodes/0/extensions/KHR_lights_punctual/light", "-2",
+             "nodes[0].extensions.KHR_lights_punctual.light is -2, but there are 1 lights"},
+            {"/scenes/0/nodes/0", "9", "scenes[0].nodes[0] is 9, but there are 3 nodes"},
+            {"/scene", "1", "scene is 1, but there are 1 scenes"},
+            {"/meshes/0/primitives/0/material", "5",
+             "meshes[0].primitives[0].material is 5, but there are 1 materials"},
+            {"/meshes/0/primitives/0/indices", "99",
+             "meshes[0].primitives[0].indices is 99, but there are 4 accessors"},
+            {"/meshes/0/primitives/0/attributes/NORMAL", "4",
+             "meshes[0].primitives[0].attributes.NORMAL is 4, but there are 4 accessors"},
+            {"/materials/0/pbrMetallicRoughness/baseColorTexture/index", "1",
+             "materials[0].pbrMetallicRoughness.baseColorTexture.index is 1, but there are 1 textures"},
+            {"/materials/0/normalTexture/index", "-1",
+             "materials[0].normalTexture.index is -1, but there are 1 textures"},
+            {"/textures/0/source", "1", "textures[0].source is 1, but there are 1 images"},
+            {"/textures/0/sampler", "1", "textures[0].sampler is 1, but there are 1 samplers"},
+            {"/accessors/2/bufferView", "6", "accessors[2].bufferView is 6, but there are 6 buffer views"},
+            {"/accessors/0/sparse/indices/bufferView", "6",
+             "accessors[0].sparse.indices.bufferView is 6, but there are 6 buffer views"},
+            {"/accessors/0/sparse/values/bufferView", "-1",
+             "accessors[0].sparse.values.bufferView is -1, but there are 6 buffer views"},
+            {"/bufferViews/1/buffer", "1", "bufferViews[1].buffer is 1, but there are 1 buffers"},
+        });
+    }
+
+    TEST_CASE("accessors and buffer views that do not fit") {
+        check({
+            {"/accessors/1/byteOffset", "2", "mesh 0: accessor 1 reads past the end of buffer view 1"},
+            {"/accessors/1/count", "4", "mesh 0: accessor 1 reads past the end of buffer view 1"},
+            {"/accessors/0/count", "4000000000", "mesh 0: accessor 0 reads past the end of buffer view 0"},
+            {"/accessors/0/count", "18446744073709551615",
+             "accessors[0].count is 18446744073709551615, which is out of range"},
+            {"/accessors/0/count", "0", "accessors[0].count is 0, which is out of range"},
+            {"/accessors/0/byteOffset", "9223372036854775807",
+             "mesh 0: accessor 0 reads past the end of buffer view 0"},
+            {"/accessors/1/byteOffset", "-2", "accessors[1].byteOffset is -2, which is out of range"},
+            {"/bufferViews/0/byteLength", "9223372036854775807",
+             "mesh 0: buffer view 0 reads past the end of buffer 0"},
+            {"/bufferViews/0/byteOffset", "9223372036854775807",
+             "mesh 0: buffer view 0 reads past the end of buffer 0"},
+            {"/bufferViews/0/byteOffset", "1",
+             "mesh 0: accessor 0 is not aligned to its components of 4 bytes"},
+            {"/bufferViews/0/byteStride", "8",
+             "mesh 0: accessor 0 has elements of 12 bytes, more than the stride of 8 of buffer view 0"},
+            {"/bufferViews/0/byteStride", "13", "bufferViews[0].byteStride is 13, not a multiple of 4"},
+            {"/bufferViews/0/byteStride", "256", "bufferViews[0].byteStride is 256, which is out of range"},
+            {"/bufferViews/0/byteStride", "16", "mesh 0: accessor 0 reads past the end of buffer view 0"},
+            {"/bufferViews/0/byteLength", "", "bufferViews[0] has no \"byteLength\""},
+            {"/accessors/0/count", "", "accessors[0] has no \"count\""},
+            {"/accessors/0/sparse/count", "2",
+             "mesh 0: accessor 0 (its sparse indices) reads past the end of buffer view 4"},
+            {"/accessors/0/sparse/count", "-1", "accessors[0].sparse.count is -1, which is out of range"},
+            {"/accessors/0/sparse/values/byteOffset", "4",
+             "mesh 0: accessor 0 (its sparse values) reads past the end of buffer view 5"},
+            {"/accessors/0/sparse/indices/componentType", "5126",
+             "mesh 0: accessor 0 has sparse indices that are not unsigned integers"},
+            {"/accessors/0/sparse/indices/bufferView", "5",
+             "mesh 0: accessor 0 has a sparse index"
+             " 1073741824, but 3 elements"},
+        });
+    }
+
+    TEST_CASE("a huge accessor of zeros is not allocated") {
+        GltfBuilder file = complete_scene();
+        file.document["accessors"][0].erase("bufferView");
+        file.document["accessors"][0]["count"] = 4'000'000'000;
+        CHECK(fault_of(file) == fmt::format("mesh 0: accessor 0 has no buffer view but 4000000000 elements, "
+                                            "more than the {} bytes of data",
+                                            file.data.size()));
+    }
+
+    TEST_CASE("types that geometry cannot have") {
+        check({
+            {"/accessors/0/type", "\"VEC2\"",
+             "mesh 0: accessor 0 holds positions or normals, but is not VEC3 of FLOAT"},
+            {"/accessors/2/componentType", "5120",
+             "mesh 0: accessor 2 holds positions or normals, but is not VEC3 of FLOAT"},
+            {"/accessors/1/componentType", "5126",
+             "mesh 0: accessor 1 holds indices, but is not SCALAR of an unsigned integer"},
+            {"/accessors/1/type", "\"VEC3\"",
+             "mesh 0: accessor 1 holds indices, but is not SCALAR of an unsigned integer"},
+            {"/accessors/3/componentType", "5123",
+             "mesh 0: accessor 3 holds texture coordinates, but is not VEC2 of FLOAT or of normalised "
+             "UNSIGNED_BYTE "
+             "or UNSIGNED_SHORT"},
+            {"/accessors/3/type", "\"SCALAR\"",
+             "mesh 0: accessor 3 holds texture coordinates, but is not VEC2 of FLOAT or of normalised "
+             "UNSIGNED_BYTE "
+             "or UNSIGNED_SHORT"},
+            {"/accessors/3/count", "2", "mesh 0: it has 3 positions, but 2 texture coordinates"},
+            {"/accessors/2/count", "1", "mesh 0: it has 3 positions, but 1 normals"},
+            {"/accessors/1/count", "2",
+             "mesh 0: it has 2 indices or vertices, which make no whole number of triangles"},
+            {"/meshes/0/primitives/0/mode", "7", "meshes[0].primitives[0].mode is 7, which is out of range"},
+            {"/meshes/0/primitives/0/attributes", "", "meshes[0].primitives[0] has no \"attributes\""},
+            {"/meshes/0/primitives", "{}", "meshes[0].primitives is not an array"},
+            {"/accessors/0/componentType", "7", "Invalid `componentType` in accessor. Got 7"},
+            {"/accessors/0/type", "\"VEC5\"", "Unsupported `type` for accessor object. Got \"VEC5\""},
+        });
+    }
+
+    TEST_CASE("an index beyond the vertices") {
+        GltfBuilder file = right_triangle();
+        file.primitive()["indices"] = file.add_indices({0, 1, 3});
+        CHECK(fault_of(file) == "mesh 0: accessor 1 has index 3, but there are 3 vertices");
+    }
+
+    TEST_CASE("four vertices without indices") {
+        GltfBuilder file;
+        file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+        CHECK(fault_of(file) ==
+              "mesh 0: it has 4 indices or vertices, which make no whole number of triangles");
+    }
+
+    TEST_CASE("NaN and infinity") {
+        for (const float bad :
+             {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+              -std::numeric_limits<float>::infinity()}) {
+            GltfBuilder positions;
+            positions.add_primitive({0, 0, 0, 1, bad, 0, 0, 1, 0});
+            CHECK(fault_of(positions) == "mesh 0: accessor 0 has a NaN or infinity in element 1");
+
+            GltfBuilder normals = right_triangle();
+            normals.primitive()["attributes"]["NORMAL"] = normals.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, bad});
+            CHECK(fault_of(normals) == "mesh 0: accessor 1 has a NaN or infinity in element 2");
+
+            GltfBuilder coordinates = right_triangle();
+            coordinates.primitive()["attributes"]["TEXCOORD_0"] =
+                coordinates.add_accessor(std::vector<float>{bad, 0, 0, 0, 0, 0}, 5126, "VEC2", 2);
+            CHECK(fault_of(coordinates) == "mesh 0: accessor 1 has a NaN or infinity in element 0");
+        }
+        check({
+            {"/nodes/0/translation/1", "1e39",
+             "nodes[0].translation holds a member that is 1e+39, which is out of range"},
+            {"/nodes/2/matrix/0", "-1e300",
+             "nodes[2].matrix holds a member that is -1e+300, which is out of range"},
+            {"/nodes/2/matrix", "[3e38,3e38,0,0, -3e38,3e38,0,0, 0,0,1,0, 0,0,0,1]",
+             "node 2: its transform overflows"},
+        });
+        const std::string text = R"({"asset": {"version": "2.0"}, "nodes": [{"scale": [1, 1e999, 1]}]})";
+        CHECK(fault_of(to_bytes(text)).starts_with("invalid JSON: number overflow"));
+    }
+
+    TEST_CASE("transforms") {
+        check({
+            {"/nodes/0/translation", "[1, 2]", "nodes[0].translation is not 3 numbers"},
+            {"/nodes/0/rotation", "[0, 0, 1]", "nodes[0].rotation is not 4 numbers"},
+            {"/nodes/0/rotation", "[0, 0, 0, 0]", "node 0: its rotation is zero"},
+            {"/nodes/0/scale", "\"big\"", "nodes[0].scale is not 3 numbers"},
+            {"/nodes/0/scale", "[1, true, 1]", "nodes[0].scale holds a member that is not a number"},
+            {"/nodes/2/matrix", "[1, 2, 3]", "nodes[2].matrix is not 16 numbers"},
+            {"/nodes/2/matrix/3", "1", "node 2: its matrix does not end in a row of 0 0 0 1"},
+            {"/nodes/0/scale", "[0, 0, 0]", "imported"},
+            {"/nodes/2/matrix", "[0,0,0,0, 0,0,0,0, 0,0,0,0, 0,0,0,1]", "imported"},
+        });
+    }
+
+    TEST_CASE("hierarchies that are no trees") {
+        check({
+            {"/nodes/1/children", "[2]", "node 2 has two parents, nodes 0 and 1"},
+            {"/nodes/0/children", "[1, 1]", "node 1 has two parents, nodes 0 and 0"},
+            {"/nodes/0/children", "[0]", "node 0 is its own ancestor or has one that is"},
+            {"/nodes/1/children", "[0]", "node 0 is its own ancestor or has one that is"},
+            {"/scenes/0/nodes", "[1]", "node 1 is a root of the scene but has a parent"},
+            {"/scenes/0/nodes", "[0, 0]", "node 0 is a root of the scene twice"},
+            {"/scenes", "", "scene is 0, but there are 0 scenes"},
+            {"/scenes", "{}", "scenes is not an array"},
+            {"/nodes", "[1]", "nodes[0] is not an object"},
+        });
+        GltfBuilder file = complete_scene();
+        file.document.erase("scene");
+        file.document.erase("scenes");
+        CHECK(fault_of(file) == "it has no scene");
+    }
+
+    TEST_CASE("lights and cameras out of their limits") {
+        check({
+            {"/extensions/KHR_lights_punctual/lights/0/intensity", "-1",
+             "extensions.KHR_lights_punctual.lights[0].intensity is -1, which is out of range"},
+            {"/extensions/KHR_lights_punctual/lights/0/range", "0",
+             "extensions.KHR_lights_punctual.lights[0].range is 0, which is out of range"},
+            {"/extensions/KHR_lights_punctual/lights/0/color", "[1, 1]",
+             "extensions.KHR_lights_punctual.lights[0].color is not 3 numbers"},
+            {"/extensions/KHR_lights_punctual/lights/0/color/0", "2",
+             "extensions.KHR_lights_punctual.lights[0].color holds a member that is 2, which is out of "
+             "range"},
+            {"/extensions/KHR_lights_punctual/lights/0/spot/innerConeAngle", "0.2",
+             "light 0: its inner cone of 0.2 is not inside its outer cone of 0.2"},
+            {"/extensions/KHR_lights_punctual/lights/0/spot/outerConeAngle", "2",
+             "extensions.KHR_lights_punctual.lights[0].spot.outerConeAngle is 2, which is out of range"},
+            {"/extensions/KHR_lights_punctual/lights/0/spot", "", "Spot light description not found"},
+            {"/extensions/KHR_lights_punctual/lights/0/type", "\"lava\"",
+             "light 0 has the unknown type \"lava\""},
+            {"/extensions/KHR_lights_punctual/lights", "7",
+             "extensions.KHR_lights_punctual.lights is not an array"},
+            {"/cameras/0/perspective/yfov", "0", "cameras[0].perspective.yfov is 0, which is out of range"},
+            {"/cameras/0/perspective/yfov", "3.2",
+             "cameras[0].perspective.yfov is 3.2, which is out of range"},
+            {"/cameras/0/perspective/znear", "0", "cameras[0].perspective.znear is 0, which is out of range"},
+            {"/cameras/0/perspective/zfar", "0.5", "camera 0: its zfar of 0.5 is not beyond its znear of 1"},
+            {"/cameras/0/perspective", "", "Perspective camera description not found"},
+            {"/cameras/1/orthographic/ymag", "0", "cameras[1].orthographic.ymag is 0, which is out of range"},
+            {"/cameras/1/orthographic/zfar", "1", "camera 1: its zfar of 1 is not beyond its znear of 1"},
+            {"/cameras/1/orthographic/zfar", "", "cameras[1].orthographic has no \"zfar\""},
+        });
+    }
+
+    TEST_CASE("materials and images") {
+        check({
+            {"/materials/0/pbrMetallicRoughness/baseColorFactor", "[1, 1, 1]",
+             "materials[0].pbrMetallicRoughness.baseColorFactor is not 4 numbers"},
+            {"/materials/0/pbrMetallicRoughness/baseColorFactor/2", "1.5",
+             "materials[0].pbrMetallicRoughness.baseColorFactor holds a member that is 1.5, which is out of "
+             "range"},
+            {"/materials/0/doubleSided", "1", "materials[0].doubleSided is not true or false"},
+            {"/samplers/0/wrapS", "1", "sampler 0 has the unknown wrapping mode 1"},
+            {"/images/0", "{}", "image 0 needs either a \"uri\" or a \"bufferView\""},
+            {"/images/0/bufferView", "0", "image 0 needs either a \"uri\" or a \"bufferView\""},
+            {"/images/0/uri", "\"nowhere.png\"", "image 0: nowhere.png does not exist"},
+            {"/images/0/uri", "\"data:image/png;base64,\"",
+             "image 0: the data URI data:image/png;base64,... is empty or of an unknown kind"},
+            {"/images/0/uri", "\"data:image/png;base64,AAAA\"", "image 0: it is neither PNG nor JPEG"},
+            {"/images/0/uri", "\"data:image/png;base64,iVBORw0KGgo=\"", "image 0: it cannot be decoded"},
+            {"/images/0/uri",
+             "\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mP4/7+B\"",
+             "image 0: it cannot be decoded"},
+            {"/images/0", "{\"bufferView\": 0}", "image 0: it is neither PNG nor JPEG"},
+        });
+    }
+
+    TEST_CASE("a picture that promises more pixels than its bytes can hold is not allocated") {
+        const Bytes png{0x89, 'P', 'N',  'G', 13, 10,   26, 10, 0, 0, 0, 13, 'I',
+                        'H',  'D', 'R',  0,   0,  0x40, 0,  //
+                        0,    0,   0x40, 0,   8,  6,    0,  0,  0, 0, 0, 0,  0};
+        GltfBuilder file = complete_scene();
+        file.document["images"][0]["uri"] = "data:image/png;base64," + base64(png);
+        CHECK(fault_of(file) == "image 0: its 33 bytes cannot hold 16384 x 16384 pixels");
+    }
+
+    TEST_CASE("buffers") {
+        GltfBuilder file = right_triangle();
+        const auto with_buffer = [&](const Json& buffer) {
+            file.document["buffers"] = Json::array();
+            file.document["buffers"].push_back(buffer);
+            return fault_of(to_bytes(file.document.dump()));
+        };
+        CHECK(with_buffer({{"byteLength", 36}, {"uri", "nowhere.bin"}}) ==
+              "buffer 0: nowhere.bin does not exist");
+        CHECK(with_buffer({{"byteLength", 36}, {"uri", "/"}}) == "buffer 0: / is not a file");
+        CHECK(with_buffer({{"byteLength", 36}, {"uri", "/dev/zero"}}) == "buffer 0: /dev/zero is not a file");
+        CHECK(with_buffer({{"byteLength", 36}}) == "buffer 0: it has neither a \"uri\" nor a binary chunk");
+        CHECK(with_buffer({{"byteLength", 37},
+                           {"uri", "data:application/octet-stream;base64," + base64(file.data)}}) ==
+              "buffer 0: it has 36 of the 37 bytes it declares");
+        CHECK(with_buffer({{"byteLength", 4e18}, {"uri", "nowhere.bin"}}) ==
+              "buffers[0].byteLength is not a whole number");
+        CHECK(with_buffer({{"byteLength", -1}, {"uri", "nowhere.bin"}}) ==
+              "buffers[0].byteLength is -1, which is out of range");
+        CHECK(with_buffer({{"uri", "nowhere.bin"}}) == "buffers[0] has no \"byteLength\"");
+        CHECK(with_buffer({{"byteLength", 3}, {"uri", "data:text/html,abc"}}) ==
+              "buffer 0: the data URI data:text/html,abc... is empty or of an unknown kind");
+    }
+
+    TEST_CASE("versions and extensions") {
+        check({
+            {"/asset", "", "it has no \"asset\", so it is not glTF 2.0"},
+            {"/asset/version", "", "asset has no \"version\""},
+            {"/asset/version", "\"1.0\"", "asset.version is \"1.0\"; only 2.0 is read"},
+            {"/extensionsRequired", "[\"KHR_lights_punctual\", \"KHR_draco_mesh_compression\"]",
+             "it requires the extension KHR_draco_mesh_compression, which is not supported"},
+            {"/extensionsUsed", "[3]", "extensionsUsed[0] is not a string"},
+        });
+    }
+
+    TEST_CASE("what is no glTF at all") {
+        CHECK(fault_of(Bytes{}) == "the file is empty");
+        CHECK(fault_of(to_bytes("{")).starts_with("invalid JSON: parse error"));
+        CHECK(fault_of(to_bytes("gl")).starts_with("invalid JSON: parse error"));
+        CHECK(fault_of(to_bytes("[]")) == "the document is not a JSON object");
+        CHECK(fault_of(to_bytes("null")) == "the document is not a JSON object");
+        CHECK(fault_of(to_bytes("{\"asset\": \"\xFF\"}")).starts_with("invalid JSON: parse error"));
+        CHECK(fault_of(to_bytes("{\"extras\": " + std::string(1'000'000, '['))) ==
+              "its JSON is nested too deeply");
+    }
+
+    TEST_CASE("files that cannot be opened") {
+        World world;
+        CHECK_THROWS_WITH_AS((void)import_gltf("nowhere/at all.gltf", world),
+                             "nowhere/at all.gltf: the file does not exist", SceneError);
+        CHECK_THROWS_WITH_AS((void)import_gltf("/", world), "/: the file is not a file", SceneError);
+    }
+
+    TEST_CASE("a .glb cut off anywhere, and with wrong headers") {
+        const Bytes whole = complete_scene().glb();
+        for (std::size_t size = 0; size < whole.size(); ++size) {
+            CAPTURE(size);
+            CHECK(fault_of(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))) !=
+                  "imported");
+        }
+        const auto with_u32 = [&](std::size_t offset, std::uint32_t value) {
+            Bytes changed = whole;
+            std::memcpy(changed.data() + offset, &value, 4);
+            return fault_of(changed);
+        };
+        const std::size_t binary = 20 + (whole[12] | whole[13] << 8);
+        CHECK(with_u32(4, 1) == "the .glb has version 1; only 2 is read");
+        CHECK(with_u32(8, 8) ==
+              "the .glb says it has 8 bytes, but " + std::to_string(whole.size()) + " are there");
+        CHECK(with_u32(12, 0xFFFFFFFF) == "the .glb ends inside a chunk");
+        CHECK(with_u32(16, 0) == "the .glb lacks its JSON chunk");
+        CHECK(with_u32(binary, 0xFFFFFFFF) == "the .glb ends inside a chunk");
+        CHECK(with_u32(binary, 8) == "buffer 0: it has 8 of the " +
+                                         std::to_string(complete_scene().data.size()) + " bytes it declares");
+        CHECK(with_u32(binary + 4, 0) == "the .glb lacks its BIN chunk");
+    }
+
+    TEST_CASE("a file's own strings do not break the message's one line") {
+        GltfBuilder file = complete_scene();
+        file.document["extensionsRequired"] = {"EXT_\n\r\x7F" + std::string(10'000, 'x')};
+        CHECK(fault_of(file).starts_with("it requires the extension EXT_"));
+    }
+}
+
+TEST_SUITE("mutated glTF") {
+    TEST_CASE("the Cornell box") {
+        mutate(read(cornell), 1, 1500);
+    }
+    TEST_CASE("everything at once, as text") {
+        mutate(complete_scene().gltf(), 2, 1500);
+    }
+    TEST_CASE("everything at once, as binary") {
+        mutate(complete_scene().glb(), 3, 3000);
+    }
+}

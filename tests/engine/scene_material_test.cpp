@@ -1,0 +1,155 @@
+#include <doctest/doctest.h>
+#include <stb/stb_image_write.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/engine/gltf_builder.hpp"
+
+using namespace candela;
+using namespace candela::test;
+
+namespace {
+
+using Texels = std::vector<glm::u8vec4>;
+
+const Texels four_colours{{255, 0, 0, 255}, {0, 255, 0, 128}, {0, 0, 255, 0}, {10, 20, 30, 40}};
+
+void append(void* bytes, void* data, int size) {
+    const auto* first = static_cast<unsigned char*>(data);
+    static_cast<Bytes*>(bytes)->insert(static_cast<Bytes*>(bytes)->end(), first, first + size);
+}
+
+Bytes png(const Texels& texels, int width, int height) {
+    Bytes bytes;
+    stbi_write_png_to_func(append, &bytes, width, height, 4, texels.data(), width * 4);
+    return bytes;
+}
+
+/// 8 × 8 pixels of one colour.
+Bytes jpeg(const glm::u8vec4& colour) {
+    Bytes bytes;
+    const Texels texels(64, colour);
+    stbi_write_jpg_to_func(append, &bytes, 8, 8, 4, texels.data(), 100);
+    return bytes;
+}
+
+/// A triangle whose material's base colour is texture 0, of image 0.
+GltfBuilder textured(const Json& image) {
+    GltfBuilder file = right_triangle();
+    file.primitive()["material"] = 0;
+    file.document["materials"] =
+        Json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])");
+    file.document["textures"] = Json::parse(R"([{"source": 0}])");
+    file.add("images", image);
+    return file;
+}
+
+Json data_uri(const Bytes& image) {
+    return {{"uri", "data:image/png;base64," + base64(image)}};
+}
+
+const Image& texture_of(const Imported& imported) {
+    return *imported.primitive().material->base_colour_texture;
+}
+
+}  // namespace
+
+TEST_SUITE("glTF materials") {
+    TEST_CASE("factors, sidedness and name") {
+        GltfBuilder file = right_triangle();
+        file.primitive()["material"] = 0;
+        file.document["materials"] = Json::parse(R"([{"name": "paint", "doubleSided": true,
+            "emissiveFactor": [1, 0.5, 0.25], "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4]}}])");
+        const Imported imported(file);
+        const Material& material = *imported.primitive().material;
+        CHECK(material.name == "paint");
+        CHECK(material.base_colour == glm::vec4(0.1F, 0.2F, 0.3F, 0.4F));
+        CHECK(material.emissive == glm::vec3(1.0F, 0.5F, 0.25F));
+        CHECK(material.double_sided);
+        CHECK(material.base_colour_texture == nullptr);
+        CHECK(imported.report.warnings.empty());
+    }
+
+    TEST_CASE("an image in a data URI, in a buffer view, in a file with an awkward name") {
+        const Bytes image = png(four_colours, 2, 2);
+        const TemporaryDirectory directory;
+        GltfBuilder file = textured(data_uri(image));
+        SUBCASE("data URI") {}
+        SUBCASE("buffer view") {
+            file.document["images"][0] = {{"bufferView", file.add_view(image)}, {"mimeType", "image/png"}};
+        }
+        SUBCASE("file") {
+            write_file(directory / "four colours+50%.png", image);
+            file.document["images"][0] = {{"uri", "four%20colours+50%25.png"}};
+        }
+        write_file(directory / "scene.gltf", file.gltf());
+        const Imported imported(file.gltf(), directory / "");
+        CHECK(texture_of(imported).width == 2);
+        CHECK(texture_of(imported).height == 2);
+        CHECK(texture_of(imported).texels == four_colours);
+        CHECK(texture_of(imported).wrap_u == Wrap::repeat);
+    }
+
+    TEST_CASE("a JPEG") {
+        const Imported imported(textured(data_uri(jpeg({200, 100, 50, 255}))));
+        REQUIRE(texture_of(imported).texels.size() == 64);
+        for (const glm::u8vec4& texel : texture_of(imported).texels) {
+            // At quality 100 a constant block loses a rounding in each of three conversions.
+            for (int i = 0; i < 4; ++i) {
+                CHECK(std::abs(texel[i] - glm::u8vec4(200, 100, 50, 255)[i]) <= 3);
+            }
+        }
+    }
+
+    TEST_CASE("sixteen bits a channel become eight") {
+        const Imported imported(textured({{"uri", sixteen_bit_png}}));
+        CHECK(texture_of(imported).texels == Texels{{0xFF, 0x80, 0x00, 0xFF}, {0x12, 0x00, 0xAB, 0xFF}});
+    }
+
+    TEST_CASE("textures share an image where image and wrapping agree") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        file.document["samplers"] = Json::parse(R"([{"wrapS": 33071, "wrapT": 33648}, {}])");
+        file.document["textures"] =
+            Json::parse(R"([{"source": 0, "sampler": 0}, {"source": 0, "sampler": 1}, {"source": 0}])");
+        for (const int texture : {1, 2}) {
+            file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0})["material"] = file.add(
+                "materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
+        }
+        const Imported imported(file);
+        const auto image = [&](std::size_t i) {
+            return imported.mesh().primitives[i].material->base_colour_texture;
+        };
+        CHECK(image(0)->wrap_u == Wrap::clamp_to_edge);
+        CHECK(image(0)->wrap_v == Wrap::mirrored_repeat);
+        CHECK(image(1)->wrap_u == Wrap::repeat);
+        CHECK(image(0) != image(1));
+        CHECK(image(1) == image(2));
+    }
+
+    TEST_CASE("what is not supported is reported") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        SUBCASE("a second set of texture coordinates") {
+            file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
+            CHECK(Imported(file).report.warnings ==
+                  std::vector<std::string>{
+                      "material 0: its texture uses coordinate set 1; only set 0 is read; ignored"});
+        }
+        SUBCASE("a texture whose image is an extension's") {
+            file.document["textures"][0].erase("source");
+            CHECK(Imported(file).report.warnings ==
+                  std::vector<std::string>{"material 0: its texture has no PNG or JPEG image; ignored"});
+        }
+        SUBCASE("transparency") {
+            file.document["materials"][0]["alphaMode"] = "BLEND";
+            CHECK(Imported(file).report.warnings ==
+                  std::vector<std::string>{"material 0: alpha mode BLEND is not supported; it is opaque"});
+        }
+    }
+
+    TEST_CASE("an image that no base colour uses is not loaded") {
+        GltfBuilder file = textured({{"uri", "nowhere.png"}});
+        file.document["materials"][0] = Json::parse(R"({"normalTexture": {"index": 0}})");
+        CHECK(Imported(file).report.triangles == 1);
+    }
+}

@@ -1,0 +1,40 @@
+#include "tests/renderer/context_fixture.hpp"
+
+#include <doctest/doctest.h>
+
+namespace candela {
+namespace {
+
+ContextKind& tested_kind() {
+    static ContextKind kind = ContextKind::egl;
+    return kind;
+}
+
+}  // namespace
+
+ContextKind tested_context() {
+    return tested_kind();
+}
+
+void set_tested_context(ContextKind kind) {
+    tested_kind() = kind;
+}
+
+std::unique_ptr<HeadlessContext> make_current_context() {
+    auto context = HeadlessContext::create(tested_context(), {.debug = true});
+    context->make_current();
+    return context;
+}
+
+GlFixture::GlFixture() : context(make_current_context()), device(context->get_proc()) {}
+
+GlFixture::~GlFixture() {
+    context->make_current();
+    for (const gl::DebugMessage& message : device.take_messages()) {
+        INFO(message.text);
+        CHECK_FALSE(message.is_fault());
+    }
+    CHECK(device.live() == gl::ObjectCounts{});
+}
+
+}  // namespace candela

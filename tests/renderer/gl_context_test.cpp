@@ -1,0 +1,114 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderer/context/library.hpp"
+#include "renderer/gl/objects.hpp"
+#include "tests/renderer/context_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+/// A context and what lives in it.
+struct Place {
+    explicit Place(ContextKind kind, std::uint32_t mark) : context(HeadlessContext::create(kind)) {
+        context->make_current();
+        device = std::make_unique<gl::Device>(context->get_proc());
+        buffer = gl::Buffer(*device, "mark", std::array{mark});
+    }
+    ~Place() {
+        context->make_current();
+        buffer = {};
+        device.reset();
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    std::unique_ptr<HeadlessContext> context;
+    std::unique_ptr<gl::Device> device;
+    gl::Buffer buffer;
+};
+
+/// Each place keeps its own objects and hears of its own errors, in whatever order they are visited.
+void check_that_places_keep_apart(const std::vector<ContextKind>& kinds) {
+    std::vector<std::unique_ptr<Place>> places;
+    places.reserve(kinds.size());
+    for (const ContextKind kind : kinds) {
+        places.push_back(std::make_unique<Place>(kind, static_cast<std::uint32_t>(places.size())));
+    }
+    for (int round = 0; round < 3; ++round) {
+        for (std::uint32_t i = 0; i < places.size(); ++i) {
+            Place& place = *places[i];
+            place.context->make_current();
+            CHECK(place.buffer.download<std::uint32_t>() == std::vector{i});
+            CHECK(place.device->take_messages().empty());
+            place.device->gl().Enable(GL_RENDERER);
+            CHECK(place.device->gl().GetError() == GL_INVALID_ENUM);
+            for (std::uint32_t other = 0; other < places.size(); ++other) {
+                CHECK(places[other]->device->take_messages().size() == (other == i ? 1 : 0));
+            }
+        }
+    }
+    for (const auto& place : places) CHECK(place->device->live()[gl::ObjectKind::buffer] == 1);
+    std::swap(places.front(), places.back());  // the end comes in another order than the beginning
+}
+
+}  // namespace
+
+TEST_SUITE("gl context") {
+    TEST_CASE("a context says what it is") {
+        const auto context = HeadlessContext::create(tested_context());
+        const std::string start = tested_context() == ContextKind::egl ? "EGL " : "OSMesa";
+        CHECK(context->description().starts_with(start));
+        CHECK(to_string(tested_context()) == (tested_context() == ContextKind::egl ? "egl" : "osmesa"));
+    }
+
+    TEST_CASE("a context is OpenGL 4.5 core") {
+        const auto context = make_current_context();
+        const gl::Device device(context->get_proc());
+        GLint profile = 0;
+        device.gl().GetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+        CHECK(profile == GL_CONTEXT_CORE_PROFILE_BIT);
+    }
+
+    TEST_CASE("two contexts of one kind keep apart") {
+        check_that_places_keep_apart({tested_context(), tested_context()});
+    }
+
+    TEST_CASE("EGL and OSMesa keep apart in one process") {
+        check_that_places_keep_apart({ContextKind::egl, ContextKind::osmesa});
+        check_that_places_keep_apart(
+            {ContextKind::egl, ContextKind::osmesa, ContextKind::egl, ContextKind::osmesa, ContextKind::egl});
+    }
+
+    TEST_CASE("a destroyed context leaves no other disturbed") {
+        Place stays(tested_context(), 7);
+        {
+            const Place goes(ContextKind::egl, 1);
+            stays.context->make_current();
+        }
+        {
+            const Place goes(ContextKind::osmesa, 2);
+            stays.context->make_current();
+        }
+        stays.context->make_current();
+        CHECK(stays.buffer.download<std::uint32_t>() == std::vector{7U});
+        CHECK(stays.device->take_messages().empty());
+    }
+
+    TEST_CASE("a library or function that is missing is named") {
+        CHECK_THROWS_WITH_AS(Library({"libnowhere.so.1", "libneither.so.2"}),
+                             doctest::Contains("libnowhere.so.1"), ContextError);
+        const Library c{"libnowhere.so.1", "libc.so.6"};
+        void (*function)() = nullptr;
+        CHECK_THROWS_WITH_AS(c.find("no_such_function", function), "the library has no no_such_function",
+                             ContextError);
+        CHECK_NOTHROW(c.find("abort", function));
+        CHECK(static_cast<bool>(function));
+    }
+}

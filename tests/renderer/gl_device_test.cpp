@@ -1,0 +1,175 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "renderer/gl/objects.hpp"
+#include "tests/renderer/context_fixture.hpp"
+
+using namespace candela;
+using gl::Device;
+
+namespace {
+
+bool holds_error(const std::vector<gl::DebugMessage>& messages) {
+    return std::any_of(messages.begin(), messages.end(),
+                       [](const gl::DebugMessage& message) { return message.type == GL_DEBUG_TYPE_ERROR; });
+}
+
+/// An invalid call, whose error flag is taken off again.
+void provoke_error(const Device& device) {
+    device.gl().Enable(GL_RENDERER);  // no capability
+    CHECK(device.gl().GetError() == GL_INVALID_ENUM);
+}
+
+std::string message_of(const gl::GetProc& get_proc) {
+    try {
+        const Device device(get_proc);
+    } catch (const gl::GlError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+// A driver that is too old.
+const GLubyte* old_string(GLenum name) {
+    return reinterpret_cast<const GLubyte*>(name == GL_RENDERER ? "Old Faithful" : "3.3 Geyser");
+}
+void old_integer(GLenum name, GLint* value) {
+    *value = name == GL_MAJOR_VERSION || name == GL_MINOR_VERSION ? 3 : 0;
+}
+void* old_proc(const char* name) {
+    if (std::strcmp(name, "glGetString") == 0) return reinterpret_cast<void*>(&old_string);
+    if (std::strcmp(name, "glGetIntegerv") == 0) return reinterpret_cast<void*>(&old_integer);
+    return nullptr;
+}
+
+const GLubyte* no_string(GLenum) {
+    return nullptr;
+}
+void* proc_without_context(const char* name) {
+    return std::strcmp(name, "glGetString") == 0 ? reinterpret_cast<void*>(&no_string) : old_proc(name);
+}
+
+/// A host's own listener.
+struct HostLog {
+    mutable int messages = 0;
+    static void APIENTRY receive(GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar*, const void* user) {
+        ++static_cast<const HostLog*>(user)->messages;
+    }
+};
+
+void* debug_user(const gl::Functions& gl) {
+    void* user = nullptr;
+    gl.GetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &user);
+    return user;
+}
+
+}  // namespace
+
+TEST_SUITE("gl device") {
+    TEST_CASE_FIXTURE(GlFixture, "a device knows its driver") {
+        CHECK_FALSE(device.renderer().empty());
+        CHECK_FALSE(device.version().empty());
+        // Minimum maxima of the OpenGL 4.5 core specification, tables 23.53 and following.
+        const gl::Limits& limits = device.limits();
+        CHECK(limits.texture_size >= 16384);
+        CHECK(limits.texture_layers >= 2048);
+        CHECK(limits.colour_attachments >= 8);
+        CHECK(limits.storage_block_bytes >= (1U << 27U));
+        CHECK(limits.uniform_block_bytes >= 16384);
+        CHECK(limits.storage_alignment <= 256);
+        CHECK(limits.uniform_alignment <= 256);
+        for (const std::uint32_t count : limits.work_groups) CHECK(count >= 65535);
+        CHECK(device.has_extension("GL_ARB_direct_state_access"));
+        CHECK_FALSE(device.has_extension("GL_ARB_direct"));
+        CHECK(device.live() == gl::ObjectCounts{});
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "a missing function is named") {
+        const auto lacking = [proc = context->get_proc()](const char* name) {
+            return std::strcmp(name, "glDispatchCompute") == 0 ? nullptr : proc(name);
+        };
+        CHECK(message_of(lacking) == "the OpenGL driver offers no function glDispatchCompute");
+        CHECK_THROWS_AS(static_cast<void>(gl::load_functions(lacking)), gl::GlError);
+    }
+
+    TEST_CASE("a driver that is too old, or no context, is refused by name") {
+        CHECK(message_of(old_proc) == "OpenGL 4.5 is needed; Old Faithful offers 3.3 Geyser");
+        CHECK(message_of(proc_without_context) == "no OpenGL context is current");
+        CHECK(message_of([](const char*) -> void* { return nullptr; }) ==
+              "the host's function look-up knows no glGetString or glGetIntegerv");
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "the debug log holds errors until they are taken") {
+        provoke_error(device);
+        provoke_error(device);
+        const auto messages = device.take_messages();
+        REQUIRE(messages.size() == 1);
+        CHECK(messages[0].type == GL_DEBUG_TYPE_ERROR);
+        CHECK(messages[0].is_fault());
+        CHECK(messages[0].times == 2);
+        CHECK(messages[0].text.find("GL_INVALID_ENUM") != std::string::npos);
+        CHECK(device.take_messages().empty());
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "what is said in passing is no fault, and notifications are not kept") {
+        const auto say = [&](GLenum type, GLuint id, GLenum severity) {
+            device.gl().DebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, type, id, severity, -1, "word");
+        };
+        say(GL_DEBUG_TYPE_PERFORMANCE, 1, GL_DEBUG_SEVERITY_MEDIUM);
+        say(GL_DEBUG_TYPE_OTHER, 2, GL_DEBUG_SEVERITY_NOTIFICATION);
+        say(GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR, 3, GL_DEBUG_SEVERITY_MEDIUM);
+        say(GL_DEBUG_TYPE_OTHER, 4, GL_DEBUG_SEVERITY_HIGH);
+        const auto messages = device.take_messages();
+        REQUIRE(messages.size() == 3);
+        CHECK_FALSE(messages[0].is_fault());
+        CHECK(messages[1].is_fault());
+        CHECK(messages[2].is_fault());
+        CHECK(messages[2].text == "word");
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "the host's own listener hears everything and is put back") {
+        HostLog host;
+        device.gl().DebugMessageCallback(&HostLog::receive, &host);
+        device.gl().Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+        {
+            Device guest(context->get_proc());
+            CHECK(device.gl().IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS) == GL_TRUE);
+            provoke_error(guest);
+            CHECK(host.messages == 1);
+            CHECK(holds_error(guest.take_messages()));
+        }
+        CHECK(debug_user(device.gl()) == &host);
+        CHECK(device.gl().IsEnabled(GL_DEBUG_OUTPUT) == GL_TRUE);
+        CHECK(device.gl().IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS) == GL_FALSE);
+        provoke_error(device);
+        CHECK(host.messages == 2);
+        device.gl().DebugMessageCallback(nullptr, nullptr);
+    }
+
+    TEST_CASE("devices of one context may end in any order") {
+        const auto context = make_current_context();
+        const gl::Functions gl = gl::load_functions(context->get_proc());
+        HostLog host;
+        gl.DebugMessageCallback(&HostLog::receive, &host);
+        gl.Enable(GL_DEBUG_OUTPUT);
+        gl.Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+
+        std::optional<Device> first(std::in_place, context->get_proc());
+        std::optional<Device> second(std::in_place, context->get_proc());
+        std::optional<Device> third(std::in_place, context->get_proc());
+        second.reset();
+        provoke_error(*third);
+        CHECK(holds_error(first->take_messages()));
+        first.reset();
+        provoke_error(*third);
+        CHECK(third->take_messages().at(0).times == 2);
+        CHECK(host.messages == 2);
+        third.reset();
+        CHECK(debug_user(gl) == &host);
+        CHECK(gl.IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS) == GL_FALSE);
+    }
+}

@@ -1,0 +1,128 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <vector>
+
+#include "renderer/gl/graph_backend.hpp"
+#include "tests/renderer/context_fixture.hpp"
+
+using namespace candela;
+using namespace candela::gl;
+
+namespace {
+
+GLint get(const Device& device, GLenum name) {
+    GLint value = 0;
+    device.gl().GetIntegerv(name, &value);
+    return value;
+}
+
+/// Runs a pass that clears its first colour attachment to `value`.
+void clear_pass(const Device& device, GraphBackend& backend, const PassTargets& targets, float value) {
+    const std::array colour = {value, value, value, value};
+    backend.begin_pass("clear", 0, &targets);
+    device.gl().ClearBufferfv(GL_COLOR, 0, colour.data());
+    backend.end_pass();
+}
+
+}  // namespace
+
+TEST_SUITE("gl graph backend") {
+    TEST_CASE_FIXTURE(GlFixture, "resources get objects of their description, and give them back") {
+        GraphBackend backend(device);
+        const ObjectId texture =
+            backend.create_texture("picture", {.size = {8, 4}, .format = Format::rgba16f});
+        const ObjectId buffer = backend.create_buffer("list", {.count = 10, .stride = 12});
+        CHECK(backend.texture(texture).desc() == TextureDesc{.size = {8, 4}, .format = Format::rgba16f});
+        CHECK(backend.texture(texture).name() == texture);
+        CHECK(backend.buffer(buffer).bytes() == 120);
+        CHECK(device.live()[ObjectKind::texture] == 1);
+        CHECK(device.live()[ObjectKind::buffer] == 1);
+        backend.destroy_texture(texture);
+        backend.destroy_buffer(buffer);
+        CHECK(device.live() == ObjectCounts{});
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "a pass draws into its targets, from a known state") {
+        GraphBackend backend(device);
+        const std::array colours = {backend.create_texture("a", {.size = {4, 2}, .format = Format::r32f}),
+                                    backend.create_texture("b", {.size = {4, 2}, .format = Format::r32f})};
+        const ObjectId depth = backend.create_texture("depth", {.size = {4, 2}, .format = Format::depth32f});
+        device.gl().Enable(GL_DEPTH_TEST);
+        device.gl().Enable(GL_BLEND);
+        device.gl().DepthMask(GL_FALSE);
+
+        const PassTargets targets{.colour = colours, .depth = depth, .size = {4, 2}};
+        backend.begin_pass("pass", 3, &targets);
+        CHECK(device.gl().IsEnabled(GL_DEPTH_TEST) == GL_FALSE);
+        CHECK(device.gl().IsEnabled(GL_BLEND) == GL_FALSE);
+        std::array<GLint, 4> viewport{};
+        device.gl().GetIntegerv(GL_VIEWPORT, viewport.data());
+        CHECK(viewport == std::array{0, 0, 4, 2});
+        for (GLint i = 0; i < 2; ++i) {
+            const std::array value = {static_cast<float>(i + 1), 0.0F, 0.0F, 0.0F};
+            device.gl().ClearBufferfv(GL_COLOR, i, value.data());
+        }
+        const float middle = 0.5F;
+        device.gl().ClearBufferfv(GL_DEPTH, 0, &middle);
+        backend.end_pass();
+
+        CHECK(backend.texture(colours[0]).read_floats() == std::vector<float>(8, 1.0F));
+        CHECK(backend.texture(colours[1]).read_floats() == std::vector<float>(8, 2.0F));
+        CHECK(backend.texture(depth).read_floats() == std::vector<float>(8, 0.5F));
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "framebuffers are made once, and go with their attachments") {
+        GraphBackend backend(device);
+        const TextureDesc desc{.size = {4, 4}, .format = Format::r32f};
+        std::array target = {backend.create_texture("target", desc)};
+        for (int frame = 0; frame < 5; ++frame) {
+            clear_pass(device, backend, {.colour = target, .size = {4, 4}}, 1.0F);
+        }
+        CHECK(device.live()[ObjectKind::framebuffer] == 1);
+        backend.destroy_texture(target[0]);
+        CHECK(device.live()[ObjectKind::framebuffer] == 0);
+
+        // A driver gives the freed name out again: the framebuffer of the old texture must not stand in its
+        // way.
+        target = {backend.create_texture("next", desc)};
+        clear_pass(device, backend, {.colour = target, .size = {4, 4}}, 2.0F);
+        CHECK(backend.texture(target[0]).read_floats() == std::vector<float>(16, 2.0F));
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "passes are debug groups, and timed within frames") {
+        GraphBackend backend(device);
+        const GLint outside = get(device, GL_DEBUG_GROUP_STACK_DEPTH);
+        backend.begin_pass("untimed", 0, nullptr);
+        CHECK(get(device, GL_DEBUG_GROUP_STACK_DEPTH) == outside + 1);
+        backend.end_pass();
+        CHECK(get(device, GL_DEBUG_GROUP_STACK_DEPTH) == outside);
+
+        backend.timer().begin_frame(9);
+        backend.begin_pass("timed", 5, nullptr);
+        backend.end_pass();
+        backend.timer().end_frame();
+        const auto times = backend.timer().finish();
+        REQUIRE(times.size() == 1);
+        CHECK(times[0].frame == 9);
+        REQUIRE(times[0].passes.size() == 1);
+        CHECK(times[0].passes[0].pass == 5);
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "barriers are the GL's, bit for bit") {
+        CHECK(barrier_bits(Barrier::none) == 0);
+        CHECK(barrier_bits(Barrier::storage | Barrier::command) ==
+              (GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT));
+        CHECK(barrier_bits(Barrier::vertex_attrib) == GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::element) == GL_ELEMENT_ARRAY_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::uniform) == GL_UNIFORM_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::texture_fetch) == GL_TEXTURE_FETCH_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::image_access) == GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::texture_update) == GL_TEXTURE_UPDATE_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::buffer_update) == GL_BUFFER_UPDATE_BARRIER_BIT);
+        CHECK(barrier_bits(Barrier::framebuffer) == GL_FRAMEBUFFER_BARRIER_BIT);
+        GraphBackend backend(device);
+        backend.barrier(Barrier::storage | Barrier::texture_fetch);
+        CHECK(device.gl().GetError() == GL_NO_ERROR);
+    }
+}

@@ -1,0 +1,238 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <glm/gtc/matrix_transform.hpp>
+#include <string>
+#include <vector>
+
+#include "renderer/gl/program.hpp"
+#include "renderer/gl/texture.hpp"
+#include "tests/renderer/context_fixture.hpp"
+
+using namespace candela;
+using namespace candela::gl;
+
+namespace {
+
+std::string text_of(const std::vector<EmbeddedShader>& files, std::string_view name,
+                    const std::vector<Define>& defines = {}) {
+    return assemble(ShaderLibrary{files}, name, defines).text;
+}
+
+/// What keeps a stage from being assembled.
+std::string fault_of(const std::vector<EmbeddedShader>& files, std::string_view name) {
+    try {
+        static_cast<void>(text_of(files, name));
+    } catch (const ProgramError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// What keeps a program from being made.
+std::string fault_of(Device& device, const std::vector<EmbeddedShader>& files,
+                     const std::vector<std::string>& stages) {
+    try {
+        static_cast<void>(compile(device, ShaderLibrary{files}, stages));
+    } catch (const ProgramError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST_SUITE("gl shader source") {
+    TEST_CASE("a stage starts with its version and defines") {
+        CHECK(text_of({{"a.vert", "void main() {}"}}, "a.vert", {{"TILE", "16"}, {"FAST"}}) ==
+              "#version 450 core\n#define TILE 16\n#define FAST 1\n#line 1 0\nvoid main() {}\n");
+    }
+
+    TEST_CASE("includes take their place, each file once, with the lines of the files") {
+        const std::vector<EmbeddedShader> files = {
+            {"a.frag", "first\n#include \"b.glsl\"\n  #  include \"c.glsl\"\r\nlast\n"},
+            {"b.glsl", "b1\n#include \"c.glsl\"\nb3\n"},
+            {"c.glsl", "c1\n"},
+        };
+        const ShaderSource source = assemble(ShaderLibrary{files}, "a.frag");
+        CHECK(source.text ==
+              "#version 450 core\n"
+              "#line 1 0\nfirst\n"
+              "#line 1 1\nb1\n"
+              "#line 1 2\nc1\n"
+              "#line 3 1\nb3\n"
+              "#line 3 0\n"
+              "#line 4 0\nlast\n");
+        CHECK(source.files == std::vector<std::string>{"a.frag", "b.glsl", "c.glsl"});
+    }
+
+    TEST_CASE("what only looks like an include is left alone") {
+        const std::string_view text = "// #include \"b.glsl\"\n#include_next\n";
+        CHECK(text_of({{"a.frag", text}}, "a.frag") == "#version 450 core\n#line 1 0\n" + std::string(text));
+    }
+
+    TEST_CASE("faulty includes are named with file and line") {
+        CHECK(fault_of({}, "a.frag") == "shaders/a.frag: there is no such shader file");
+        CHECK(fault_of({{"a.frag", "\n#include \"b.glsl\"\n"}, {"b.glsl", "\n\n#include \"c.glsl\"\n"}},
+                       "a.frag") == "shaders/b.glsl:3: there is no shader file \"c.glsl\" to include");
+        CHECK(fault_of({{"a.frag", "#include \"a.frag\"\n"}}, "a.frag") ==
+              "shaders/a.frag:1: \"a.frag\" includes itself: a.frag -> a.frag");
+        CHECK(fault_of({{"a.frag", "#include \"b.glsl\"\n"},
+                        {"b.glsl", "\n#include \"c.glsl\"\n"},
+                        {"c.glsl", "#include \"b.glsl\"\n"}},
+                       "a.frag") ==
+              "shaders/c.glsl:1: \"b.glsl\" includes itself: a.frag -> b.glsl -> c.glsl -> b.glsl");
+    }
+
+    TEST_CASE("drivers' messages name the files") {
+        const std::vector<std::string> files = {"a.frag", "lighting.glsl"};
+        CHECK(map_log("1:42(10): error: no such thing\n", files) ==
+              "shaders/lighting.glsl:42: error: no such thing\n");
+        CHECK(map_log("0(7) : error C1008: undefined variable \"x\"\n1(9) : warning C7050: unset", files) ==
+              "shaders/a.frag:7: error C1008: undefined variable \"x\"\n"
+              "shaders/lighting.glsl:9: warning C7050: unset\n");
+        CHECK(map_log("2:1(1): of no file\nsome words\n", files) == "2:1(1): of no file\nsome words\n");
+    }
+
+    TEST_CASE("a directory is a library, read anew at each load") {
+        const auto directory = std::filesystem::temp_directory_path() / "candela-shader-library-test";
+        std::filesystem::create_directories(directory);
+        const ShaderLibrary library(directory);
+        for (const std::string text : {"one", "two\n"}) {
+            std::ofstream(directory / "a.glsl") << text;
+            CHECK(library.contains("a.glsl"));
+            CHECK(library.load("a.glsl") == text);
+        }
+        std::filesystem::remove_all(directory);
+        CHECK_FALSE(library.contains("a.glsl"));
+        CHECK_THROWS_AS(static_cast<void>(library.load("a.glsl")), ProgramError);
+    }
+}
+
+TEST_SUITE("gl program") {
+    TEST_CASE_FIXTURE(GlFixture, "an error in an included file is reported by file and line") {
+        const std::vector<EmbeddedShader> files = {
+            {"a.frag",
+             "#include \"good.glsl\"\n#include \"bad.glsl\"\nout vec4 c;\nvoid main() { c = f(); }\n"},
+            {"good.glsl", "float g() { return 1.0; }\n"},
+            {"bad.glsl", "// fine\n\nvec4 f() {\n    return vec4(nothing);\n}\n"},
+        };
+        const std::string fault = fault_of(device, files, {"a.frag"});
+        CHECK(fault.starts_with("shaders/a.frag does not compile:\n"));
+        CHECK(fault.find("\nshaders/bad.glsl:4: ") != std::string::npos);
+        CHECK(fault.find("nothing") != std::string::npos);
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "the line is right behind an include, too") {
+        const std::vector<EmbeddedShader> files = {
+            {"a.comp", "layout(local_size_x = 1) in;\n#include \"b.glsl\"\n\nvoid main() { nothing(); }\n"},
+            {"b.glsl", "const int b = 1;\n\n\n\n"},
+        };
+        CHECK(fault_of(device, files, {"a.comp"}).find("\nshaders/a.comp:4: ") != std::string::npos);
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "stages that do not fit, or are none, are refused by name") {
+        const std::vector<EmbeddedShader> files = {
+            {"a.vert", "out vec3 x;\nvoid main() { x = vec3(1); gl_Position = vec4(0); }\n"},
+            {"a.frag", "in vec4 x;\nout vec4 c;\nvoid main() { c = x; }\n"},
+        };
+        CHECK(fault_of(device, files, {"a.vert", "a.frag"}).starts_with("a.vert and a.frag do not link: "));
+        CHECK(fault_of(device, files, {"a.glsl"}) ==
+              "shaders/a.glsl: a stage file ends in .vert, .frag, .geom or .comp");
+        CHECK(device.live() == ObjectCounts{});
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "defines choose a variant, and every kind of uniform arrives") {
+        const std::vector<EmbeddedShader> files = {{"sum.comp", R"(
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer Results { float results[]; };
+uniform bool flag; uniform int i; uniform uint u; uniform float f;
+uniform vec2 v2; uniform vec3 v3; uniform vec4 v4;
+uniform ivec2 i2; uniform ivec3 i3; uniform uvec2 u2; uniform uvec3 u3; uniform uvec4 u4;
+uniform mat3 m3; uniform mat4 m4;
+uniform float fs[3]; uniform vec4 v4s[2]; uniform mat4 m4s[2];
+uniform float unused;
+void main() {
+    int n = 0;
+    results[n++] = flag ? 1.0 : 0.0; results[n++] = float(i); results[n++] = float(u); results[n++] = f;
+    results[n++] = v2.y; results[n++] = v3.z; results[n++] = v4.w;
+    results[n++] = float(i2.y); results[n++] = float(i3.z);
+    results[n++] = float(u2.y); results[n++] = float(u3.z); results[n++] = float(u4.w);
+    results[n++] = m3[2].x; results[n++] = m4[3].x;
+    results[n++] = fs[0] + fs[2]; results[n++] = v4s[1].y; results[n++] = m4s[1][3].y;
+    results[n++] = float(VARIANT);
+}
+)"}};
+        const Program program = compile(device, ShaderLibrary{files}, {"sum.comp"}, {{"VARIANT", "18"}});
+        program.set("flag", true);
+        program.set("i", -2);
+        program.set("u", 3U);
+        program.set("f", 4.0F);
+        program.set("v2", glm::vec2(0, 5));
+        program.set("v3", glm::vec3(0, 0, 6));
+        program.set("v4", glm::vec4(0, 0, 0, 7));
+        program.set("i2", glm::ivec2(0, -8));
+        program.set("i3", glm::ivec3(0, 0, -9));
+        program.set("u2", glm::uvec2(0, 10));
+        program.set("u3", glm::uvec3(0, 0, 11));
+        program.set("u4", glm::uvec4(0, 0, 0, 12));
+        program.set("m3", glm::mat3(glm::vec3(0), glm::vec3(0), glm::vec3(13, 0, 0)));
+        program.set("m4", glm::translate(glm::mat4(1), glm::vec3(14, 0, 0)));
+        program.set("fs", std::array{7.0F, 0.0F, 8.0F});
+        program.set("v4s", std::array{glm::vec4(0), glm::vec4(0, 16, 0, 0)});
+        program.set("m4s", std::array{glm::mat4(1), glm::translate(glm::mat4(1), glm::vec3(0, 17, 0))});
+        program.set("unused", 1.0F);
+        program.set("no_such_uniform", 1.0F);
+        CHECK(program.has("fs"));
+        CHECK_FALSE(program.has("unused"));
+        CHECK_FALSE(program.has("results"));
+
+        const Buffer results(device, "results", 18 * sizeof(float));
+        results.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+        program.use();
+        device.gl().DispatchCompute(1, 1, 1);
+        CHECK(results.download<float>() ==
+              std::vector<float>{1, -2, 3, 4, 5, 6, 7, -8, -9, 10, 11, 12, 13, 14, 15, 16, 17, 18});
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "vertices reach the picture") {
+        const std::vector<EmbeddedShader> files = {
+            {"flat.vert",
+             "layout(location = 0) in vec2 position;\nlayout(location = 1) in uint red;\nflat out uint "
+             "colour;\n"
+             "void main() { colour = red; gl_Position = vec4(position, 0, 1); }\n"},
+            {"flat.frag",
+             "flat in uint colour;\nlayout(location = 0) out vec4 target;\n"
+             "void main() { target = vec4(colour, gl_FragCoord.xy, 1); }\n"},
+        };
+        struct Corner {
+            glm::vec2 position;
+            std::uint32_t red;
+        };
+        // One triangle that covers the whole target.
+        const std::array corners = {Corner{{-1, -1}, 5}, Corner{{3, -1}, 5}, Corner{{-1, 3}, 5}};
+        const Buffer vertices(device, "vertices", corners);
+        const Buffer indices(device, "indices", std::array<std::uint32_t, 3>{0, 1, 2});
+        VertexArray array(device, "array");
+        array.vertex_buffer(vertices.name(), sizeof(Corner));
+        array.attribute(0, 2, GL_FLOAT, 0);
+        array.integer_attribute(1, 1, GL_UNSIGNED_INT, sizeof(glm::vec2));
+        array.index_buffer(indices.name());
+
+        const Texture colour(device, "colour", {.size = {2, 2}, .format = Format::rgba32f});
+        Framebuffer framebuffer(device, "target");
+        framebuffer.attach_colour(0, colour.name());
+        framebuffer.draw_buffers(1);
+        const Program program = compile(device, ShaderLibrary{files}, {"flat.vert", "flat.frag"});
+
+        framebuffer.bind();
+        array.bind();
+        program.use();
+        device.gl().Viewport(0, 0, 2, 2);
+        device.gl().DrawElements(GL_TRIANGLES, 3, GL_UNSIGNED_INT, nullptr);
+        CHECK(colour.read_floats() ==
+              std::vector<float>{5, 0.5, 0.5, 1, 5, 1.5, 0.5, 1, 5, 0.5, 1.5, 1, 5, 1.5, 1.5, 1});
+    }
+}

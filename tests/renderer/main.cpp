@@ -1,0 +1,29 @@
+#define DOCTEST_CONFIG_IMPLEMENT
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <string_view>
+#include <vector>
+
+#include "tests/renderer/context_fixture.hpp"
+
+/// doctest's main with one option more: `--context=egl|osmesa`, by default egl.
+int main(int argc, char** argv) {
+    constexpr std::string_view option = "--context=";
+    std::vector<char*> others;
+    for (int i = 0; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (!argument.starts_with(option)) {
+            others.push_back(argv[i]);
+            continue;
+        }
+        const std::string_view kind = argument.substr(option.size());
+        if (kind != "egl" && kind != "osmesa") {
+            std::fprintf(stderr, "%s: the contexts are egl and osmesa\n", argv[i]);
+            return 2;
+        }
+        candela::set_tested_context(kind == "egl" ? candela::ContextKind::egl : candela::ContextKind::osmesa);
+    }
+    doctest::Context tests(static_cast<int>(others.size()), others.data());
+    return tests.run();
+}

@@ -1,0 +1,188 @@
+#include "sandbox/options.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+namespace candela::sandbox {
+
+namespace {
+
+std::variant<Options, EarlyExit> parse(std::initializer_list<const char*> flags) {
+    std::vector<const char*> arguments{"candela"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return parse_options(static_cast<int>(arguments.size()), arguments.data());
+}
+
+Options accepted(std::initializer_list<const char*> flags) {
+    const auto result = parse(flags);
+    if (const auto* exit = std::get_if<EarlyExit>(&result)) FAIL(exit->text);
+    return std::get<Options>(result);
+}
+
+/// One line that starts with the program and holds `flag` and `value`, and exit status 2.
+void check_refused(std::initializer_list<const char*> flags, std::string_view flag, std::string_view value) {
+    const auto result = parse(flags);
+    REQUIRE(std::holds_alternative<EarlyExit>(result));
+    const std::string& text = std::get<EarlyExit>(result).text;
+    CAPTURE(text);
+    CHECK(std::get<EarlyExit>(result).status == 2);
+    CHECK(text.starts_with("candela: "));
+    CHECK(text.find(flag) != std::string::npos);
+    CHECK(text.find(value) != std::string::npos);
+    CHECK(text.find('\n') == text.size() - 1);
+}
+
+void check_refused_value(const char* flag, std::initializer_list<const char*> values) {
+    for (const char* value : values) check_refused({flag, value}, flag, value);
+}
+
+}  // namespace
+
+TEST_SUITE("options") {
+    TEST_CASE("without flags everything has its default, and nothing overrides a configuration") {
+        const Options options = accepted({});
+        CHECK_FALSE(options.headless);
+        CHECK(options.context == ContextChoice::automatic);
+        CHECK(options.samples == 1);
+        CHECK_FALSE((options.scene || options.size || options.frames || options.camera || options.config));
+        CHECK_FALSE((options.show || options.path || options.indirect));
+        CHECK_FALSE((options.vpls || options.bounces || options.seed));
+        CHECK_FALSE((options.out || options.report || options.describe_graph));
+        CHECK_FALSE((options.print_config || options.list_configs));
+    }
+
+    TEST_CASE("every flag reaches its option") {
+        const Options options = accepted({"room.glb",       "--headless",
+                                          "--context",      "osmesa",
+                                          "--size",         "333x217",
+                                          "--frames",       "3",
+                                          "--samples",      "4",
+                                          "--camera",       "2",
+                                          "--show",         "indirect",
+                                          "--path",         "deferred",
+                                          "--indirect",     "off",
+                                          "--vpls",         "0",
+                                          "--bounces",      "5",
+                                          "--seed",         "4294967295",
+                                          "--config",       __FILE__,
+                                          "--print-config", "--out",
+                                          "f%d.png",        "--report",
+                                          "r.json",         "--describe-graph",
+                                          "g.dot",          "--list-configs"});
+        CHECK(options.scene == "room.glb");
+        CHECK(options.headless);
+        CHECK(options.context == ContextChoice::osmesa);
+        CHECK(options.size == glm::ivec2(333, 217));
+        CHECK(options.frames == 3);
+        CHECK(options.samples == 4);
+        CHECK(options.camera == "2");
+        CHECK(options.show == Show::indirect);
+        CHECK(options.path == ShadingPath::deferred);
+        CHECK(options.indirect == false);
+        CHECK(options.vpls == 0U);
+        CHECK(options.bounces == 5U);
+        CHECK(options.seed == 4294967295U);
+        CHECK(options.config == __FILE__);
+        CHECK(options.print_config);
+        CHECK(options.out == "f%d.png");
+        CHECK(options.report == "r.json");
+        CHECK(options.describe_graph == "g.dot");
+        CHECK(options.list_configs);
+    }
+
+    TEST_CASE("every word of a choice is known") {
+        CHECK(accepted({"--context", "auto"}).context == ContextChoice::automatic);
+        CHECK(accepted({"--context", "window"}).context == ContextChoice::window);
+        CHECK(accepted({"--context", "egl"}).context == ContextChoice::egl);
+        CHECK(accepted({"--show", "total"}).show == Show::total);
+        CHECK(accepted({"--show", "direct"}).show == Show::direct);
+        CHECK(accepted({"--path", "forward"}).path == ShadingPath::forward);
+        CHECK(accepted({"--indirect", "on"}).indirect == true);
+    }
+
+    TEST_CASE("a context without windows is headless") {
+        CHECK(accepted({"--context", "egl"}).headless);
+        CHECK(accepted({"--context", "osmesa"}).headless);
+        CHECK_FALSE(accepted({"--context", "window"}).headless);
+        check_refused({"--headless", "--context", "window"}, "--headless", "--context window");
+    }
+
+    TEST_CASE("sizes go from one pixel to what a texture holds") {
+        CHECK(accepted({"--size", "1x1"}).size == glm::ivec2(1));
+        CHECK(accepted({"--size=16384x1"}).size == glm::ivec2(16384, 1));
+        check_refused_value(
+            "--size", {"0x0", "0x5", "5x0", "-4x5", "4x-5", "16385x1", "1x16385", "4294967297x1", "64", "64x",
+                       "x64", "64x64x64", "64X64", " 64x64", "64x64 ", "axb", "+1x1"});
+    }
+
+    TEST_CASE("numbers are whole and within their range") {
+        check_refused_value("--frames", {"0", "-1", "1.5", "abc", "2147483648", "1e3", "3frames"});
+        check_refused_value("--samples", {"0", "-1", "1.5", "abc"});
+        for (const char* flag : {"--vpls", "--bounces", "--seed"}) {
+            check_refused_value(flag, {"-1", "1.5", "abc", "4294967296", "0x10"});
+        }
+    }
+
+    TEST_CASE("unknown words are refused, and so are flags without a value or given twice") {
+        check_refused_value("--context", {"glx", "AUTO", "0"});
+        check_refused_value("--show", {"both"});
+        check_refused_value("--path", {"tiled-forward", "forward+", "clustered-deferred", "1"});
+        check_refused_value("--indirect", {"true", "1"});
+        check_refused({"--vpls"}, "--vpls", "");
+        check_refused({"--vpls", "1", "--vpls", "2"}, "--vpls", "");
+    }
+
+    TEST_CASE("flags that do not exist are refused and not in the help") {
+        const std::string help = std::get<EarlyExit>(parse({"--help"})).text;
+        for (const char* flag : {"--animate", "--vpl-visibility", "--fullscreen", "-x"}) {
+            check_refused({flag, "x"}, flag, "");
+            CHECK(help.find(flag) == std::string::npos);
+        }
+        CHECK(help.find("tiled") == std::string::npos);
+        check_refused({"a.gltf", "b.gltf"}, "b.gltf", "");
+    }
+
+    TEST_CASE("help names every flag, and the version stands alone") {
+        const EarlyExit help = std::get<EarlyExit>(parse({"--help"}));
+        CHECK(help.status == 0);
+        for (const char* flag :
+             {"SCENE",          "--headless", "--context",      "--size",     "--frames", "--samples",
+              "--camera",       "--show",     "--path",         "--indirect", "--vpls",   "--bounces",
+              "--seed",         "--config",   "--print-config", "--out",      "--report", "--describe-graph",
+              "--list-configs", "--version",  "--help"}) {
+            CAPTURE(flag);
+            CHECK(help.text.find(flag) != std::string::npos);
+        }
+        const EarlyExit version = std::get<EarlyExit>(parse({"--version"}));
+        CHECK(version.status == 0);
+        CHECK(version.text == "candela " CANDELA_VERSION "\n");
+    }
+
+    TEST_CASE("files that will be written have a known format and a folder") {
+        CHECK(accepted({"--out", "a.EXR"}).out == "a.EXR");
+        CHECK(accepted({"--out", "/tmp/a.pfm"}).out == "/tmp/a.pfm");
+        check_refused_value("--out", {"a.jpg", "a", "png", ".png", "/dev/null", "no/such/folder/a.png"});
+        check_refused_value("--report", {"a.txt", "no/such/folder/a.json"});
+        check_refused_value("--describe-graph", {"a.png", "no/such/folder/a.dot"});
+        check_refused_value("--config", {"no-such-file.json", "/tmp"});
+    }
+
+    TEST_CASE("several frames need numbers in their names") {
+        check_refused({"--frames", "2", "--out", "a.png"}, "--out", "%d");
+        CHECK(accepted({"--frames", "1", "--out", "a.png"}).frames == 1);
+        CHECK(accepted({"--frames", "2", "--out", "a%d.png"}).frames == 2);
+        check_refused({"--frames", "2", "--out", "%d/a.png"}, "--out", "%d/a.png");
+
+        CHECK(numbered("a%d.png", 7) == "a7.png");
+        CHECK(numbered("in/f%d-%d.exr", 12) == "in/f12-12.exr");
+        CHECK(numbered("%d/100%.png", 3) == "%d/100%.png");
+    }
+}
+
+}  // namespace candela::sandbox

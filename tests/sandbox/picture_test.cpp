@@ -1,0 +1,205 @@
+#include "sandbox/picture.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+
+#include "sandbox/output_file.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An empty folder that goes with the test.
+class TemporaryFolder {
+ public:
+    TemporaryFolder() {
+        std::string name = (fs::temp_directory_path() / "candela-XXXXXX").string();
+        REQUIRE(::mkdtemp(name.data()) != nullptr);
+        path_ = name;
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() { fs::remove_all(path_); }
+
+    [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
+    [[nodiscard]] std::ptrdiff_t file_count() const {
+        return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
+    }
+
+ private:
+    fs::path path_;
+};
+
+std::string read(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write(const fs::path& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+/// Every pixel differs from every other, and no row or column reads the same backwards.
+Picture gradient(glm::ivec2 size) {
+    Picture picture{size, {}};
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            picture.pixels.emplace_back(static_cast<float>(x), static_cast<float>(y) * 0.1F,
+                                      static_cast<float>(x + y * size.x) * 1e-6F);
+        }
+    }
+    return picture;
+}
+
+/// Bits, so that NaN equals itself and -0 does not equal 0.
+bool same_bits(const Picture& a, const Picture& b) {
+    return a.size == b.size && a.pixels.size() == b.pixels.size() &&
+           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
+}
+
+template <typename Action>
+std::string fault_of(Action action) {
+    try {
+        action();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "no fault";
+}
+
+bool names(const std::string& fault, const fs::path& path) {
+    return fault.starts_with(path.string() + ": ");
+}
+
+}  // namespace
+
+TEST_SUITE("picture") {
+    TEST_CASE("EXR and PFM keep every bit at every shape") {
+        const TemporaryFolder folder;
+        for (const glm::ivec2 size :
+             {glm::ivec2(1, 1), glm::ivec2(7, 3), glm::ivec2(3, 70), glm::ivec2(4096, 1)}) {
+            CAPTURE(size.x);
+            const Picture picture = gradient(size);
+            write_exr(folder / "a.exr", picture);
+            CHECK(same_bits(read_exr(folder / "a.exr"), picture));
+            write_pfm(folder / "a.pfm", picture);
+            CHECK(same_bits(read_pfm(folder / "a.pfm"), picture));
+        }
+    }
+
+    TEST_CASE("values that no display shows survive") {
+        const TemporaryFolder folder;
+        using Limits = std::numeric_limits<float>;
+        const Picture picture{{2, 2},
+                          {{Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()},
+                           {Limits::max(), Limits::denorm_min(), -0.0F},
+                           {-1.0F, 1e-20F, 1e20F},
+                           {0.0F, 65505.0F, 1.0F / 3.0F}}};
+        write_exr(folder / "a.exr", picture);
+        CHECK(same_bits(read_exr(folder / "a.exr"), picture));
+        write_pfm(folder / "a.pfm", picture);
+        CHECK(same_bits(read_pfm(folder / "a.pfm"), picture));
+    }
+
+    TEST_CASE("a PFM is laid out as its specification says") {
+        const TemporaryFolder folder;
+        write_pfm(folder / "a.pfm", Picture{{1, 2}, {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}});
+        // The lower row first, each float's lowest byte first: 4 is 0x40800000, 1 is 0x3f800000.
+        const std::string file = read(folder / "a.pfm");
+        const std::string header = "PF\n1 2\n-1.0\n";
+        REQUIRE(file.size() == header.size() + 24);
+        CHECK(file.starts_with(header));
+        CHECK(file.substr(header.size(), 4) == std::string("\x00\x00\x80\x40", 4));
+        CHECK(file.substr(header.size() + 12, 4) == std::string("\x00\x00\x80\x3f", 4));
+    }
+
+    TEST_CASE("a PNG holds the bytes that were given, from the top") {
+        const TemporaryFolder folder;
+        const std::vector<std::uint8_t> rgb{255, 0,  0,  0,  255, 0,  1,  2,  3,
+                                            10,  20, 30, 40, 50,  60, 70, 80, 90};
+        write_png(folder / "a.png", {2, 3}, rgb);
+        int width = 0;
+        int height = 0;
+        int channels = 0;
+        unsigned char* pixels = stbi_load((folder / "a.png").c_str(), &width, &height, &channels, 0);
+        REQUIRE(pixels != nullptr);
+        CHECK(width == 2);
+        CHECK(height == 3);
+        REQUIRE(channels == 3);
+        CHECK(std::vector<std::uint8_t>(pixels, pixels + rgb.size()) == rgb);
+        stbi_image_free(pixels);
+    }
+
+    TEST_CASE("pixels that do not fill the picture are refused") {
+        const TemporaryFolder folder;
+        const fs::path path = folder / "a.png";
+        const std::vector<std::uint8_t> rgb(11);
+        CHECK(names(fault_of([&] { write_png(path, {2, 2}, rgb); }), path));
+        CHECK(names(fault_of([&] { write_png(path, {0, 0}, {}); }), path));
+        CHECK(names(fault_of([&] { write_exr(path, Picture{{2, 2}, std::vector<glm::vec3>(3)}); }), path));
+        CHECK(names(fault_of([&] { write_pfm(path, Picture{{-1, -1}, std::vector<glm::vec3>(1)}); }), path));
+        CHECK(folder.file_count() == 0);
+    }
+
+    TEST_CASE("what cannot be written is named, and what was there stays") {
+        const TemporaryFolder folder;
+        const Picture picture = gradient({4, 4});
+        const fs::path lost = folder / "no-such-folder" / "a.pfm";
+        const std::string fault = fault_of([&] { write_pfm(lost, picture); });
+        CHECK(names(fault, lost));
+        CHECK(fault.find("No such file or directory") != std::string::npos);
+
+        const fs::path directory = folder / "folder.png";
+        fs::create_directory(directory);
+        CHECK(names(fault_of([&] { write_pfm(directory, picture); }), directory));
+        CHECK(fs::is_directory(directory));
+        CHECK(folder.file_count() == 1);
+
+        // A device that is always full stands for a disk that is.
+        const std::string full = fault_of([&] { write_pfm("/dev/full", picture); });
+        CHECK(full == "/dev/full: cannot be written: No space left on device");
+    }
+
+    TEST_CASE("a file is replaced as a whole and through a link") {
+        const TemporaryFolder folder;
+        write(folder / "a.pfm", "old");
+        fs::create_symlink("a.pfm", folder / "link.pfm");
+        write_pfm(folder / "link.pfm", gradient({3, 2}));
+        CHECK(fs::is_symlink(folder / "link.pfm"));
+        CHECK(same_bits(read_pfm(folder / "a.pfm"), gradient({3, 2})));
+        CHECK(folder.file_count() == 2);
+    }
+
+    TEST_CASE("files that are no pictures are refused by name") {
+        const TemporaryFolder folder;
+        const fs::path path = folder / "a.pfm";
+        CHECK(names(fault_of([&] { (void)read_pfm(path); }), path));
+        for (const char* text :
+             {"", "PF", "Pf\n1 1\n-1.0\n0000", "PF\n0 0\n-1.0\n", "PF\n-1 -1\n-1.0\n000000000000",
+              "PF\n1 1\n1.0\n000000000000", "PF\n1 1\n-1.0\n00000000000", "PF\n1 1\n-1.0\n0000000000000",
+              "PF\n2147483647 2147483647\n-1.0\n000000000000", "PF\n1 1\n-1.0",
+              "PF\n99999999999 1\n-1.0\n"}) {
+            CAPTURE(text);
+            write(path, text);
+            CHECK(names(fault_of([&] { (void)read_pfm(path); }), path));
+            CHECK(names(fault_of([&] { (void)read_exr(path); }), path));
+        }
+        CHECK(names(fault_of([&] { (void)read_exr(folder / ""); }), folder / ""));
+    }
+}
+
+}  // namespace candela::sandbox
