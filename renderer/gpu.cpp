@@ -1,8 +1,8 @@
 #include "renderer/gpu.hpp"
 
+#include <fmt/ranges.h>
 #include <array>
 #include <cstddef>
-#include <fmt/ranges.h>
 
 #include "engine/scene/components.hpp"
 #include "shaders/bindings.glsl"
@@ -42,7 +42,9 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
 
 const gl::Program& Gpu::program(const std::vector<std::string>& stages) {
     const auto found = programs_.find(stages);
-    if (found != programs_.end()) { return found->second; }
+    if (found != programs_.end()) {
+        return found->second;
+    }
     return programs_.emplace(stages, gl::compile(device_, shaders_, stages)).first->second;
 }
 

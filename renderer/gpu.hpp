@@ -12,8 +12,8 @@
 
 namespace candela {
 
-/// What the passes of one renderer share: the device, and what they would otherwise make twice. Passes refer to it
-/// while they live.
+/// What the passes of one renderer share: the device, and what they would otherwise make twice. Passes refer
+/// to it while they live.
 class Gpu {
  public:
     Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders);

@@ -9,8 +9,8 @@
 #include "engine/bvh/bvh.hpp"
 #include "shaders/bindings.glsl"
 
-/// The structs that shaders read, byte for byte as std430 lays them out; their twins, with the meaning and unit of
-/// each member, are in shaders/types.glsl.
+/// The structs that shaders read, byte for byte as std430 lays them out; their twins, with the meaning and
+/// unit of each member, are in shaders/types.glsl.
 namespace candela::gpu {
 
 struct Instance {

@@ -1,9 +1,9 @@
 #include "renderer/renderer.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fmt/format.h>
 #include <stdexcept>
 
 #include "engine/graph/compile.hpp"
@@ -43,12 +43,18 @@ FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index
 
 /// Standard error of the sum of as many independent terms, per channel.
 glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
-    if (terms.size() < 2) { return glm::dvec3(0.0); }
+    if (terms.size() < 2) {
+        return glm::dvec3(0.0);
+    }
     const auto n = static_cast<double>(terms.size());
     glm::dvec3 sum(0.0);
-    for (const glm::dvec3& term : terms) { sum += term; }
+    for (const glm::dvec3& term : terms) {
+        sum += term;
+    }
     glm::dvec3 squares(0.0);
-    for (const glm::dvec3& term : terms) { squares += (term - sum / n) * (term - sum / n); }
+    for (const glm::dvec3& term : terms) {
+        squares += (term - sum / n) * (term - sum / n);
+    }
     return glm::sqrt(squares * n / (n - 1.0));
 }
 
@@ -76,7 +82,9 @@ Renderer::Renderer(const gl::GetProc& get_proc, const std::filesystem::path& sha
 
 std::vector<std::string> Renderer::configure(const Configuration& configuration) {
     std::vector<std::string> faults = validate(configuration);
-    if (!faults.empty() || configuration == configuration_) { return faults; }
+    if (!faults.empty() || configuration == configuration_) {
+        return faults;
+    }
     try {
         adopt(configuration, size_);
     } catch (const gl::GlError& error) {
@@ -98,11 +106,14 @@ void Renderer::adopt(const Configuration& configuration, glm::uvec2 size) {
 void Renderer::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
     const std::uint32_t most = device().limits().texture_size;
     if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
-        throw gl::GlError(fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
-                                      target.size.x, target.size.y, most));
+        throw gl::GlError(
+            fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
+                        target.size.x, target.size.y, most));
     }
     const gl::HostState host_state(gpu_.gl());
-    if (target.size != size_) { adopt(configuration_, target.size); }
+    if (target.size != size_) {
+        adopt(configuration_, target.size);
+    }
     runtime_.set(frame_.request, ViewRequest{camera, target.size, jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
 
@@ -119,19 +130,26 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
 void Renderer::match_times(const std::vector<gl::FrameTime>& times) {
     for (const gl::FrameTime& time : times) {
         // A frame that threw has times but no report.
-        if (pending_.empty() || pending_.front().index != time.frame) { continue; }
+        if (pending_.empty() || pending_.front().index != time.frame) {
+            continue;
+        }
         FrameReport report = std::move(pending_.front());
         pending_.pop_front();
         report.gpu_ms = time.ms;
-        for (const gl::PassTime& pass : time.passes) { report.passes[pass.pass].gpu_ms = pass.ms; }
+        for (const gl::PassTime& pass : time.passes) {
+            report.passes[pass.pass].gpu_ms = pass.ms;
+        }
         arrived_.push_back(std::move(report));
-        if (arrived_.size() > kept_frames) { arrived_.pop_front(); }
+        if (arrived_.size() > kept_frames) {
+            arrived_.pop_front();
+        }
     }
 }
 
 std::vector<FrameReport> Renderer::take_frames(bool wait) {
     match_times(wait ? backend_.timer().finish() : backend_.timer().collect());
-    std::vector<FrameReport> frames(std::make_move_iterator(arrived_.begin()), std::make_move_iterator(arrived_.end()));
+    std::vector<FrameReport> frames(std::make_move_iterator(arrived_.begin()),
+                                    std::make_move_iterator(arrived_.end()));
     arrived_.clear();
     return frames;
 }
@@ -141,7 +159,9 @@ void Renderer::tone_map(const std::vector<glm::vec3>& radiance, const Target& ta
     gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
     std::vector<glm::vec4> texels;
     texels.reserve(radiance.size());
-    for (const glm::vec3& pixel : radiance) { texels.emplace_back(pixel, 1.0F); }
+    for (const glm::vec3& pixel : radiance) {
+        texels.emplace_back(pixel, 1.0F);
+    }
     texture.upload(std::as_bytes(std::span(texels)));
     candela::tone_map(gpu_, tone_map_program(gpu_), texture.name(), target.framebuffer, target.size,
                       configuration_.tone_map);
@@ -150,9 +170,12 @@ void Renderer::tone_map(const std::vector<glm::vec3>& radiance, const Target& ta
 std::string Renderer::describe(GraphFormat format) const {
     const CompiledGraph& graph = *runtime_.graph();
     switch (format) {
-        case GraphFormat::dot: return describe_dot(graph);
-        case GraphFormat::json: return describe_json(graph);
-        case GraphFormat::text: break;
+        case GraphFormat::dot:
+            return describe_dot(graph);
+        case GraphFormat::json:
+            return describe_json(graph);
+        case GraphFormat::text:
+            break;
     }
     return describe_text(graph);
 }
@@ -163,7 +186,8 @@ VplReport Renderer::report_vpls(const Vpls& vpls) const {
     auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
     placed.resize(plan.vpl_count);
     accounts.resize(plan.paths.size());
-    const auto alive = std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
+    const auto alive =
+        std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
     return {.requested = configuration_.vpls.count,
             .alive = static_cast<std::uint32_t>(alive),
             .paths = static_cast<std::uint32_t>(plan.paths.size()),
@@ -180,7 +204,9 @@ Report Renderer::report() {
                    .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
                    .without_shadow = shadows.lights_without},
         .memory = runtime_.memory()};
-    if (frame_.vpls && configuration_.show != Show::direct) { report.vpls = report_vpls(*frame_.vpls); }
+    if (frame_.vpls && configuration_.show != Show::direct) {
+        report.vpls = report_vpls(*frame_.vpls);
+    }
     return report;
 }
 

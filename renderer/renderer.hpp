@@ -42,8 +42,9 @@ struct EnergyAccount {
     glm::dvec3 emitted{0.0};
     glm::dvec3 absorbed{0.0};
     glm::dvec3 escaped{0.0};
-    glm::dvec3 truncated{0.0};       ///< still reflected when the last bounce was reached
-    glm::dvec3 roulette{0.0};        ///< lost where paths ended early, less what their continuation was weighted up by
+    glm::dvec3 truncated{0.0};  ///< still reflected when the last bounce was reached
+    glm::dvec3 roulette{
+        0.0};  ///< lost where paths ended early, less what their continuation was weighted up by
     glm::dvec3 roulette_error{0.0};  ///< standard error of `roulette`, whose expectation is zero
 };
 
@@ -72,30 +73,32 @@ struct Report {
 
 enum class GraphFormat : std::uint8_t { text, dot, json };
 
-/// Renders worlds. One instance belongs to one GL context, which is current in every call, the destructor included.
-/// Several instances share nothing.
+/// Renders worlds. One instance belongs to one GL context, which is current in every call, the destructor
+/// included. Several instances share nothing.
 class Renderer {
  public:
-    /// `get_proc` gives the addresses of GL functions, as glfwGetProcAddress does. Shaders come with the library, or,
-    /// for those who work on them, from a directory. Throws gl::GlError if the context offers less than OpenGL 4.5.
+    /// `get_proc` gives the addresses of GL functions, as glfwGetProcAddress does. Shaders come with the
+    /// library, or, for those who work on them, from a directory. Throws gl::GlError if the context offers
+    /// less than OpenGL 4.5.
     explicit Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {});
 
-    /// Takes a configuration from the next frame on. Gives what is wrong with it, a line each; then the present one
-    /// goes on. Scene data, VPLs and shadow maps that both configurations want alike are kept.
+    /// Takes a configuration from the next frame on. Gives what is wrong with it, a line each; then the
+    /// present one goes on. Scene data, VPLs and shadow maps that both configurations want alike are kept.
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
 
-    /// Renders the world as the camera (an entity with a Camera) sees it; only what changed since the last frame is
-    /// done anew. `jitter` moves the samples off the pixels' centres, in pixels. Leaves the host's GL state as
-    /// gl::HostState says. Throws EntityError if there is no such camera, SceneError for impossible hierarchies, and
-    /// gl::GlError where the driver runs out of memory; the next call then takes up from there.
+    /// Renders the world as the camera (an entity with a Camera) sees it; only what changed since the last
+    /// frame is done anew. `jitter` moves the samples off the pixels' centres, in pixels. Leaves the host's
+    /// GL state as gl::HostState says. Throws EntityError if there is no such camera, SceneError for
+    /// impossible hierarchies, and gl::GlError where the driver runs out of memory; the next call then takes
+    /// up from there.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 
     /// Tone-maps a picture of linear radiance that was averaged elsewhere; row 0 is the bottom.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
 
-    /// Times of the frames whose GPU times have arrived since the last call, in order; nothing waits for the GPU,
-    /// unless `wait` asks for all. Of frames that nobody takes the latest `kept_frames` are kept.
+    /// Times of the frames whose GPU times have arrived since the last call, in order; nothing waits for the
+    /// GPU, unless `wait` asks for all. Of frames that nobody takes the latest `kept_frames` are kept.
     [[nodiscard]] std::vector<FrameReport> take_frames(bool wait = false);
     static constexpr std::size_t kept_frames = 1024;
 

@@ -22,6 +22,9 @@
 #define UNIT_RADIANCE 6
 #define UNIT_LAST 6
 
+#define IMAGE_RADIANCE 0
+#define IMAGE_LAST 0
+
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_NORMAL 1
 #define ATTRIBUTE_UV 2

@@ -8,6 +8,9 @@ uniform vec2 target_size;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-    Surface surface = unpack_surface(fragment_surface(), gl_FragCoord.xyz, target_size, world_from_clip);
-    radiance = vec4(reflected_radiance(surface), 1.0);
+    Surface surfaces[SURFACES];
+    vec3 reflected[SURFACES];
+    surfaces[0] = unpack_surface(fragment_surface(), gl_FragCoord.xyz, target_size, world_from_clip);
+    reflect_radiance(surfaces, reflected);
+    radiance = vec4(reflected[0], 1.0);
 }

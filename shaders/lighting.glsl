@@ -1,10 +1,15 @@
 // The one evaluator of light: real lights with their shadows, and virtual point lights. A shading path finds the
-// surface and, by including a light list before this file, says which lights to visit.
+// surfaces and, by including a light list before this file, says which lights to visit. An invocation shades SURFACES
+// of them, which share the list.
 #include "bindings.glsl"
 #include "lights.glsl"
 #include "shadow.glsl"
 #include "surface.glsl"
 #include "types.glsl"
+
+#ifndef SURFACES
+#define SURFACES 1
+#endif
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
@@ -34,16 +39,23 @@ float geometry_term(Vpl vpl, Surface surface) {
 // Share of the VPL's light that reaches the surface. VPLs shine through walls as yet.
 float vpl_visibility(uint index, Surface surface) { return 1.0; }
 
-// Radiance that the surface reflects: ρ/π times its irradiance.
-vec3 reflected_radiance(Surface surface) {
-    vec3 direct = vec3(0.0);
+// Radiance that surfaces reflect: ρ/π times their irradiance. Light for light, all surfaces of the invocation at once,
+// so that what a light or a VPL is gets fetched once for all of them.
+void reflect_radiance(Surface surfaces[SURFACES], out vec3 radiance[SURFACES]) {
+    vec3 direct[SURFACES];
+    vec3 indirect[SURFACES];
+    for (int s = 0; s < SURFACES; ++s) direct[s] = indirect[s] = vec3(0.0);
+
     for (uint i = 0u; i < light_list_size(light_count); ++i) {
-        direct += irradiance_from_light(lights[light_list_entry(i)], surface);
+        Light light = lights[light_list_entry(i)];
+        for (int s = 0; s < SURFACES; ++s) direct[s] += irradiance_from_light(light, surfaces[s]);
     }
-    vec3 indirect = vec3(0.0);
     for (uint i = 0u; i < vpl_list_size(vpl_count); ++i) {
         uint index = vpl_list_entry(i);
-        indirect += vpls[index].flux * (geometry_term(vpls[index], surface) * vpl_visibility(index, surface));
+        Vpl vpl = vpls[index];
+        for (int s = 0; s < SURFACES; ++s) {
+            indirect[s] += vpl.flux * (geometry_term(vpl, surfaces[s]) * vpl_visibility(index, surfaces[s]));
+        }
     }
-    return surface.albedo / PI * (direct + indirect / PI);
+    for (int s = 0; s < SURFACES; ++s) radiance[s] = surfaces[s].albedo / PI * (direct[s] + indirect[s] / PI);
 }

@@ -101,7 +101,7 @@ std::string resource_text(const CompiledGraph& graph, std::uint32_t index, const
     return text + "\n";
 }
 
-std::string quoted(std::string_view text) {
+std::string dot_name(std::string_view text) {
     std::string escaped = "\"";
     for (const char character : text) {
         if (character == '"' || character == '\\') { escaped += '\\'; }
@@ -148,9 +148,9 @@ std::string describe_dot(const CompiledGraph& graph) {
     const detail::Declaration& declared = graph.declared();
     const detail::Plan& plan = graph.plan();
     std::string text = "digraph frame {\n    rankdir=LR;\n    node [shape=box];\n";
-    for (const std::uint32_t pass : plan.order) { text += fmt::format("    {};\n", quoted(declared.passes[pass].name)); }
+    for (const std::uint32_t pass : plan.order) { text += fmt::format("    {};\n", dot_name(declared.passes[pass].name)); }
     for (const std::uint32_t pass : plan.order) {
-        const std::string to = quoted(declared.passes[pass].name);
+        const std::string to = dot_name(declared.passes[pass].name);
         for (const Access& access : declared.accesses_of(pass)) {
             const std::uint32_t past_of = declared.resources[access.resource].history_of;
             const std::uint32_t version =
@@ -158,8 +158,8 @@ std::string describe_dot(const CompiledGraph& graph) {
                                 : plan.version(past_of, declared.resources[past_of].versions);
             const std::uint32_t writer = plan.writer[version];
             if (writer == none || (writer == pass && past_of == none)) { continue; }
-            text += fmt::format("    {} -> {} [label={}{}];\n", quoted(declared.passes[writer].name), to,
-                                quoted(name_of(graph, access.resource)), past_of == none ? "" : ", style=dashed");
+            text += fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[writer].name), to,
+                                dot_name(name_of(graph, access.resource)), past_of == none ? "" : ", style=dashed");
         }
     }
     return text + "}\n";

@@ -140,7 +140,7 @@ std::vector<Element> read(const tinygltf::Model& model, int index, Decode decode
         static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
     const std::size_t size = component * components;
 
-    std::vector<Element> elements;
+    std::vector<Element> elements{};
     if (accessor.bufferView < 0) {
         check_zeros(model, accessor, index);
         elements.resize(accessor.count, Element{});

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 
@@ -87,39 +88,58 @@ Container split(Bytes bytes) {
     return container;
 }
 
-Json parse_json(Bytes text) {
-    const auto limit_depth = [](int depth, Json::parse_event_t, Json&) {
+/// Before anything parses it: exact where the text is JSON, and where it is not that comes to light later.
+void check_nesting(Bytes text) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const unsigned char c = text[i];
+        if (c == '"') {
+            in_string = !in_string;
+        }
+        if (in_string) {
+            i += c == '\\' ? 1 : 0;
+            continue;
+        }
+        if (c == '[' || c == '{') {
+            ++depth;
+        }
+        if (c == ']' || c == '}') {
+            --depth;
+        }
         if (depth > deepest_nesting) {
             throw SceneError("its JSON is nested too deeply");
         }
-        return true;
-    };
+    }
+}
+
+Json parse_json(Bytes text) {
+    check_nesting(text);
     try {
-        return Json::parse(text.begin(), text.end(), limit_depth);
+        return Json::parse(text.begin(), text.end());
     } catch (const Json::exception& error) {
         const std::string_view message = error.what();
         const std::size_t prefix = message.find("] ");  // [json.exception.parse_error.101]
-        throw SceneError(
-            fmt::format("invalid JSON: {}", prefix == message.npos ? message : message.substr(prefix + 2)));
+        throw SceneError(fmt::format(
+            "invalid JSON: {}", prefix == std::string_view::npos ? message : message.substr(prefix + 2)));
     }
 }
 
 /// Refuses what is required and not supported; returns a warning each for what is merely used.
 std::vector<std::string> check_extensions(const Json& document) {
-    const auto names = [&](const char* member) { return document.value(member, std::vector<std::string>{}); };
+    const auto names = [&](const char* member) { return document.value(member, std::set<std::string>{}); };
     for (const std::string& name : names("extensionsRequired")) {
         if (name != lights_extension) {
             throw SceneError(fmt::format("it requires the extension {}, which is not supported", name));
         }
     }
-    std::vector<std::string> used = names("extensionsUsed");
-    std::ranges::sort(used);
-    used.erase(std::ranges::unique(used).begin(), used.end());
-    std::erase(used, lights_extension);
-    for (std::string& name : used) {
-        name = fmt::format("the extension {} is not supported and is ignored", name);
+    std::vector<std::string> warnings;
+    for (const std::string& name : names("extensionsUsed")) {
+        if (name != lights_extension) {
+            warnings.push_back(fmt::format("the extension {} is not supported and is ignored", name));
+        }
     }
-    return used;
+    return warnings;
 }
 
 std::vector<unsigned char> load_buffer(const Json& buffer, std::size_t index,
@@ -163,7 +183,7 @@ std::vector<tinygltf::Image> describe_images(const Json& document) {
         images[i].uri = descriptions[i].value("uri", "");
         images[i].bufferView = descriptions[i].value("bufferView", -1);
         if (images[i].uri.empty() == (images[i].bufferView < 0)) {
-            throw SceneError(fmt::format("image {} needs either a \"uri\" or a \"bufferView\"", i));
+            throw SceneError(fmt::format(R"(image {} needs either a "uri" or a "bufferView")", i));
         }
     }
     return images;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <ranges>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -238,16 +238,19 @@ StagedEntity stage(const tinygltf::Model& model, int index,
     return entity;
 }
 
+/// The last of `ahead` is visited next.
+void put_ahead(const std::vector<int>& nodes, std::optional<std::size_t> parent, std::vector<Visit>& ahead) {
+    std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { ahead.push_back({node, parent}); });
+}
+
 }  // namespace
 
 std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
                                      const std::vector<std::shared_ptr<const Mesh>>& meshes) {
     check_hierarchy(model);
     std::vector<StagedEntity> entities;
-    std::vector<Visit> ahead;  // the next one last
-    for (const int root : std::views::reverse(default_scene(model).nodes)) {
-        ahead.push_back({root, {}});
-    }
+    std::vector<Visit> ahead;
+    put_ahead(default_scene(model).nodes, {}, ahead);
     while (!ahead.empty()) {
         auto [node, parent] = ahead.back();
         ahead.pop_back();
@@ -263,9 +266,7 @@ std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
             entities.push_back(std::move(entity));
             parent = entities.size() - 1;
         }
-        for (const int child : std::views::reverse(node_at(model, node).children)) {
-            ahead.push_back({child, parent});
-        }
+        put_ahead(node_at(model, node).children, parent, ahead);
     }
     return entities;
 }

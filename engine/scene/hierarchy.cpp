@@ -25,7 +25,7 @@ glm::mat4 local_matrix(const Transform& transform) {
 
 glm::mat4 world_matrix(const World& world, Entity entity) {
     glm::mat4 matrix(1.0F);
-    const std::size_t deepest = world.count<Transform>();
+    const auto deepest = world.count<Transform>();
     Entity at = entity;
     for (std::size_t depth = 0;; ++depth) {
         const Transform* transform = world.find<Transform>(at);

@@ -1,8 +1,8 @@
 #include "renderer/configuration/configuration.hpp"
 
+#include <fmt/format.h>
 #include <array>
 #include <cmath>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <type_traits>
@@ -15,8 +15,12 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::string_view, 2> path_names{"forward", "deferred"};
 constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
 
-std::span<const std::string_view> names_of(ShadingPath /*type*/) { return path_names; }
-std::span<const std::string_view> names_of(Show /*type*/) { return show_names; }
+std::span<const std::string_view> names_of(ShadingPath /*type*/) {
+    return path_names;
+}
+std::span<const std::string_view> names_of(Show /*type*/) {
+    return show_names;
+}
 
 struct Range {
     double least;
@@ -98,7 +102,9 @@ class Validator {
     template <class T>
     void member(const char* name, const T& value, Range range) {
         const auto number = static_cast<double>(value);
-        if (number >= range.least && number <= range.most) { return; }
+        if (number >= range.least && number <= range.most) {
+            return;
+        }
         faults_->push_back(
             fmt::format("{}{}: {} is not from {} to {}", prefix_, name, number, range.least, range.most));
     }
@@ -116,8 +122,12 @@ class Reader {
     void group(const char* name, Members members) {
         known_.insert(prefix_ + name);
         const auto found = json_->find(name);
-        if (found == json_->end()) { return; }
-        if (!found->is_object()) { return fault(name, "is not an object"); }
+        if (found == json_->end()) {
+            return;
+        }
+        if (!found->is_object()) {
+            return fault(name, "is not an object");
+        }
         const Json* outer = std::exchange(json_, &*found);
         const std::string outer_prefix = std::exchange(prefix_, fmt::format("{}{}.", prefix_, name));
         members();
@@ -129,11 +139,15 @@ class Reader {
     void member(const char* name, T& value, Range range = {}) {
         known_.insert(prefix_ + name);
         const auto found = json_->find(name);
-        if (found != json_->end()) { read(name, *found, value, range); }
+        if (found != json_->end()) {
+            read(name, *found, value, range);
+        }
     }
     void report_unknown() {
         for (const auto& [name, value] : json_->items()) {
-            if (!known_.contains(prefix_ + name)) { fault(name, "is unknown"); }
+            if (!known_.contains(prefix_ + name)) {
+                fault(name, "is unknown");
+            }
         }
     }
 
@@ -142,12 +156,14 @@ class Reader {
         faults_->push_back(fmt::format("{}{}: {}", prefix_, name, what));
     }
     void read(const char* name, const Json& json, bool& value, Range /*range*/) {
-        if (!json.is_boolean()) { return fault(name, "is not true or false"); }
+        if (!json.is_boolean()) {
+            return fault(name, "is not true or false");
+        }
         value = json.get<bool>();
     }
     void read(const char* name, const Json& json, std::uint32_t& value, Range range) {
-        const bool fits = json.is_number_integer() && json.get<double>() >= range.least &&
-                          json.get<double>() <= range.most;
+        const bool fits =
+            json.is_number_integer() && json.get<double>() >= range.least && json.get<double>() <= range.most;
         if (!fits) {
             return fault(name, fmt::format("is not a whole number from {} to {}", range.least, range.most));
         }
@@ -155,7 +171,9 @@ class Reader {
     }
     void read(const char* name, const Json& json, float& value, Range range) {
         const bool infinite = json.is_string() && json.get<std::string>() == "infinity";
-        if (!json.is_number() && !infinite) { return fault(name, "is not a number"); }
+        if (!json.is_number() && !infinite) {
+            return fault(name, "is not a number");
+        }
         const double number = infinite ? std::numeric_limits<double>::infinity() : json.get<double>();
         if (number < range.least || number > range.most) {
             return fault(name, fmt::format("is not from {} to {}", range.least, range.most));
@@ -163,7 +181,7 @@ class Reader {
         value = static_cast<float>(number);
     }
     template <class E>
-        requires std::is_enum_v<E>
+    requires std::is_enum_v<E>
     void read(const char* name, const Json& json, E& value, Range /*range*/) {
         const auto names = names_of(value);
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -194,7 +212,9 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     Reader reader(json, result.faults);
     visit(configuration, reader);
     reader.report_unknown();
-    if (result.faults.empty()) { result.configuration = configuration; }
+    if (result.faults.empty()) {
+        result.configuration = configuration;
+    }
     return result;
 }
 
@@ -230,7 +250,11 @@ std::span<const NamedConfiguration> named_configurations() {
     return configurations;
 }
 
-std::string_view to_string(ShadingPath path) { return path_names[static_cast<std::size_t>(path)]; }
-std::string_view to_string(Show show) { return show_names[static_cast<std::size_t>(show)]; }
+std::string_view to_string(ShadingPath path) {
+    return path_names[static_cast<std::size_t>(path)];
+}
+std::string_view to_string(Show show) {
+    return show_names[static_cast<std::size_t>(show)];
+}
 
 }  // namespace candela

@@ -17,7 +17,8 @@ namespace candela {
 /// How surfaces are found and shaded.
 enum class ShadingPath : std::uint8_t { forward, deferred };
 
-/// Everything that a user chooses about a frame. The defaults are what the app uses when nothing else is asked for.
+/// Everything that a user chooses about a frame. The defaults are what the app uses when nothing else is
+/// asked for.
 struct Configuration {
     ShadingPath path = ShadingPath::deferred;
     Show show = Show::total;
@@ -35,8 +36,8 @@ struct ConfigurationResult {
     std::vector<std::string> faults;
 };
 
-/// Reads a JSON object; members that are left out keep the values of `base`. Unknown members, wrong types and values
-/// out of range are faults, each named by its place: "vpls.count: ...".
+/// Reads a JSON object; members that are left out keep the values of `base`. Unknown members, wrong types and
+/// values out of range are faults, each named by its place: "vpls.count: ...".
 [[nodiscard]] ConfigurationResult read_configuration(std::string_view json, const Configuration& base = {});
 
 /// All members as JSON; `read_configuration` gives the same value back.

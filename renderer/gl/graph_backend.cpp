@@ -22,24 +22,32 @@ ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& de
 
 void GraphBackend::destroy_texture(ObjectId texture) {
     // Framebuffers would keep the storage alive, and a later texture may get the same name.
-    std::erase_if(framebuffers_, [&](const auto& entry) { return std::ranges::count(entry.first, texture) > 0; });
+    std::erase_if(framebuffers_,
+                  [&](const auto& entry) { return std::ranges::count(entry.first, texture) > 0; });
     textures_.erase(texture);
 }
 
-void GraphBackend::destroy_buffer(ObjectId buffer) { buffers_.erase(buffer); }
+void GraphBackend::destroy_buffer(ObjectId buffer) {
+    buffers_.erase(buffer);
+}
 
-void GraphBackend::barrier(Barrier bits) { device_->gl().MemoryBarrier(barrier_bits(bits)); }
+void GraphBackend::barrier(Barrier bits) {
+    device_->gl().MemoryBarrier(barrier_bits(bits));
+}
 
 void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) {
     const Functions& gl = device_->gl();
+    if (targets != nullptr) {
+        bind_targets(*targets);
+    }
     gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
     timer_.begin_pass(index);
     gl.Disable(GL_DEPTH_TEST);
     gl.Disable(GL_CULL_FACE);
     gl.Disable(GL_BLEND);
     gl.FrontFace(GL_CCW);
+    gl.DepthFunc(GL_GREATER);
     gl.DepthMask(GL_TRUE);
-    if (targets != nullptr) { bind_targets(*targets); }
 }
 
 void GraphBackend::end_pass() {
@@ -54,8 +62,12 @@ void GraphBackend::bind_targets(const PassTargets& targets) {
     if (found == framebuffers_.end()) {
         Framebuffer framebuffer(*device_, "pass targets");
         std::uint32_t index = 0;
-        for (const ObjectId colour : targets.colour) { framebuffer.attach_colour(index++, colour); }
-        if (targets.depth != 0) { framebuffer.attach_depth(targets.depth); }
+        for (const ObjectId colour : targets.colour) {
+            framebuffer.attach_colour(index++, colour);
+        }
+        if (targets.depth != 0) {
+            framebuffer.attach_depth(targets.depth);
+        }
         framebuffer.draw_buffers(index);
         framebuffer.check();
         found = framebuffers_.emplace(std::move(key), std::move(framebuffer)).first;
@@ -78,7 +90,9 @@ GLbitfield barrier_bits(Barrier barrier) {
          {Barrier::storage, GL_SHADER_STORAGE_BARRIER_BIT}}};
     GLbitfield bits = 0;
     for (const auto& [planned, bit] : table) {
-        if ((barrier & planned) != Barrier::none) { bits |= bit; }
+        if ((barrier & planned) != Barrier::none) {
+            bits |= bit;
+        }
     }
     return bits;
 }

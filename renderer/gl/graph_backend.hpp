@@ -13,9 +13,10 @@
 
 namespace candela::gl {
 
-/// Gives the resources of a frame graph their GL objects; an ObjectId is the object's GL name. Before each pass it
-/// binds the pass's attachments and puts the state that passes change back to what they start from:
-/// no depth test, no culling, no blending, depth and colour written, viewport of the attachments.
+/// Gives the resources of a frame graph their GL objects; an ObjectId is the object's GL name. Before each
+/// pass it binds the pass's attachments and puts the state that passes change back to what they start from:
+/// no depth test (where a pass turns it on, the greater of the reversed depths wins), no culling, no
+/// blending, depth and colour written, viewport of the attachments.
 class GraphBackend final : public Backend {
  public:
     /// The device outlives the back end.

@@ -6,22 +6,13 @@ namespace candela::gl {
 namespace {
 
 // What a host may have enabled that would change the picture.
-constexpr std::array<GLenum, 15> capabilities{GL_BLEND,
-                                              GL_COLOR_LOGIC_OP,
-                                              GL_CULL_FACE,
-                                              GL_DEPTH_CLAMP,
-                                              GL_DEPTH_TEST,
-                                              GL_FRAMEBUFFER_SRGB,
-                                              GL_MULTISAMPLE,
-                                              GL_POLYGON_OFFSET_FILL,
-                                              GL_PRIMITIVE_RESTART,
-                                              GL_RASTERIZER_DISCARD,
-                                              GL_SAMPLE_ALPHA_TO_COVERAGE,
-                                              GL_SAMPLE_MASK,
-                                              GL_SCISSOR_TEST,
-                                              GL_STENCIL_TEST,
-                                              // Seamless filtering would compare one face's depth with another's.
-                                              GL_TEXTURE_CUBE_MAP_SEAMLESS};
+constexpr std::array<GLenum, 17> capabilities{
+    GL_BLEND, GL_COLOR_LOGIC_OP, GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DEPTH_TEST, GL_FRAMEBUFFER_SRGB,
+    GL_MULTISAMPLE, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART, GL_PRIMITIVE_RESTART_FIXED_INDEX,
+    GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_SCISSOR_TEST,
+    GL_STENCIL_TEST,
+    // Seamless filtering would compare one face's depth with another's.
+    GL_TEXTURE_CUBE_MAP_SEAMLESS};
 
 }  // namespace
 
@@ -40,6 +31,7 @@ HostState::HostState(const Functions& gl)
     gl.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
     gl.GetBooleanv(GL_COLOR_WRITEMASK, colour_mask_.data());
     gl.GetIntegerv(GL_VIEWPORT, viewport_.data());
+    gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode_.data());
     gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour_.data());
     gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
     for (const GLenum capability : capabilities) {
@@ -48,6 +40,7 @@ HostState::HostState(const Functions& gl)
     }
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     gl.CullFace(GL_BACK);
+    gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
@@ -59,6 +52,9 @@ HostState::~HostState() {
     }
     for (GLuint binding = 0; binding <= BINDING_LAST; ++binding) {
         gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
+    }
+    for (GLuint image = 0; image <= IMAGE_LAST; ++image) {
+        gl.BindImageTexture(image, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
     }
     gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
     for (std::size_t i = 0; i < capabilities.size(); ++i) {
@@ -76,6 +72,7 @@ HostState::~HostState() {
     gl.DepthFunc(static_cast<GLenum>(depth_func_));
     gl.FrontFace(static_cast<GLenum>(front_face_));
     gl.CullFace(static_cast<GLenum>(cull_face_));
+    gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_[0]));
     gl.ClipControl(static_cast<GLenum>(clip_origin_), static_cast<GLenum>(clip_depth_));
     gl.DepthMask(depth_mask_);
     gl.ColorMask(colour_mask_[0], colour_mask_[1], colour_mask_[2], colour_mask_[3]);

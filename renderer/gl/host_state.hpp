@@ -7,10 +7,10 @@
 
 namespace candela::gl {
 
-/// Puts the host's state aside and sets what rendering assumes: depth in [0, 1] (glClipControl), and nothing enabled
-/// that a host may have turned on. At its end the host finds its framebuffers, program, vertex array, viewport,
-/// enables, depth, colour and clip state as they were. Texture units, samplers, indexed buffers and the indirect
-/// buffer that rendering used are left unbound.
+/// Puts the host's state aside and sets what rendering assumes: depth in [0, 1] (glClipControl), and nothing
+/// enabled that a host may have turned on. At its end the host finds its framebuffers, program, vertex array,
+/// viewport, enables, depth, culling, polygon, colour and clip state as they were. Texture units, samplers,
+/// indexed buffers and the indirect buffer that rendering used are left unbound.
 class HostState {
  public:
     explicit HostState(const Functions& gl);
@@ -34,6 +34,7 @@ class HostState {
     GLint clip_depth_;
     GLboolean depth_mask_ = GL_TRUE;
     std::array<GLint, 4> viewport_{};
+    std::array<GLint, 2> polygon_mode_{};  // one of both faces; some drivers write two values
     std::array<GLboolean, 4> colour_mask_{};
     std::array<GLfloat, 4> clear_colour_{};
     GLfloat clear_depth_ = 0.0F;

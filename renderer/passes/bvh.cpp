@@ -23,14 +23,18 @@ struct WorldTriangles {
     std::vector<Origin> origins;
 };
 
-glm::vec3 transformed(const glm::mat4& matrix, glm::vec3 point) { return glm::vec3(matrix * glm::vec4(point, 1.0F)); }
+glm::vec3 transformed(const glm::mat4& matrix, glm::vec3 point) {
+    return glm::vec3(matrix * glm::vec4(point, 1.0F));
+}
 
 /// The indices of a triangle's corners, counter-clockwise in the world.
 glm::uvec3 corners(const SceneLayout& layout, const Origin& origin) {
     const SceneLayout::Drawable& drawable = layout.drawables[origin.drawable];
     const auto& indices = drawable.primitive->indices;
     const std::uint32_t i = origin.first_index;
-    if (layout.geometry.items[drawable.item].mirrored) { return {indices[i], indices[i + 2], indices[i + 1]}; }
+    if (layout.geometry.items[drawable.item].mirrored) {
+        return {indices[i], indices[i + 2], indices[i + 1]};
+    }
     return {indices[i], indices[i + 1], indices[i + 2]};
 }
 
@@ -53,7 +57,9 @@ WorldTriangles place_triangles(const SceneLayout& layout, const ScenePlacement& 
 
 std::vector<const Primitive*> primitives_of(const SceneLayout& layout) {
     std::vector<const Primitive*> primitives;
-    for (const SceneLayout::Drawable& drawable : layout.drawables) { primitives.push_back(drawable.primitive); }
+    for (const SceneLayout::Drawable& drawable : layout.drawables) {
+        primitives.push_back(drawable.primitive);
+    }
     return primitives;
 }
 
@@ -66,7 +72,9 @@ SceneHierarchy build(const SceneLayout& layout, std::span<const Triangle> triang
 SceneHierarchy update(const SceneHierarchy* previous, const SceneLayout& layout,
                       std::span<const Triangle> triangles) {
     const bool same_topology = previous != nullptr && previous->built_for == primitives_of(layout);
-    if (!same_topology) { return build(layout, triangles); }
+    if (!same_topology) {
+        return build(layout, triangles);
+    }
     SceneHierarchy refitted = *previous;
     refit(refitted.bvh, triangles);
     const bool degraded = sah_cost(refitted.bvh) > rebuild_above * refitted.built_cost;
@@ -98,7 +106,9 @@ std::vector<gpu::TraceTriangle> trace_triangles(const SceneLayout& layout, const
 SceneMetrics measure(const SceneLayout& layout, const WorldTriangles& world) {
     SceneMetrics metrics;
     metrics.triangles = world.triangles.size();
-    if (world.triangles.empty()) { return metrics; }
+    if (world.triangles.empty()) {
+        return metrics;
+    }
     std::vector<float> albedo;
     for (const auto& material : layout.materials) {
         const glm::vec3 mean = mean_albedo(*material);
@@ -113,7 +123,8 @@ SceneMetrics measure(const SceneLayout& layout, const WorldTriangles& world) {
         metrics.upper = glm::max(metrics.upper, glm::max(t.a, glm::max(t.b, t.c)));
         const double area = 0.5 * static_cast<double>(glm::length(glm::cross(t.b - t.a, t.c - t.a)));
         area_sum += area;
-        reflecting_sum += area * static_cast<double>(albedo[layout.drawables[world.origins[i].drawable].material]);
+        reflecting_sum +=
+            area * static_cast<double>(albedo[layout.drawables[world.origins[i].drawable].material]);
     }
     metrics.area = static_cast<float>(area_sum);
     metrics.mean_albedo = area_sum > 0.0 ? static_cast<float>(reflecting_sum / area_sum) : 0.0F;
@@ -128,9 +139,10 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
         pass.read(scene.placement);
         const auto hierarchy = pass.write(graph.value<SceneHierarchy>("hierarchy"));
         const Tracing out{
-            .nodes = pass.write(graph.buffer<gpu::BvhNode>("bvh nodes", 1, Lifetime::persistent), Usage::copy),
-            .triangles =
-                pass.write(graph.buffer<gpu::TraceTriangle>("triangles", 1, Lifetime::persistent), Usage::copy),
+            .nodes =
+                pass.write(graph.buffer<gpu::BvhNode>("bvh nodes", 1, Lifetime::persistent), Usage::copy),
+            .triangles = pass.write(graph.buffer<gpu::TraceTriangle>("triangles", 1, Lifetime::persistent),
+                                    Usage::copy),
             .materials = scene.materials,
             .texels = scene.texels,
             .metrics = pass.write(graph.value<SceneMetrics>("scene metrics"))};
@@ -139,7 +151,8 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
             const WorldTriangles world = place_triangles(layout, run.value(placement_handle));
             SceneHierarchy updated = update(run.find(hierarchy), layout, world.triangles);
             upload<gpu::BvhNode>(gpu, run, out.nodes, updated.bvh.nodes);
-            upload<gpu::TraceTriangle>(gpu, run, out.triangles, trace_triangles(layout, world, updated.bvh.order));
+            upload<gpu::TraceTriangle>(gpu, run, out.triangles,
+                                       trace_triangles(layout, world, updated.bvh.order));
             run.set(out.metrics, measure(layout, world));
             run.set(hierarchy, std::move(updated));
         });

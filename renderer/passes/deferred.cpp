@@ -1,8 +1,14 @@
 #include "renderer/passes/deferred.hpp"
 
 #include "engine/graph/execute.hpp"
+#include "shaders/bindings.glsl"
 
 namespace candela {
+namespace {
+
+constexpr std::uint32_t tile_size = 16;  // pixels along an edge of what a work group shades: shaders/deferred.comp
+
+}  // namespace
 
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
                            ValueHandle<CameraView> view, glm::uvec2 size) {
@@ -12,17 +18,18 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
         pass.read(gbuffer.depth, Usage::sampled);
         read_lighting(pass, lighting);
         pass.read(view);
-        const gl::Program& program = gpu.program({"fullscreen.vert", "deferred.frag"});
-        const auto radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
+        const gl::Program& program = gpu.program({"deferred.comp"});
+        const auto radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::storage);
         pass.run([=, &gpu, &program](Execution& run) {
-            gpu.gl().BindTextureUnit(UNIT_ALBEDO, run.object(gbuffer.albedo));
-            gpu.gl().BindTextureUnit(UNIT_NORMAL, run.object(gbuffer.normal));
-            gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(gbuffer.depth));
-            gpu.gl().ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
-            gpu.gl().Clear(GL_COLOR_BUFFER_BIT);
+            const gl::Functions& gl = gpu.gl();
+            gl.BindTextureUnit(UNIT_ALBEDO, run.object(gbuffer.albedo));
+            gl.BindTextureUnit(UNIT_NORMAL, run.object(gbuffer.normal));
+            gl.BindTextureUnit(UNIT_DEPTH, run.object(gbuffer.depth));
+            gl.BindImageTexture(IMAGE_RADIANCE, run.object(radiance), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
             bind_view(program, run.value(view), size);
             bind_lighting(gpu, run, program, lighting);
-            gpu.draw_fullscreen(program);
+            program.use();
+            gl.DispatchCompute((size.x + tile_size - 1) / tile_size, (size.y + tile_size - 1) / tile_size, 1);
         });
         return radiance;
     });

@@ -8,8 +8,9 @@
 
 namespace candela {
 
-/// Node `deferred`: shades the G-buffer in one pass over all lights. Gives radiance, rgba32f.
-[[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
-                                         ValueHandle<CameraView> view, glm::uvec2 size);
+/// Node `deferred`: shades the G-buffer in one dispatch over all lights. Gives radiance, rgba32f.
+[[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer,
+                                         const Lighting& lighting, ValueHandle<CameraView> view,
+                                         glm::uvec2 size);
 
 }  // namespace candela

@@ -21,7 +21,9 @@ void read_meshes(Pass& pass, const SceneData& scene) {
     pass.read(scene.instances, Usage::storage);
 }
 
-void read_materials(Pass& pass, const SceneData& scene) { pass.read(scene.materials, Usage::storage); }
+void read_materials(Pass& pass, const SceneData& scene) {
+    pass.read(scene.materials, Usage::storage);
+}
 
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     gl::VertexArray& vertices = gpu.mesh_vertices();
@@ -43,7 +45,6 @@ void begin_surfaces(const Gpu& gpu) {
     gl.ClearDepthf(0.0F);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_GREATER);
 }
 
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program) {

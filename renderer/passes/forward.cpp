@@ -13,7 +13,8 @@ TextureHandle add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, c
         read_lighting(pass, lighting);
         pass.read(view);
         const gl::Program& program = gpu.program({"mesh_surface.vert", "forward.frag"});
-        const auto radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
+        const auto radiance =
+            pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
         const auto depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
         static_cast<void>(depth);  // nobody reads it
         pass.run([=, &gpu, &program](Execution& run) {

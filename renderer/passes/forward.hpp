@@ -9,7 +9,8 @@
 namespace candela {
 
 /// Node `forward`: rasterises the surfaces and shades them at once. Gives radiance, rgba32f.
-[[nodiscard]] TextureHandle add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                                        ValueHandle<CameraView> view, glm::uvec2 size);
+[[nodiscard]] TextureHandle add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                        const Lighting& lighting, ValueHandle<CameraView> view,
+                                        glm::uvec2 size);
 
 }  // namespace candela

@@ -5,7 +5,8 @@
 
 namespace candela {
 
-Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<CameraView> view, glm::uvec2 size) {
+Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<CameraView> view,
+                    glm::uvec2 size) {
     return graph.add("gbuffer", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);

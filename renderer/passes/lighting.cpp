@@ -14,8 +14,10 @@ LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<Lig
         pass.read(lights);
         pass.read(plan);
         const LightBuffers out{
-            .lights = pass.write(graph.buffer<gpu::Light>("light buffer", 1, Lifetime::persistent), Usage::copy),
-            .shadows = pass.write(graph.buffer<gpu::Shadow>("shadow buffer", 1, Lifetime::persistent), Usage::copy)};
+            .lights =
+                pass.write(graph.buffer<gpu::Light>("light buffer", 1, Lifetime::persistent), Usage::copy),
+            .shadows =
+                pass.write(graph.buffer<gpu::Shadow>("shadow buffer", 1, Lifetime::persistent), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const LightTable& table = run.value(lights);
             const ShadowPlan& shadows = run.value(plan);
@@ -32,7 +34,9 @@ LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<Lig
 }
 
 float bound_geometry_term(float factor, std::uint32_t vpl_count, float area) {
-    if (area <= 0.0F) { return std::numeric_limits<float>::max(); }
+    if (area <= 0.0F) {
+        return std::numeric_limits<float>::max();
+    }
     const float bound = factor * std::numbers::pi_v<float> * static_cast<float>(vpl_count) / area;
     return std::min(bound, std::numeric_limits<float>::max());
 }
@@ -65,7 +69,9 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
     const bool indirect = lighting.vpls && lighting.show != Show::direct;
     const std::uint32_t vpls = indirect ? run.value(lighting.vpls->paths).vpl_count : 0U;
     program.set("vpl_count", vpls);
-    if (vpls == 0) { return; }
+    if (vpls == 0) {
+        return;
+    }
     gpu.bind_storage(BINDING_VPLS, run.object(lighting.vpls->vpls));
     program.set("geometry_bound",
                 bound_geometry_term(lighting.geometry_bound, vpls, run.value(lighting.metrics).area));

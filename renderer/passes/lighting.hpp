@@ -35,10 +35,10 @@ struct Lighting {
     float geometry_bound = 1.0F;  ///< see `bound_geometry_term`
 };
 
-/// Bound on a VPL's geometry term cos θ cos θ' / r², in 1/m². N VPLs stand for patches of A/N each, A being the area
-/// of the scene's surfaces. Seen from anywhere, such a patch has a form factor of at most 1, and a VPL stands for it
-/// with G/π · A/N; so G above π N / A is an artefact of the point. `factor` scales that bound: 1 is the bound itself,
-/// infinity none. It rises with N, and the energy that it costs vanishes.
+/// Bound on a VPL's geometry term cos θ cos θ' / r², in 1/m². N VPLs stand for patches of A/N each, A being
+/// the area of the scene's surfaces. Seen from anywhere, such a patch has a form factor of at most 1, and a
+/// VPL stands for it with G/π · A/N; so G above π N / A is an artefact of the point. `factor` scales that
+/// bound: 1 is the bound itself, infinity none. It rises with N, and the energy that it costs vanishes.
 [[nodiscard]] float bound_geometry_term(float factor, std::uint32_t vpl_count, float area);
 
 /// For a pass that shades: declares its reads, and binds them and sets its uniforms when it runs.

@@ -14,9 +14,13 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-bool emits(glm::vec3 intensity) { return intensity.r > 0.0F || intensity.g > 0.0F || intensity.b > 0.0F; }
+bool emits(glm::vec3 intensity) {
+    return intensity.r > 0.0F || intensity.g > 0.0F || intensity.b > 0.0F;
+}
 
-glm::vec3 position_of(const glm::mat4& world) { return glm::vec3(world[3]); }
+glm::vec3 position_of(const glm::mat4& world) {
+    return glm::vec3(world[3]);
+}
 
 /// The way the light travels: its local -Z.
 glm::vec3 direction_of(const glm::mat4& world) {
@@ -36,8 +40,9 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
             .casts_shadow = light.casts_shadow};
 }
 
-/// Inside the inner cone the intensity is full; from there to the outer one it falls with the square of a linear
-/// ramp in the cosine (KHR_lights_punctual). Its integral over the sphere is 2π ((1 - cᵢ) + (cᵢ - cₒ) / 3).
+/// Inside the inner cone the intensity is full; from there to the outer one it falls with the square of a
+/// linear ramp in the cosine (KHR_lights_punctual). Its integral over the sphere is 2π ((1 - cᵢ) + (cᵢ - cₒ)
+/// / 3).
 LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::mat4& world) {
     const float cos_outer = std::cos(light.outer_cone);
     // A hard edge keeps a ramp of a thousandth of the cone, as the extension suggests.
@@ -89,7 +94,8 @@ LightTable gather(const World& world, const SceneMetrics& metrics) {
     for (const auto& [entity, light] : world.view<DirectionalLight>()) {
         table.entries.push_back(directional_entry(entity, light, world_matrix(world, entity), metrics));
     }
-    std::erase_if(table.entries, [](const LightTable::Entry& entry) { return !emits(entry.light.intensity); });
+    std::erase_if(table.entries,
+                  [](const LightTable::Entry& entry) { return !emits(entry.light.intensity); });
     return table;
 }
 

@@ -14,7 +14,8 @@ struct LightTable {
     struct Entry {
         Entity entity;
         gpu::Light light;
-        glm::vec3 flux{0.0F};  ///< emitted, lm or W as the intensity has it; directional: through its footprint
+        glm::vec3 flux{
+            0.0F};  ///< emitted, lm or W as the intensity has it; directional: through its footprint
         bool casts_shadow = true;
         bool operator==(const Entry&) const = default;
     };
@@ -22,12 +23,12 @@ struct LightTable {
     bool operator==(const LightTable&) const = default;
 };
 
-/// Node `lights` (CPU): gathers the light components, points, then spots, then directional ones. Lights that emit
-/// nothing are left out.
+/// Node `lights` (CPU): gathers the light components, points, then spots, then directional ones. Lights that
+/// emit nothing are left out.
 [[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics);
 
-/// Orthonormal basis around a unit vector, as shaders/maths.glsl has it: Duff et al., "Building an Orthonormal Basis,
-/// Revisited" (2017), eq. 3.
+/// Orthonormal basis around a unit vector, as shaders/maths.glsl has it: Duff et al., "Building an
+/// Orthonormal Basis, Revisited" (2017), eq. 3.
 struct Basis {
     glm::vec3 tangent;
     glm::vec3 bitangent;

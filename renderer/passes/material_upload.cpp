@@ -17,17 +17,21 @@ constexpr std::uint32_t traced_image_size = 256;
 
 GLint wrap_mode(Wrap wrap) {
     switch (wrap) {
-        case Wrap::mirrored_repeat: return GL_MIRRORED_REPEAT;
-        case Wrap::clamp_to_edge: return GL_CLAMP_TO_EDGE;
-        case Wrap::repeat: break;
+        case Wrap::mirrored_repeat:
+            return GL_MIRRORED_REPEAT;
+        case Wrap::clamp_to_edge:
+            return GL_CLAMP_TO_EDGE;
+        case Wrap::repeat:
+            break;
     }
     return GL_REPEAT;
 }
 
 std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& image) {
-    const TextureDesc desc{.size = {image.width, image.height},
-                           .format = Format::srgb8_alpha8,
-                           .mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)))};
+    const TextureDesc desc{
+        .size = {image.width, image.height},
+        .format = Format::srgb8_alpha8,
+        .mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)))};
     gl::Texture texture(gpu.device(), "base colour", desc);
     texture.upload(std::as_bytes(std::span(image.texels)));
     texture.generate_mips();
@@ -42,13 +46,15 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
 /// The image scaled down, if need be, to what tracing reads.
 Image reduce(const Image& image) {
     const std::uint32_t longer = std::max(image.width, image.height);
-    if (longer <= traced_image_size) { return image; }
+    if (longer <= traced_image_size) {
+        return image;
+    }
     Image reduced = image;
     reduced.width = std::max(1U, image.width * traced_image_size / longer);
     reduced.height = std::max(1U, image.height * traced_image_size / longer);
     reduced.texels.resize(static_cast<std::size_t>(reduced.width) * reduced.height);
-    stbir_resize_uint8_srgb(&image.texels[0].x, static_cast<int>(image.width), static_cast<int>(image.height), 0,
-                            &reduced.texels[0].x, static_cast<int>(reduced.width),
+    stbir_resize_uint8_srgb(&image.texels[0].x, static_cast<int>(image.width), static_cast<int>(image.height),
+                            0, &reduced.texels[0].x, static_cast<int>(reduced.width),
                             static_cast<int>(reduced.height), 0, 4, STBIR_ALPHA_CHANNEL_NONE, 0);
     return reduced;
 }
@@ -78,7 +84,9 @@ float srgb_decode(std::uint8_t encoded) {
 std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& material) {
     const auto [found, is_new] =
         material_index_.try_emplace(material.get(), static_cast<std::uint32_t>(materials_.size()));
-    if (!is_new) { return found->second; }
+    if (!is_new) {
+        return found->second;
+    }
     const std::uint32_t image = material->base_colour_texture ? add_image(material->base_colour_texture) : 0;
     materials_.push_back(material);
     image_of_.push_back(image);
@@ -91,8 +99,11 @@ std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& mat
 }
 
 std::uint32_t MaterialTable::add_image(const std::shared_ptr<const Image>& image) {
-    const auto [found, is_new] = image_index_.try_emplace(image.get(), static_cast<std::uint32_t>(images_.size()));
-    if (!is_new) { return found->second; }
+    const auto [found, is_new] =
+        image_index_.try_emplace(image.get(), static_cast<std::uint32_t>(images_.size()));
+    if (!is_new) {
+        return found->second;
+    }
     const Image reduced = reduce(*image);
     images_.push_back({.texture = upload_texture(*gpu_, *image),
                        .first_texel = static_cast<std::uint32_t>(texels_.size()),
@@ -109,9 +120,13 @@ std::shared_ptr<const MaterialTexture> MaterialTable::texture(std::uint32_t mate
 glm::vec3 mean_albedo(const Material& material) {
     const glm::vec3 factor(material.base_colour);
     const Image* image = material.base_colour_texture.get();
-    if (image == nullptr || image->texels.empty()) { return factor; }
+    if (image == nullptr || image->texels.empty()) {
+        return factor;
+    }
     std::array<double, 256> decoded{};
-    for (std::size_t i = 0; i < decoded.size(); ++i) { decoded[i] = srgb_decode(static_cast<std::uint8_t>(i)); }
+    for (std::size_t i = 0; i < decoded.size(); ++i) {
+        decoded[i] = srgb_decode(static_cast<std::uint8_t>(i));
+    }
     glm::dvec3 sum(0.0);
     for (const glm::u8vec4& texel : image->texels) {
         sum += glm::dvec3(decoded[texel.r], decoded[texel.g], decoded[texel.b]);

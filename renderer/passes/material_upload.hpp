@@ -11,8 +11,8 @@
 
 namespace candela {
 
-/// The materials of a scene, each once, in the order in which they are met, with their images on the GPU: as textures
-/// for rasterising, and reduced in a buffer of texels for tracing.
+/// The materials of a scene, each once, in the order in which they are met, with their images on the GPU: as
+/// textures for rasterising, and reduced in a buffer of texels for tracing.
 class MaterialTable {
  public:
     explicit MaterialTable(Gpu& gpu) : gpu_(&gpu) {}

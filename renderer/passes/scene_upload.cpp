@@ -40,7 +40,8 @@ Gathered add_scene_gather(FrameGraph& graph) {
     });
 }
 
-/// Indices of the drawables in drawing order: grouped by image, sidedness and winding, otherwise as they were.
+/// Indices of the drawables in drawing order: grouped by image, sidedness and winding, otherwise as they
+/// were.
 template <class Key>
 std::vector<std::uint32_t> stable_order(std::size_t count, Key key) {
     std::vector<std::uint32_t> order(count);
@@ -70,7 +71,9 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
                           drawable.primitive->material->double_sided, geometry.items[drawable.item].mirrored);
     };
     std::vector<SceneLayout::Drawable> ordered;
-    for (const std::uint32_t i : stable_order(drawables.size(), key)) { ordered.push_back(drawables[i]); }
+    for (const std::uint32_t i : stable_order(drawables.size(), key)) {
+        ordered.push_back(drawables[i]);
+    }
     return ordered;
 }
 
@@ -86,7 +89,8 @@ PackedMeshes pack_meshes(const std::vector<SceneLayout::Drawable>& drawables) {
                              .first_index = static_cast<std::uint32_t>(packed.indices.size()),
                              .base_vertex = static_cast<std::int32_t>(packed.vertices.size()),
                              .base_instance = 0};
-            packed.vertices.insert(packed.vertices.end(), primitive.vertices.begin(), primitive.vertices.end());
+            packed.vertices.insert(packed.vertices.end(), primitive.vertices.begin(),
+                                   primitive.vertices.end());
             packed.indices.insert(packed.indices.end(), primitive.indices.begin(), primitive.indices.end());
         }
         gpu::DrawCommand draw = found->second;

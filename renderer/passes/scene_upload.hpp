@@ -62,15 +62,16 @@ struct SceneData {
     ValueHandle<SceneLayout> layout;
     BufferHandle<Vertex> vertices;
     BufferHandle<std::uint32_t> indices;
-    BufferHandle<std::uint32_t> instance_ids;  ///< 0, 1, 2, ...: fetched per instance, from the draw's base instance on
+    BufferHandle<std::uint32_t>
+        instance_ids;  ///< 0, 1, 2, ...: fetched per instance, from the draw's base instance on
     BufferHandle<gpu::DrawCommand> draws;
     BufferHandle<gpu::Material> materials;
     BufferHandle<std::uint32_t> texels;  ///< reduced base-colour images, for tracing
     BufferHandle<gpu::Instance> instances;
 };
 
-/// Nodes `scene-gather` (CPU: what is where), `scene-upload` (meshes and materials, when what is there changes) and
-/// `instance-upload` (matrices, when something moves).
+/// Nodes `scene-gather` (CPU: what is where), `scene-upload` (meshes and materials, when what is there
+/// changes) and `instance-upload` (matrices, when something moves).
 [[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
 
 }  // namespace candela

@@ -77,7 +77,8 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metr
              std::uint32_t resolution) {
     const float texels = static_cast<float>(resolution);
     const float margin = 1.0F + 4.0F / texels;  // two texels all around, for the filter
-    const glm::mat4 view = look_along(light.position, light.direction, basis_around(light.direction).bitangent);
+    const glm::mat4 view =
+        look_along(light.position, light.direction, basis_around(light.direction).bitangent);
     gpu::Shadow shadow{.axis = light.direction, .near_plane = near_plane, .layer = plan.maps};
     if (light.kind == gpu::LightKind::spot) {
         const float tangent = margin * std::tan(std::acos(light.cos_outer));
@@ -121,19 +122,20 @@ TextureDesc map_desc(std::uint32_t resolution, std::uint32_t maps) {
 void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
                     const ShadowSettings& settings, const gl::Program& program) {
     const ShadowPlan& plan = run.value(out.plan);
-    run.reserve(out.cubes, plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
+    run.reserve(out.cubes,
+                plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
     run.reserve(out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
 
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
     program.use();
     gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_GREATER);
     gl.Enable(GL_DEPTH_CLAMP);
     gl.Disable(GL_CULL_FACE);
     gl::Framebuffer& target = gpu.layer_target();
     for (const ShadowPlan::View& view : plan.views) {
-        const auto resolution = static_cast<GLsizei>(view.cube ? settings.cube_resolution : settings.map_resolution);
+        const auto resolution =
+            static_cast<GLsizei>(view.cube ? settings.cube_resolution : settings.map_resolution);
         target.attach_depth_layer(run.object(view.cube ? out.cubes : out.maps), view.layer);
         target.bind();
         gl.Viewport(0, 0, resolution, resolution);
@@ -149,7 +151,8 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
 
 }  // namespace
 
-ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, const ShadowSettings& settings) {
+ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
+                        const ShadowSettings& settings) {
     ShadowPlan plan;
     plan.shadow_of_light.assign(lights.entries.size(), -1);
     const float near_plane = std::max(relative_near_plane * metrics.radius(), 1e-9F);
@@ -159,7 +162,9 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, c
     std::uint64_t budget = settings.enabled ? static_cast<std::uint64_t>(settings.budget_mib) << 20U : 0;
     for (const std::uint32_t i : by_importance(lights)) {
         const LightTable::Entry& entry = lights.entries[i];
-        if (!entry.casts_shadow || !settings.enabled) { continue; }
+        if (!entry.casts_shadow || !settings.enabled) {
+            continue;
+        }
         const bool cube = needs_cube(entry.light);
         const std::uint64_t cost =
             cube ? bytes(settings.cube_resolution, cube_faces) : bytes(settings.map_resolution, 1);
@@ -178,8 +183,9 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics, c
     return plan;
 }
 
-ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<LightTable> lights,
-                           ValueHandle<SceneMetrics> metrics, const ShadowSettings& settings) {
+ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                           ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
+                           const ShadowSettings& settings) {
     const auto plan = graph.add("shadow-plan", [&](Pass& pass) {
         pass.read(lights);
         pass.read(metrics);
@@ -201,7 +207,8 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
                                 Usage::layer_target),
             .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
                                Usage::layer_target)};
-        pass.run([=, &gpu, &program](Execution& run) { render_shadows(gpu, run, scene, out, settings, program); });
+        pass.run(
+            [=, &gpu, &program](Execution& run) { render_shadows(gpu, run, scene, out, settings, program); });
         return out;
     });
 }

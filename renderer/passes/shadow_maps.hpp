@@ -47,9 +47,9 @@ struct ShadowMaps {
 [[nodiscard]] ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                                       const ShadowSettings& settings);
 
-/// Nodes `shadow-plan` (CPU) and `shadow-maps`: depth of the scene, all its triangles from both sides, from every
-/// light that has a map. A point light looks through the six faces of a cube, a spot through its cone, a directional
-/// light through the rectangle that the scene covers.
+/// Nodes `shadow-plan` (CPU) and `shadow-maps`: depth of the scene, all its triangles from both sides, from
+/// every light that has a map. A point light looks through the six faces of a cube, a spot through its cone,
+/// a directional light through the rectangle that the scene covers.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

@@ -20,8 +20,8 @@ void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, TextureHa
     });
 }
 
-void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuint framebuffer, glm::uvec2 size,
-              const ToneMapSettings& settings) {
+void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuint framebuffer,
+              glm::uvec2 size, const ToneMapSettings& settings) {
     gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     gpu.gl().Viewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
     gpu.gl().BindTextureUnit(UNIT_RADIANCE, radiance);
@@ -30,6 +30,8 @@ void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuin
     gpu.draw_fullscreen(program);
 }
 
-const gl::Program& tone_map_program(Gpu& gpu) { return gpu.program({"fullscreen.vert", "tone_map.frag"}); }
+const gl::Program& tone_map_program(Gpu& gpu) {
+    return gpu.program({"fullscreen.vert", "tone_map.frag"});
+}
 
 }  // namespace candela

@@ -8,13 +8,16 @@
 
 namespace candela {
 
-/// Makes `data` the content of a persistent buffer that the running pass writes with Usage::copy. The buffer holds
-/// at least one element, so that it can always be bound.
+/// Makes `data` the content of a persistent buffer that the running pass writes with Usage::copy. The buffer
+/// holds at least one element, so that it can always be bound.
 template <class T>
 void upload(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, std::span<const T> data) {
     run.reserve(buffer, std::max<std::size_t>(data.size(), 1));
-    if (data.empty()) { return; }
-    gpu.gl().NamedBufferSubData(run.object(buffer), 0, static_cast<GLsizeiptr>(data.size_bytes()), data.data());
+    if (data.empty()) {
+        return;
+    }
+    gpu.gl().NamedBufferSubData(run.object(buffer), 0, static_cast<GLsizeiptr>(data.size_bytes()),
+                                data.data());
 }
 
 }  // namespace candela

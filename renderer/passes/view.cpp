@@ -10,8 +10,8 @@
 namespace candela {
 namespace {
 
-/// Reversed depth in [0, 1]: near / z without a far plane, otherwise the usual rational (or, orthographic, linear)
-/// map of [near, far] to [1, 0].
+/// Reversed depth in [0, 1]: near / z without a far plane, otherwise the usual rational (or, orthographic,
+/// linear) map of [near, far] to [1, 0].
 glm::mat4 projection(const Camera& camera, float aspect) {
     const float n = camera.near_plane;
     const float f = camera.far_plane;
@@ -49,8 +49,9 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, c
     jittered[3] = glm::vec4(-2.0F * request.jitter / size, 0.0F, 1.0F);
     const glm::mat4 pose = rigid(world_from_camera);
     // In doubles: the inverse of a view from far away loses the digits that shading needs.
-    const glm::dmat4 clip_from_world =
-        glm::dmat4(jittered) * glm::dmat4(projection(camera, size.x / size.y)) * glm::inverse(glm::dmat4(pose));
+    const glm::dmat4 clip_from_world = glm::dmat4(jittered) *
+                                       glm::dmat4(projection(camera, size.x / size.y)) *
+                                       glm::inverse(glm::dmat4(pose));
     return {glm::mat4(clip_from_world), glm::mat4(glm::inverse(clip_from_world)), glm::vec3(pose[3])};
 }
 

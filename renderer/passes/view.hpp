@@ -12,9 +12,9 @@ namespace candela {
 
 /// What the host asks of a frame.
 struct ViewRequest {
-    Entity camera;              ///< an entity with a Camera
-    glm::uvec2 size{1};         ///< pixels
-    glm::vec2 jitter{0.0F};     ///< pixels by which samples move off their pixels' centres, +x right, +y up
+    Entity camera;           ///< an entity with a Camera
+    glm::uvec2 size{1};      ///< pixels
+    glm::vec2 jitter{0.0F};  ///< pixels by which samples move off their pixels' centres, +x right, +y up
     bool operator==(const ViewRequest&) const = default;
 };
 
@@ -27,7 +27,8 @@ struct CameraView {
 };
 
 /// View of the camera with this local-to-world matrix. An infinite far plane is one.
-[[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request);
+[[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera,
+                                   const ViewRequest& request);
 
 /// Sets the uniforms by which shaders go between pixels and the world.
 void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size);

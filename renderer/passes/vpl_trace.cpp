@@ -11,11 +11,13 @@ namespace candela {
 namespace {
 
 constexpr std::uint32_t group_size = 32;  // as in shaders/vpl_trace.comp
-// Rays leave a surface this far above it, relative to the scene's radius: some hundred times the rounding of positions.
+// Rays leave a surface this far above it, relative to the scene's radius: some hundred times the rounding of
+// positions.
 constexpr float relative_ray_offset = 2e-5F;
 
 double power(const LightTable::Entry& entry) {
-    return static_cast<double>(entry.flux.r) + static_cast<double>(entry.flux.g) + static_cast<double>(entry.flux.b);
+    return static_cast<double>(entry.flux.r) + static_cast<double>(entry.flux.g) +
+           static_cast<double>(entry.flux.b);
 }
 
 /// Paths of one light.
@@ -25,8 +27,8 @@ struct Share {
     double expected;  ///< the share before rounding
 };
 
-/// Shares `count` paths out by systematic sampling of the lights' cumulative flux: each gets its expected share,
-/// rounded up or down, and the sum is right.
+/// Shares `count` paths out by systematic sampling of the lights' cumulative flux: each gets its expected
+/// share, rounded up or down, and the sum is right.
 std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
     const double total = std::accumulate(lights.entries.begin(), lights.entries.end(), 0.0,
                                          [](double sum, const auto& entry) { return sum + power(entry); });
@@ -37,15 +39,18 @@ std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
         const double expected = count * power(lights.entries[i]) / total;
         cumulative += expected;
         const bool last = i + 1 == lights.entries.size();
-        const std::uint32_t until = last ? count : std::min(count, static_cast<std::uint32_t>(cumulative + 0.5));
-        if (until > given) { shares.push_back({i, until - given, expected}); }
+        const std::uint32_t until =
+            last ? count : std::min(count, static_cast<std::uint32_t>(cumulative + 0.5));
+        if (until > given) {
+            shares.push_back({i, until - given, expected});
+        }
         given = std::max(given, until);
     }
     return shares;
 }
 
-/// Where between 0 and 1 a light's first path lies on the ladder of survival, so that the lights of one path each
-/// differ in how far they get.
+/// Where between 0 and 1 a light's first path lies on the ladder of survival, so that the lights of one path
+/// each differ in how far they get.
 double ladder_offset(std::uint32_t light) {
     constexpr double golden = 0.6180339887498949;
     return std::fmod((light + 0.5) * golden, 1.0);
@@ -54,7 +59,9 @@ double ladder_offset(std::uint32_t light) {
 /// Bounces of path `j` of `paths`: one, and one more for each k with (j + offset) / paths < ρᵏ.
 std::uint32_t bounces_of(double position, double albedo, std::uint32_t limit) {
     std::uint32_t bounces = 1;
-    for (double survival = albedo; bounces < limit && position < survival; survival *= albedo) { ++bounces; }
+    for (double survival = albedo; bounces < limit && position < survival; survival *= albedo) {
+        ++bounces;
+    }
     return bounces;
 }
 
@@ -99,7 +106,9 @@ std::uint32_t vpls_of(const std::vector<gpu::Path>& paths) {
 std::vector<float> continuation_weights(const std::vector<gpu::Path>& paths, std::uint32_t max_bounces) {
     std::vector<std::uint32_t> reach(max_bounces + 1, 0);  // paths that make more than i bounces
     for (const gpu::Path& path : paths) {
-        for (std::uint32_t i = 0; i < path.vpl_count; ++i) { ++reach[i]; }
+        for (std::uint32_t i = 0; i < path.vpl_count; ++i) {
+            ++reach[i];
+        }
     }
     std::vector<float> weights;
     for (std::uint32_t i = 0; i + 1 < max_bounces; ++i) {
@@ -108,11 +117,14 @@ std::vector<float> continuation_weights(const std::vector<gpu::Path>& paths, std
     return weights;
 }
 
-void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing, const Vpls& out) {
+void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
+           const Vpls& out) {
     const VplPaths& plan = run.value(out.paths);
     run.reserve(out.vpls, std::max(plan.vpl_count, 1U));
     run.reserve(out.flux, std::max<std::size_t>(plan.paths.size(), 1));
-    if (plan.paths.empty()) { return; }
+    if (plan.paths.empty()) {
+        return;
+    }
 
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
     bind_tracing(gpu, run, program, tracing);
@@ -141,7 +153,8 @@ PlannedPaths add_vpl_paths(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneM
         const PlannedPaths out{
             .plan = pass.write(graph.value<VplPaths>("vpl paths")),
             .paths = pass.write(graph.buffer<gpu::Path>("paths", 1, Lifetime::persistent), Usage::copy),
-            .continuation = pass.write(graph.buffer<float>("continuation", 1, Lifetime::persistent), Usage::copy)};
+            .continuation =
+                pass.write(graph.buffer<float>("continuation", 1, Lifetime::persistent), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             VplPaths plan = plan_paths(run.value(lights), run.value(metrics).mean_albedo, settings);
             upload<gpu::Path>(gpu, run, out.paths, plan.paths);
@@ -156,7 +169,9 @@ PlannedPaths add_vpl_paths(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneM
 
 VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
     VplPaths plan;
-    if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) { return plan; }
+    if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) {
+        return plan;
+    }
     const double albedo = std::clamp(static_cast<double>(mean_albedo), 0.0, 1.0);
     double vpls_per_path = 0.0;
     double survival = 1.0;
@@ -172,9 +187,12 @@ VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettin
         count -= std::clamp(fewer, 1U, count - 1);
         plan.paths = make_paths(lights, albedo, count, settings);
     }
-    plan.paths.back().vpl_count = std::min(plan.paths.back().vpl_count, settings.count);  // a single path may be too long
+    plan.paths.back().vpl_count =
+        std::min(plan.paths.back().vpl_count, settings.count);  // a single path may be too long
     plan.vpl_count = vpls_of(plan.paths);
-    for (const gpu::Path& path : plan.paths) { plan.max_bounces = std::max(plan.max_bounces, path.vpl_count); }
+    for (const gpu::Path& path : plan.paths) {
+        plan.max_bounces = std::max(plan.max_bounces, path.vpl_count);
+    }
     plan.continuation = continuation_weights(plan.paths, plan.max_bounces);
     return plan;
 }
@@ -192,7 +210,8 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
         const Vpls out{
             .paths = planned.plan,
             .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
-            .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage)};
+            .flux =
+                pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage)};
         pass.run([=, &gpu, &program](Execution& run) {
             gpu.bind_storage(BINDING_LIGHTS, run.object(light_buffer));
             gpu.bind_storage(BINDING_PATHS, run.object(planned.paths));

@@ -29,17 +29,18 @@ struct VplPaths {
 
 struct Vpls {
     ValueHandle<VplPaths> paths;
-    BufferHandle<gpu::Vpl> vpls;          ///< `VplPaths::vpl_count` of them, in the order of paths, then bounces
+    BufferHandle<gpu::Vpl> vpls;  ///< `VplPaths::vpl_count` of them, in the order of paths, then bounces
     BufferHandle<gpu::FluxAccount> flux;  ///< one a path
 };
 
-/// Shares the VPLs out. Lights get paths in proportion to their flux; of a light's n paths the first n·ρᵏ go on to
-/// bounce k + 1, ρ being the scene's mean albedo, so that all VPLs carry about the same flux: Keller, "Instant
-/// Radiosity" (1997), section 3.1. Path j of a light always is point j of that light's sequence.
+/// Shares the VPLs out. Lights get paths in proportion to their flux; of a light's n paths the first n·ρᵏ go
+/// on to bounce k + 1, ρ being the scene's mean albedo, so that all VPLs carry about the same flux: Keller,
+/// "Instant Radiosity" (1997), section 3.1. Path j of a light always is point j of that light's sequence.
 [[nodiscard]] VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings);
 
 /// Nodes `vpl-paths` (the plan, CPU) and `vpl-trace` (compute: one invocation a path).
-[[nodiscard]] Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHandle<LightTable> lights,
-                                 BufferHandle<gpu::Light> light_buffer, const VplSettings& settings);
+[[nodiscard]] Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                 ValueHandle<LightTable> lights, BufferHandle<gpu::Light> light_buffer,
+                                 const VplSettings& settings);
 
 }  // namespace candela

@@ -1,0 +1,164 @@
+#include "sandbox/panel.hpp"
+
+#include <imgui.h>
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "engine/scene/components.hpp"
+#include "sandbox/report.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+void text(const std::string& line) {
+    ImGui::TextUnformatted(line.c_str());
+}
+
+template <class Enum, std::size_t N>
+void combo(const char* label, Enum& value, const std::array<Enum, N>& choices) {
+    if (!ImGui::BeginCombo(label, std::string(to_string(value)).c_str())) return;
+    for (const Enum choice : choices) {
+        if (ImGui::Selectable(std::string(to_string(choice)).c_str(), choice == value)) value = choice;
+    }
+    ImGui::EndCombo();
+}
+
+void drag(const char* label, std::uint32_t& value, float speed) {
+    ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
+}
+
+void draw_cameras(const World& world, Interaction& interaction) {
+    if (!ImGui::BeginCombo("camera", name_of(world, interaction.camera()).c_str())) return;
+    for (const Entity camera : cameras(world)) {
+        if (camera == interaction.viewer()) continue;
+        ImGui::PushID(static_cast<int>(camera.index));
+        if (ImGui::Selectable(name_of(world, camera).c_str(), camera == interaction.camera()))
+            interaction.look_from_camera(camera);
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+}
+
+void draw_light_list(const World& world, std::optional<Entity>& selected) {
+    const std::string shown = selected ? name_of(world, *selected) : "none";
+    if (!ImGui::BeginCombo("light", shown.c_str())) return;
+    const auto list = [&](Entity entity) {
+        ImGui::PushID(static_cast<int>(entity.index));
+        if (ImGui::Selectable(name_of(world, entity).c_str(), selected == entity)) selected = entity;
+        ImGui::PopID();
+    };
+    for (auto [entity, light] : world.view<PointLight>()) list(entity);
+    for (auto [entity, light] : world.view<SpotLight>()) list(entity);
+    for (auto [entity, light] : world.view<DirectionalLight>()) list(entity);
+    ImGui::EndCombo();
+}
+
+/// Colour and strength of a light component, if the entity has it.
+template <class Light>
+void draw_emission(World& world, Entity entity, float Light::*strength, const char* unit) {
+    if (!world.has<Light>(entity)) return;
+    world.edit<Light>(entity, [&](Light& light) {
+        constexpr float any = std::numeric_limits<float>::max();
+        ImGui::DragFloat(unit, &(light.*strength), 0.05F + 0.01F * light.*strength, 0.0F, any, "%.3g",
+                         ImGuiSliderFlags_AlwaysClamp);
+        ImGui::ColorEdit3("colour", &light.colour.r, ImGuiColorEditFlags_Float);
+        ImGui::Checkbox("casts shadow", &light.casts_shadow);
+    });
+}
+
+void draw_lights(World& world, std::optional<Entity>& selected) {
+    draw_light_list(world, selected);
+    if (!selected) return;
+    draw_emission(world, *selected, &PointLight::intensity, "candela");
+    draw_emission(world, *selected, &SpotLight::intensity, "candela");
+    draw_emission(world, *selected, &DirectionalLight::illuminance, "lux");
+}
+
+void draw_passes(const FrameReport& frame) {
+    if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) return;
+    ImGui::TableSetupColumn("pass");
+    ImGui::TableSetupColumn("CPU ms");
+    ImGui::TableSetupColumn("GPU ms");
+    ImGui::TableHeadersRow();
+    const auto row = [](const std::string& name, double cpu_ms, double gpu_ms) {
+        ImGui::TableNextColumn();
+        text(name);
+        ImGui::TableNextColumn();
+        text(fmt::format("{:.3f}", cpu_ms));
+        ImGui::TableNextColumn();
+        text(fmt::format("{:.3f}", gpu_ms));
+    };
+    for (const PassReport& pass : frame.passes) {
+        // Passes that had nothing to do are shown dimmed.
+        ImGui::PushStyleVar(ImGuiStyleVar_Alpha, pass.ran ? 1.0F : 0.4F);
+        row(pass.name, pass.cpu_ms, pass.gpu_ms);
+        ImGui::PopStyleVar();
+    }
+    row("frame", frame.cpu_ms, frame.gpu_ms);
+    ImGui::EndTable();
+}
+
+void draw_vpls(const VplReport& vpls) {
+    text(fmt::format("{} of {} VPLs on {} paths", vpls.alive, vpls.requested, vpls.paths));
+    for (const EnergyLine& line : energy_lines(vpls.flux)) {
+        text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g, line.value.b));
+    }
+    text(fmt::format("unaccounted for: {:.1e}", relative_residual(vpls.flux)));
+}
+
+}  // namespace
+
+void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, const FrameReport& frame) {
+    if (!visible) return;
+    const float scale = ImGui::GetIO().FontGlobalScale;
+    ImGui::SetNextWindowPos({8.0F, 8.0F}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({300.0F * scale, 0.0F}, ImGuiCond_FirstUseEver);
+    const bool open = ImGui::Begin("Candela (F1)", &visible);
+    if (open) {
+        ImGui::PushItemWidth(150.0F * scale);
+        draw_configuration(renderer);
+        ImGui::Separator();
+        draw_cameras(world, interaction);
+        draw_lights(world, interaction.selected);
+        if (ImGui::CollapsingHeader("Passes", ImGuiTreeNodeFlags_DefaultOpen)) draw_passes(frame);
+        if (ImGui::CollapsingHeader("Energy: lights in, surfaces out")) draw_account(renderer);
+        ImGui::PopItemWidth();
+    }
+    ImGui::End();
+}
+
+void Panel::draw_configuration(Renderer& renderer) {
+    Configuration wanted = renderer.configuration();
+    combo("path", wanted.path, std::array{ShadingPath::forward, ShadingPath::deferred});
+    combo("show", wanted.show, std::array{Show::total, Show::direct, Show::indirect});
+    ImGui::Checkbox("indirect light", &wanted.indirect);
+    drag("VPLs", wanted.vpls.count, 1.0F);
+    drag("bounces", wanted.vpls.bounces, 0.05F);
+    drag("seed", wanted.vpls.seed, 0.05F);
+    ImGui::DragFloat("geometry bound", &wanted.geometry_bound, 0.01F);
+    ImGui::Checkbox("shadows", &wanted.shadows.enabled);
+    ImGui::DragFloat("exposure (EV)", &wanted.tone_map.exposure_ev, 0.02F);
+    if (wanted != renderer.configuration()) faults_ = renderer.configure(wanted);
+
+    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 96, 96, 255));
+    for (const std::string& fault : faults_) ImGui::TextWrapped("%s", fault.c_str());
+    ImGui::PopStyleColor();
+}
+
+/// Reading it back waits for the GPU, so that it is done a few times a second, and only while it is looked at.
+void Panel::draw_account(Renderer& renderer) {
+    constexpr double refresh = 0.25;  // seconds
+    if (!report_ || ImGui::GetTime() - report_time_ > refresh) {
+        report_ = renderer.report();
+        report_time_ = ImGui::GetTime();
+    }
+    text(fmt::format("{} triangles, {} lights", report_->triangles, report_->lights.count));
+    text(fmt::format("shadow maps: {}, no room for {}", report_->lights.with_shadow, report_->lights.without_shadow));
+    if (report_->vpls) draw_vpls(*report_->vpls);
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,125 @@
+#include "sandbox/window_session.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "renderer/renderer.hpp"
+#include "sandbox/capture.hpp"
+#include "sandbox/gui.hpp"
+#include "sandbox/headless.hpp"
+#include "sandbox/interaction.hpp"
+#include "sandbox/panel.hpp"
+#include "sandbox/report.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+class WindowSession {
+ public:
+    WindowSession(Window& window, Scene& scene, Entity camera, const Configuration& configuration,
+                  const Options& options)
+        : window_(window),
+          scene_(scene),
+          options_(options),
+          renderer_(Window::get_proc()),
+          gui_(window),
+          interaction_(scene.world, camera) {
+        apply(renderer_, configuration);
+    }
+
+    void run() {
+        while (!window_.should_close() && (!options_.frames || frame_ < *options_.frames)) step();
+    }
+
+    void write_results() {
+        if (!options_.out && !options_.report && !options_.describe_graph) return;
+        collect(true);
+        const Configuration configuration = renderer_.configuration();
+        if (options_.out) write_picture(numbered(*options_.out, std::max(frame_ - 1, 0)));
+        write_documents(options_,
+                        {"window", scene_.path.string(), pixels_, configuration, frames_, renderer_.report()},
+                        renderer_);
+    }
+
+ private:
+    void step() {
+        // Nobody does anything: panels that show times still move on, slowly.
+        constexpr double idle_wait = 0.1;  // seconds
+        const std::vector<InputEvent> events = window_.take_events(is_idle() ? idle_wait : 0.0);
+        quiet_frames_ = events.empty() ? quiet_frames_ + 1 : 0;
+        const glm::ivec2 pixels = window_.framebuffer_size();
+        const glm::ivec2 size = window_.size();
+        if (std::min({pixels.x, pixels.y, size.x, size.y}) < 1) return;
+        pixels_ = pixels;
+
+        gui_.begin_frame();
+        for (const InputEvent& event : events) handle(event, size);
+        panel_.draw(renderer_, scene_.world, interaction_, frames_.empty() ? FrameReport{} : frames_.back());
+        const Viewport viewport = make_viewport(scene_.world, interaction_.viewer(), size);
+        draw_markers(light_markers(scene_.world), viewport, interaction_.selected);
+        renderer_.render(scene_.world, interaction_.viewer(), {0, pixels_});
+        gui_.end_frame();
+        window_.swap();
+        ++frame_;
+        collect(false);
+    }
+
+    /// Panels take two frames to settle after an event. A given number of frames is not waited for.
+    [[nodiscard]] bool is_idle() const {
+        constexpr int settled = 3;
+        return !options_.frames && quiet_frames_ > settled;
+    }
+
+    void handle(const InputEvent& event, glm::vec2 size) {
+        if (gui_.wants(event.kind)) return;
+        const bool key = event.kind == InputEvent::Kind::key;
+        if (key && event.code == GLFW_KEY_ESCAPE) window_.close();
+        if (key && event.code == GLFW_KEY_F1) panel_.visible = !panel_.visible;
+        interaction_.handle(event, size);
+    }
+
+    /// Times that have arrived; all of them where they go into a report, else the last.
+    void collect(bool wait) {
+        for (FrameReport& frame : renderer_.take_frames(wait)) {
+            if (!options_.report) frames_.clear();
+            frames_.push_back(std::move(frame));
+        }
+    }
+
+    void write_picture(const std::filesystem::path& path) {
+        Capture capture(renderer_, pixels_);
+        CaptureReport ignored;
+        capture.write(path, capture.render(scene_.world, interaction_.viewer(), options_.samples, ignored));
+        fmt::print("picture          {}\n", std::filesystem::absolute(path).string());
+    }
+
+    Window& window_;
+    Scene& scene_;
+    const Options& options_;
+    Renderer renderer_;
+    Gui gui_;
+    Interaction interaction_;
+    Panel panel_;
+    glm::ivec2 pixels_{1};
+    int frame_ = 0;
+    int quiet_frames_ = 0;
+    std::vector<FrameReport> frames_;
+};
+
+}  // namespace
+
+void run_window(Window& window, Scene& scene, Entity camera, const Configuration& configuration,
+                const Options& options) {
+    WindowSession session(window, scene, camera, configuration, options);
+    session.run();
+    session.write_results();
+}
+
+}  // namespace candela::sandbox

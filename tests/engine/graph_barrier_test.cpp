@@ -1,0 +1,126 @@
+// Planned barriers of random graphs against all pairs of accesses, in frames that repeat.
+
+#include <doctest/doctest.h>
+
+#include <set>
+#include <vector>
+
+#include "tests/engine/graph_random.hpp"
+
+namespace {
+
+using namespace candela;
+using random_graph::Graph;
+
+/// One access of one object at one time. Passes are counted through all frames.
+struct Event {
+    std::size_t time = 0;
+    std::uint32_t object = 0;
+    Barrier bit = Barrier::none;
+    bool write = false;
+    bool incoherent = false;
+};
+
+/// OpenGL 4.5, section 7.13.2, from the point of view of who accesses.
+Barrier bit_of(ResourceKind kind, Usage usage) {
+    const bool texture = kind == ResourceKind::texture;
+    if (usage == Usage::sampled) { return Barrier::texture_fetch; }
+    if (usage == Usage::uniform) { return Barrier::uniform; }
+    if (usage == Usage::vertex) { return Barrier::vertex_attrib; }
+    if (usage == Usage::index) { return Barrier::element; }
+    if (usage == Usage::indirect) { return Barrier::command; }
+    if (usage == Usage::storage) { return texture ? Barrier::image_access : Barrier::storage; }
+    if (usage == Usage::copy) { return texture ? Barrier::texture_update : Barrier::buffer_update; }
+    return Barrier::framebuffer;
+}
+
+std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std::size_t frames) {
+    std::vector<std::uint32_t> first_object;
+    std::uint32_t index = 0;
+    for (const random_graph::Resource& resource : graph.resources) {
+        first_object.push_back(compiled.plan().object[index]);
+        index += resource.remembered ? 2 : 1;
+    }
+    std::vector<Event> events;
+    const std::size_t count = compiled.plan().order.size();
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+        for (std::size_t position = 0; position < count; ++position) {
+            for (const random_graph::Access& access : graph.passes[compiled.plan().order[position]].accesses) {
+                const random_graph::Resource& resource = graph.resources[access.resource];
+                if (resource.kind == ResourceKind::value) { continue; }
+                const std::size_t turn = resource.remembered ? (frame + (access.past ? 1 : 0)) % 2 : 0;
+                events.push_back({frame * count + position,
+                                  first_object[access.resource] + static_cast<std::uint32_t>(turn),
+                                  bit_of(resource.kind, access.usage), access.write,
+                                  access.write && access.usage == Usage::storage});
+            }
+        }
+    }
+    return events;
+}
+
+TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and none that no pair needs") {
+    CHECK(rc::check([] {
+        const Graph graph = random_graph::make({.backward_afters = false});
+        const bool shuffled = *rc::gen::arbitrary<bool>();
+        const CompiledGraph compiled =
+            random_graph::compile(graph, {.shuffle_seed = shuffled ? std::optional(std::uint64_t{7}) : std::nullopt})
+                .take();
+        const auto& barriers = compiled.plan().barrier;
+        // A hazard spans two frames at most (of histories), so five frames show each of them in the midst of others.
+        const std::vector<Event> events = unroll(graph, compiled, 5);
+        std::vector<Barrier> needed(barriers.size(), Barrier::none);
+        for (const Event& early : events) {
+            for (const Event& late : events) {
+                const bool after_write = early.incoherent;
+                const bool after_read = !early.write && late.incoherent;
+                if (late.time <= early.time || late.object != early.object || !(after_write || after_read)) { continue; }
+                std::set<std::size_t> between;
+                for (std::size_t time = early.time + 1; time <= late.time; ++time) {
+                    const std::size_t position = time % barriers.size();
+                    if ((barriers[position] & late.bit) == late.bit) { between.insert(position); }
+                }
+                RC_ASSERT(!between.empty());
+                if (between.size() == 1) { needed[*between.begin()] = needed[*between.begin()] | late.bit; }
+            }
+        }
+        RC_ASSERT(needed == barriers);
+    }));
+}
+
+TEST_CASE("graph: a barrier serves all that was written before it") {
+    FrameGraph graph;
+    const auto write = [&](std::string_view name) {
+        return graph.add(name, [&](Pass& pass) { return pass.write(graph.buffer<int>(name, 4), Usage::storage); });
+    };
+    const auto read = [&](std::string_view name, BufferHandle<int> buffer, Usage usage) {
+        graph.add(name, [&](Pass& pass) {
+            pass.read(buffer, usage);
+            pass.side_effect();
+        });
+    };
+    const auto a = write("a");
+    const auto b = write("b");
+    read("use a", a, Usage::uniform);
+    read("use b", b, Usage::uniform);
+    read("draw b", b, Usage::vertex);
+    const auto compiled = compile(std::move(graph)).take();
+    // "a" and "b" overwrite what the frame before has read; one barrier serves both.
+    CHECK(compiled.plan().barrier == std::vector{Barrier::storage, Barrier::none, Barrier::uniform, Barrier::none,
+                                                 Barrier::vertex_attrib});
+}
+
+TEST_CASE("graph: coherent writes need no barriers") {
+    FrameGraph graph;
+    const TextureHandle drawn = graph.add("draw", [&](Pass& pass) {
+        return pass.write(graph.texture("image", {{8, 8}}), Usage::colour_target);
+    });
+    graph.add("show", [&](Pass& pass) {
+        pass.read(drawn, Usage::sampled);
+        pass.side_effect();
+    });
+    const auto compiled = compile(std::move(graph)).take();
+    CHECK(compiled.plan().barrier == std::vector{Barrier::none, Barrier::none});
+}
+
+}  // namespace

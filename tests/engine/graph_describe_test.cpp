@@ -1,0 +1,271 @@
+// Compiled graphs of every shape, as text. Each text below was derived by hand from the rules in compile.hpp.
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/graph/describe.hpp"
+
+namespace {
+
+using namespace candela;
+
+const TextureDesc colour{{64, 32}, Format::rgba16f};
+
+struct PointLight {
+    float intensity = 1;
+};
+
+TextureHandle import_target(FrameGraph& graph) {
+    return graph.texture("target", {{64, 32}, Format::rgba8}, Lifetime::imported);
+}
+
+/// Shows `source` on the target: the root of these graphs.
+void add_show(FrameGraph& graph, TextureHandle source, TextureHandle target) {
+    graph.add("show", [&](Pass& pass) {
+        pass.read(source, Usage::sampled);
+        (void)pass.write(target, Usage::colour_target);
+    });
+}
+
+TextureHandle add_draw(FrameGraph& graph, std::string_view pass_name, std::string_view texture) {
+    return graph.add(pass_name, [&](Pass& pass) {
+        return pass.write(graph.texture(texture, colour), Usage::colour_target);
+    });
+}
+
+TextureHandle add_filter(FrameGraph& graph, std::string_view pass_name, TextureHandle source,
+                         std::string_view texture) {
+    return graph.add(pass_name, [&](Pass& pass) {
+        pass.read(source, Usage::sampled);
+        return pass.write(graph.texture(texture, colour), Usage::colour_target);
+    });
+}
+
+std::string text_of(FrameGraph& graph, CompileOptions options = {}) {
+    return "\n" + describe_text(compile(std::move(graph), options).take());
+}
+
+TEST_CASE("graph description: a chain shares objects between transients that do not meet") {
+    FrameGraph graph;
+    const TextureHandle a = add_draw(graph, "draw", "a");
+    const TextureHandle b = add_filter(graph, "blur", a, "b");
+    const TextureHandle c = add_filter(graph, "sharpen", b, "c");
+    add_show(graph, c, import_target(graph));
+    CHECK(text_of(graph) == R"(
+passes
+  0 draw
+      write a v1 (colour target)
+  1 blur
+      read a v1 (sampled)
+      write b v1 (colour target)
+  2 sharpen
+      read b v1 (sampled)
+      write c v1 (colour target)
+  3 show
+      read c v1 (sampled)
+      write target v1 (colour target)
+resources
+  a: texture 64x32 rgba16f, transient [0..1], object 0
+  b: texture 64x32 rgba16f, transient [1..2], object 1
+  c: texture 64x32 rgba16f, transient [2..3], object 0
+  target: texture 64x32 rgba8, imported [3..3], object 2
+)");
+}
+
+TEST_CASE("graph description: a diamond") {
+    FrameGraph graph;
+    const TextureHandle source = add_draw(graph, "draw", "source");
+    const TextureHandle left = add_filter(graph, "left", source, "left");
+    const TextureHandle right = add_filter(graph, "right", source, "right");
+    graph.add("join", [&](Pass& pass) {
+        pass.read(left, Usage::sampled);
+        pass.read(right, Usage::sampled);
+        pass.side_effect();
+    });
+    CHECK(text_of(graph) == R"(
+passes
+  0 draw
+      write source v1 (colour target)
+  1 left
+      read source v1 (sampled)
+      write left v1 (colour target)
+  2 right
+      read source v1 (sampled)
+      write right v1 (colour target)
+  3 join (side effect)
+      read left v1 (sampled)
+      read right v1 (sampled)
+resources
+  source: texture 64x32 rgba16f, transient [0..2], object 0
+  left: texture 64x32 rgba16f, transient [1..3], object 1
+  right: texture 64x32 rgba16f, transient [2..3], object 2
+)");
+}
+
+TEST_CASE("graph description: a branch that nobody needs is culled, a side effect and its inputs are not") {
+    FrameGraph graph;
+    const TextureHandle a = add_draw(graph, "draw", "a");
+    const TextureHandle unseen = add_filter(graph, "unseen", a, "u");
+    (void)add_filter(graph, "unseen too", unseen, "v");
+    const TextureHandle probed = add_filter(graph, "probed", a, "p");
+    graph.add("probe", [&](Pass& pass) {
+        pass.read(probed, Usage::copy);
+        pass.side_effect();
+    });
+    CHECK(text_of(graph) == R"(
+passes
+  0 draw
+      write a v1 (colour target)
+  1 probed
+      read a v1 (sampled)
+      write p v1 (colour target)
+  2 probe (side effect)
+      read p v1 (copy)
+culled
+  unseen
+  unseen too
+resources
+  a: texture 64x32 rgba16f, transient [0..1], object 0
+  p: texture 64x32 rgba16f, transient [1..2], object 1
+)");
+}
+
+TEST_CASE("graph description: history has an object of its own and keeps its writer") {
+    FrameGraph graph;
+    const TextureHandle blank = graph.texture("accumulated", colour);
+    const TextureHandle past = graph.history(blank);
+    const TextureHandle mixed = graph.add("mix", [&](Pass& pass) {
+        pass.read(past, Usage::sampled);
+        return pass.write(blank, Usage::colour_target);
+    });
+    (void)mixed;
+    graph.add("compare", [&](Pass& pass) {
+        pass.read(past, Usage::sampled);
+        pass.side_effect();
+    });
+    CHECK(text_of(graph) == R"(
+passes
+  0 mix
+      read history of accumulated (sampled)
+      write accumulated v1 (colour target)
+  1 compare (side effect)
+      read history of accumulated (sampled)
+resources
+  accumulated: texture 64x32 rgba16f, persistent [0..0], object 0, history in 1
+)");
+}
+
+TEST_CASE("graph description: systems, values and planned barriers") {
+    FrameGraph graph;
+    const auto lights = graph.add("gather-lights", [&](Pass& pass) {
+        pass.read<PointLight>();
+        return pass.write(graph.value<int>("lights"));
+    });
+    const auto vpls = graph.add("trace", [&](Pass& pass) {
+        pass.read(lights);
+        return pass.write(graph.buffer<float>("vpls", 256), Usage::storage);
+    });
+    const auto lit = graph.add("light", [&](Pass& pass) {
+        pass.read(vpls, Usage::storage);
+        return pass.write(graph.texture("lit", colour), Usage::storage);
+    });
+    graph.add("count", [&](Pass& pass) {
+        pass.read(vpls, Usage::storage);
+        pass.after("light");
+        pass.side_effect();
+    });
+    add_show(graph, lit, import_target(graph));
+    // Waiting for the frame before: "trace" overwrites what "light" and "count" read, "light" what "show" sampled.
+    CHECK(text_of(graph) == R"(
+passes
+  0 gather-lights
+      world PointLight
+      write lights v1
+  1 trace
+      barrier storage
+      read lights v1
+      write vpls v1 (storage)
+  2 light
+      barrier image access + storage
+      read vpls v1 (storage)
+      write lit v1 (storage)
+  3 count (side effect)
+      after light
+      read vpls v1 (storage)
+  4 show
+      barrier texture fetch
+      read lit v1 (sampled)
+      write target v1 (colour target)
+resources
+  lights: value, persistent [0..1]
+  vpls: buffer of 256 x 4 bytes, transient [1..3], object 0
+  lit: texture 64x32 rgba16f, transient [2..4], object 1
+  target: texture 64x32 rgba8, imported [4..4], object 2
+)");
+}
+
+TEST_CASE("graph description: after turns the order of declaration") {
+    FrameGraph graph;
+    graph.add("first", [&](Pass& pass) {
+        pass.side_effect();
+        pass.after("third");
+    });
+    for (const std::string_view name : {"second", "third"}) {
+        graph.add(name, [&](Pass& pass) { pass.side_effect(); });
+    }
+    CHECK(text_of(graph) == R"(
+passes
+  0 second (side effect)
+  1 third (side effect)
+  2 first (side effect)
+      after third
+resources
+)");
+}
+
+TEST_CASE("graph description: an empty graph") {
+    FrameGraph graph;
+    CHECK(text_of(graph) == "\npasses\nresources\n");
+}
+
+FrameGraph remembering() {
+    FrameGraph graph;
+    const TextureHandle drawn = add_draw(graph, "draw \"it\"", "drawn");
+    graph.add("mix", [&](Pass& pass) {
+        const TextureHandle mixed = graph.texture("mixed", {{8, 8}, Format::r32f, TextureShape::array, 3, 2});
+        pass.read(graph.history(mixed), Usage::sampled);
+        pass.read(drawn, Usage::sampled);
+        (void)pass.write(mixed, Usage::layer_target);
+        pass.side_effect();
+    });
+    return graph;
+}
+
+TEST_CASE("graph description: DOT escapes names and dashes memories") {
+    CHECK("\n" + describe_dot(compile(remembering()).take()) == R"(
+digraph frame {
+    rankdir=LR;
+    node [shape=box];
+    "draw \"it\"";
+    "mix";
+    "mix" -> "mix" [label="history of mixed", style=dashed];
+    "draw \"it\"" -> "mix" [label="drawn"];
+}
+)");
+}
+
+TEST_CASE("graph description: JSON tells what the text tells") {
+    const auto json = nlohmann::json::parse(describe_json(compile(remembering()).take()));
+    CHECK(json["passes"].size() == 2);
+    CHECK(json["passes"][0]["name"] == "draw \"it\"");
+    CHECK(json["passes"][1]["side_effect"] == true);
+    CHECK(json["passes"][1]["reads"][0]["resource"] == "history of mixed");
+    CHECK(json["passes"][1]["reads"][1]["version"] == 1);
+    CHECK(json["passes"][1]["writes"][0]["usage"] == "layer target");
+    CHECK(json["culled"].empty());
+    CHECK(json["resources"][1]["storage"] == "texture 8x8 r32f, array of 3 layers, 2 mips");
+    CHECK(json["resources"][1]["history_object"] == json["resources"][1]["object"].get<int>() + 1);
+}
+
+}  // namespace

@@ -1,0 +1,319 @@
+// Every way to declare a graph wrongly, and what compiling says about it.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "engine/graph/compile.hpp"
+
+namespace {
+
+using namespace candela;
+
+const TextureDesc colour{{64, 32}, Format::rgba16f};
+const TextureDesc depth{{64, 32}, Format::depth32f};
+
+std::vector<Fault> faults_of(FrameGraph& graph) {
+    return compile(std::move(graph)).faults;
+}
+
+/// The only fault of a graph.
+Fault fault_of(FrameGraph& graph) {
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 1);
+    return faults.front();
+}
+
+TextureHandle add_draw(FrameGraph& graph, std::string_view pass_name, TextureHandle target) {
+    return graph.add(pass_name, [&](Pass& pass) { return pass.write(target, Usage::colour_target); });
+}
+
+void add_read(FrameGraph& graph, std::string_view pass_name, TextureHandle source) {
+    graph.add(pass_name, [&](Pass& pass) {
+        pass.read(source, Usage::sampled);
+        pass.side_effect();
+    });
+}
+
+TEST_CASE("graph fault: handles of no graph, of another, of another kind") {
+    FrameGraph other;
+    const TextureHandle foreign = other.texture("elsewhere", colour);
+
+    FrameGraph graph;
+    const TextureHandle own = graph.texture("own", colour);
+    add_read(graph, "default", {});
+    add_read(graph, "other graph", foreign);
+    (void)add_draw(graph, "write", foreign);
+    add_read(graph, "unknown version", TextureHandle{{own.graph, own.resource, 7}});
+    add_read(graph, "unknown resource", TextureHandle{{own.graph, 99, 0}});
+    graph.add("kind", [&](Pass& pass) { pass.read(BufferHandle<int>{{own.graph, own.resource, 0}}, Usage::storage); });
+    (void)graph.history(foreign);
+
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 7);
+    for (const Fault& fault : faults) { CHECK(fault.code == FaultCode::foreign_handle); }
+    CHECK(faults[0].message == "pass 'default' reads a texture of another graph");
+    CHECK(faults[2].message == "pass 'write' writes a texture of another graph");
+    CHECK(faults[5].message == "pass 'kind' reads a buffer of another graph");
+    CHECK(faults[6].message == "history of a texture of another graph");
+}
+
+TEST_CASE("graph fault: a read of a version since overwritten names both passes") {
+    FrameGraph graph;
+    const TextureHandle first = add_draw(graph, "draw", graph.texture("image", colour));
+    const TextureHandle second = add_draw(graph, "overdraw", first);
+    (void)add_draw(graph, "overdraw more", second);
+    add_read(graph, "show", first);
+    CHECK(fault_of(graph) ==
+          Fault{FaultCode::stale_handle, "pass 'show' reads texture 'image' as it was before pass 'overdraw' wrote it"});
+}
+
+TEST_CASE("graph fault: two writers without an order") {
+    FrameGraph graph;
+    const TextureHandle blank = graph.texture("image", colour);
+    (void)add_draw(graph, "draw", blank);
+    (void)add_draw(graph, "draw too", blank);
+    CHECK(fault_of(graph) == Fault{FaultCode::two_writers, "passes 'draw' and 'draw too' both write version 1 of "
+                                                           "texture 'image' without an order"});
+}
+
+TEST_CASE("graph: after orders two writers, the second of which writes the result of the first") {
+    FrameGraph graph;
+    const TextureHandle blank = graph.texture("image", colour);
+    (void)add_draw(graph, "draw", blank);
+    const TextureHandle both = graph.add("draw too", [&](Pass& pass) {
+        pass.after("draw");
+        return pass.write(blank, Usage::colour_target);
+    });
+    CHECK(both.version == 2);
+    add_read(graph, "show", both);
+    CHECK(compile(std::move(graph)).take().pass_count() == 3);
+}
+
+TEST_CASE("graph fault: after some earlier writer does not order the two last") {
+    FrameGraph graph;
+    const TextureHandle blank = graph.texture("image", colour);
+    const TextureHandle first = add_draw(graph, "a", blank);
+    (void)add_draw(graph, "b", first);
+    (void)graph.add("c", [&](Pass& pass) {
+        pass.after("a");
+        return pass.write(blank, Usage::colour_target);
+    });
+    CHECK(fault_of(graph).code == FaultCode::two_writers);
+}
+
+TEST_CASE("graph fault: reads of what nobody writes") {
+    FrameGraph graph;
+    add_read(graph, "show", graph.texture("image", colour));
+    add_read(graph, "show kept", graph.texture("kept", colour, Lifetime::persistent));
+    graph.add("use", [&](Pass& pass) { pass.read(graph.value<int>("number")); });
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 3);
+    CHECK(faults[0] == Fault{FaultCode::unwritten_read, "pass 'show' reads texture 'image', which nobody has written"});
+    CHECK(faults[1].message == "pass 'show kept' reads texture 'kept', which nobody has written");
+    CHECK(faults[2].message == "pass 'use' reads value 'number', which nobody has written");
+}
+
+TEST_CASE("graph fault: a history of what nobody writes") {
+    FrameGraph graph;
+    add_read(graph, "show", graph.history(graph.texture("image", colour)));
+    CHECK(fault_of(graph) ==
+          Fault{FaultCode::unwritten_read, "texture 'image' has a history, but nobody writes it"});
+}
+
+TEST_CASE("graph: what is imported and what is remembered may be read before it is written") {
+    FrameGraph graph;
+    add_read(graph, "environment", graph.texture("sky", colour, Lifetime::imported));
+    graph.add("exposure", [&](Pass& pass) {
+        pass.read(graph.import_value<float>("exposure"));
+        pass.side_effect();
+    });
+    const TextureHandle blank = graph.texture("image", colour);
+    add_read(graph, "past", graph.history(blank));
+    (void)add_draw(graph, "draw", blank);
+    CHECK(compile(std::move(graph)).faults.empty());
+}
+
+TEST_CASE("graph fault: histories of what has none, and writes of what is read only") {
+    FrameGraph graph;
+    const TextureHandle sky = graph.texture("sky", colour, Lifetime::imported);
+    const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
+    (void)graph.history(sky);
+    (void)graph.history(graph.history(image));
+    (void)add_draw(graph, "rewrite", graph.history(image));
+    graph.add("host", [&](Pass& pass) { (void)pass.write(graph.import_value<int>("number")); });
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 4);
+    for (const Fault& fault : faults) { CHECK(fault.code == FaultCode::wrong_usage); }
+    CHECK(faults[0].message == "texture 'sky' has no history: it is imported");
+    CHECK(faults[1].message == "texture 'image' has no history: it is a history itself");
+    CHECK(faults[2].message == "pass 'rewrite' writes the history of texture 'image', which is read only");
+    CHECK(faults[3].message == "pass 'host' writes value 'number', which the host sets");
+}
+
+/// Whether a pass that accesses an imported texture or buffer by `access` is at fault.
+template <class Access>
+bool faulty(const TextureDesc& desc, Access access) {
+    FrameGraph graph;
+    const TextureHandle texture = graph.texture("texture", desc, Lifetime::imported);
+    const BufferHandle<int> buffer = graph.buffer<int>("buffer", 8, Lifetime::imported);
+    graph.add("pass", [&](Pass& pass) { access(pass, texture, buffer); });
+    return !faults_of(graph).empty();
+}
+
+TEST_CASE("graph fault: each usage that a kind of resource or a direction does not allow") {
+    using enum Usage;
+    const auto one_of = [](Usage usage, std::initializer_list<Usage> usages) {
+        return std::find(usages.begin(), usages.end(), usage) != usages.end();
+    };
+    for (const Usage usage :
+         {sampled, storage, uniform, vertex, index, indirect, colour_target, depth_target, layer_target, copy}) {
+        CAPTURE(to_string(usage));
+        const TextureDesc& desc = usage == depth_target ? depth : colour;
+        CHECK(faulty(desc, [&](Pass& pass, auto texture, auto) { pass.read(texture, usage); }) !=
+              one_of(usage, {sampled, storage, depth_target, copy}));
+        CHECK(faulty(desc, [&](Pass& pass, auto texture, auto) { (void)pass.write(texture, usage); }) !=
+              one_of(usage, {storage, colour_target, depth_target, layer_target, copy}));
+        CHECK(faulty(desc, [&](Pass& pass, auto, auto buffer) { pass.read(buffer, usage); }) !=
+              one_of(usage, {storage, uniform, vertex, index, indirect, copy}));
+        CHECK(faulty(desc, [&](Pass& pass, auto, auto buffer) { (void)pass.write(buffer, usage); }) !=
+              one_of(usage, {storage, copy}));
+    }
+}
+
+TEST_CASE("graph fault: wrong usage and wrong format are named") {
+    FrameGraph graph;
+    graph.add("draw", [&](Pass& pass) {
+        (void)pass.write(graph.texture("normal", colour), Usage::sampled);
+        (void)pass.write(graph.texture("z", depth), Usage::colour_target);
+        (void)pass.write(graph.texture("albedo", colour), Usage::depth_target);
+    });
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 3);
+    CHECK(faults[0] == Fault{FaultCode::wrong_usage, "pass 'draw' writes texture 'normal' as sampled"});
+    CHECK(faults[1] == Fault{FaultCode::wrong_usage,
+                             "pass 'draw' writes texture 'z' as colour target, but its format is depth32f"});
+    CHECK(faults[2] == Fault{FaultCode::wrong_usage,
+                             "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
+}
+
+TEST_CASE("graph fault: a pass reads what it overwrites, in either order of declaring") {
+    for (const bool read_first : {true, false}) {
+        FrameGraph graph;
+        const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
+        graph.add("loop", [&](Pass& pass) {
+            if (read_first) { pass.read(image, Usage::sampled); }
+            (void)pass.write(image, Usage::colour_target);
+            if (!read_first) { pass.read(image, Usage::sampled); }
+            pass.side_effect();
+        });
+        CHECK(fault_of(graph) == Fault{FaultCode::feedback, "pass 'loop' reads texture 'image' and overwrites it: a "
+                                                            "write from version 1 on depends on what was there by "
+                                                            "itself"});
+    }
+}
+
+TEST_CASE("graph: a pass may read back its own result, and write it in steps") {
+    FrameGraph graph;
+    graph.add("count", [&](Pass& pass) {
+        const auto cleared = pass.write(graph.buffer<int>("counts", 4), Usage::copy);
+        const auto counted = pass.write(cleared, Usage::storage);
+        pass.read(counted, Usage::indirect);
+        pass.side_effect();
+    });
+    CHECK(compile(std::move(graph), {.shuffle_seed = 1}).faults.empty());
+}
+
+TEST_CASE("graph fault: attachments of different sizes, and two depth targets") {
+    FrameGraph graph;
+    graph.add("draw", [&](Pass& pass) {
+        (void)pass.write(graph.texture("albedo", colour), Usage::colour_target);
+        (void)pass.write(graph.texture("normal", {{64, 64}, Format::rgba16f}), Usage::colour_target);
+        (void)pass.write(graph.texture("near", depth), Usage::depth_target);
+        (void)pass.write(graph.texture("far", depth), Usage::depth_target);
+    });
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 2);
+    CHECK(faults[0] ==
+          Fault{FaultCode::attachment_mismatch,
+                "pass 'draw' has attachments of different sizes: 'albedo' is 64x32, 'normal' is 64x64"});
+    CHECK(faults[1] == Fault{FaultCode::attachment_mismatch, "pass 'draw' has two depth targets, 'near' and 'far'"});
+}
+
+TEST_CASE("graph fault: names used twice") {
+    FrameGraph graph;
+    for (int time = 0; time < 2; ++time) {
+        graph.add("draw", [&](Pass& pass) {
+            (void)pass.write(graph.texture("transient", colour), Usage::colour_target);
+            (void)pass.write(graph.texture("kept", colour, Lifetime::persistent), Usage::colour_target);
+        });
+    }
+    (void)graph.value<int>("kept");  // another kind: no clash
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 2);
+    CHECK(faults[0] == Fault{FaultCode::duplicate_pass, "two passes are called 'draw'"});
+    CHECK(faults[1] ==
+          Fault{FaultCode::duplicate_resource, "two textures that are kept or imported are called 'kept'"});
+}
+
+TEST_CASE("graph fault: after what is no pass") {
+    FrameGraph graph;
+    graph.add("draw", [&](Pass& pass) { pass.after("shadows"); });
+    CHECK(fault_of(graph) == Fault{FaultCode::unknown_pass, "pass 'draw' says after 'shadows', which is not a pass"});
+}
+
+TEST_CASE("graph fault: a pass inside a pass") {
+    FrameGraph graph;
+    graph.add("outer", [&](Pass&) { graph.add("inner", [](Pass&) {}); });
+    CHECK(fault_of(graph) == Fault{FaultCode::nested_pass, "pass 'inner' is declared inside pass 'outer'"});
+}
+
+TEST_CASE("graph fault: a cycle is told with its path and its links") {
+    FrameGraph graph;
+    const TextureHandle image = graph.add("a", [&](Pass& pass) {
+        pass.after("c");
+        return pass.write(graph.texture("image", colour), Usage::colour_target);
+    });
+    const auto found = graph.add("b", [&](Pass& pass) {
+        pass.read(image, Usage::sampled);
+        return pass.write(graph.buffer<int>("found", 8), Usage::storage);
+    });
+    graph.add("c", [&](Pass& pass) { pass.read(found, Usage::storage); });
+    graph.add("behind", [&](Pass& pass) { pass.after("c"); });
+    CHECK(fault_of(graph) ==
+          Fault{FaultCode::cycle, "passes wait for each other: a -> b -> c -> a ('a' hands 'image' to 'b', 'b' hands "
+                                  "'found' to 'c', 'a' says after 'c')"});
+}
+
+TEST_CASE("graph fault: every cycle is told, also that of one pass") {
+    FrameGraph graph;
+    graph.add("self", [](Pass& pass) { pass.after("self"); });
+    graph.add("ping", [](Pass& pass) { pass.after("pong"); });
+    graph.add("pong", [](Pass& pass) { pass.after("ping"); });
+    const std::vector<Fault> faults = faults_of(graph);
+    REQUIRE(faults.size() == 2);
+    CHECK(faults[0].message == "passes wait for each other: self -> self ('self' says after 'self')");
+    CHECK(faults[1].message ==
+          "passes wait for each other: ping -> pong -> ping ('pong' says after 'ping', 'ping' says after 'pong')");
+}
+
+TEST_CASE("graph fault: all faults are found at once, and taking the graph tells them") {
+    FrameGraph graph;
+    add_read(graph, "show", {});
+    add_read(graph, "show", graph.texture("image", colour));
+    graph.add("late", [](Pass& pass) { pass.after("never"); });
+    CompileResult result = compile(std::move(graph));
+    CHECK_FALSE(result);
+    CHECK(result.faults.size() == 4);
+    CHECK_THROWS_WITH_AS((void)std::move(result).take(), R"(the frame graph does not compile:
+  pass 'show' reads a texture of another graph
+  pass 'show' reads texture 'image', which nobody has written
+  two passes are called 'show'
+  pass 'late' says after 'never', which is not a pass)",
+                         GraphError);
+}
+
+}  // namespace

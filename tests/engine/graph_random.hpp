@@ -1,0 +1,216 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <rapidcheck.h>
+
+#include "engine/graph/compile.hpp"
+#include "engine/graph/execute.hpp"
+
+/// Random graphs, kept as plain lists beside what is declared, so that checks need not trust the declaration.
+namespace candela::random_graph {
+
+/// What the passes of random graphs read of the world.
+struct Number {
+    int value = 0;
+    bool operator==(const Number&) const = default;
+};
+
+struct Resource {
+    ResourceKind kind = ResourceKind::texture;
+    Lifetime lifetime = Lifetime::transient;
+    bool wide = false;  // one of two descriptions
+    bool remembered = false;
+    std::uint32_t versions = 0;
+};
+
+struct Access {
+    std::size_t resource = 0;
+    std::uint32_t version = 0;  // read, or made
+    Usage usage = Usage::sampled;
+    bool write = false;
+    bool past = false;
+};
+
+struct Pass {
+    std::vector<Access> accesses;
+    std::set<std::size_t> after;
+    bool side_effect = false;
+    bool reads_world = false;
+};
+
+struct Graph {
+    std::vector<Resource> resources;
+    std::vector<Pass> passes;
+};
+
+inline std::string pass_name(std::size_t pass) {
+    return "p" + std::to_string(pass);
+}
+inline std::string resource_name(std::size_t resource) {
+    return "r" + std::to_string(resource);
+}
+
+inline std::size_t choose(std::size_t count) {
+    return *rc::gen::inRange<std::size_t>(0, count);
+}
+inline bool one_in(std::size_t count) {
+    return choose(count) == 0;
+}
+inline Usage one_of(const std::vector<Usage>& usages) {
+    return usages[choose(usages.size())];
+}
+
+inline Usage read_usage(ResourceKind kind) {
+    using enum Usage;
+    return kind == ResourceKind::texture ? one_of({sampled, storage, copy})
+                                         : one_of({storage, uniform, vertex, index, indirect, copy});
+}
+inline Usage write_usage(ResourceKind kind) {
+    using enum Usage;
+    return kind == ResourceKind::texture ? one_of({storage, colour_target, layer_target, copy, storage})
+                                         : one_of({storage, copy, storage});
+}
+
+struct Options {
+    std::size_t passes = 16;
+    bool histories = true;
+    bool backward_afters = true;
+};
+
+inline void add_access(Graph& graph, Pass& pass, const Options& options) {
+    Access access;
+    access.resource = choose(graph.resources.size() + 2);
+    access.write = !one_in(3);
+    if (access.resource >= graph.resources.size()) {
+        access.resource = graph.resources.size();
+        Resource made;
+        made.kind = static_cast<ResourceKind>(choose(3));
+        made.wide = made.kind != ResourceKind::value && one_in(2);
+        made.lifetime = made.kind == ResourceKind::value ? Lifetime::persistent : Lifetime::transient;
+        if (one_in(5)) { made.lifetime = one_in(2) ? Lifetime::imported : Lifetime::persistent; }
+        graph.resources.push_back(made);
+    }
+    Resource& resource = graph.resources[access.resource];
+    const bool gpu = resource.kind != ResourceKind::value;
+    const bool imported = resource.lifetime == Lifetime::imported;
+    if (imported && !gpu) { access.write = false; }
+    for (const Access& other : pass.accesses) {  // no feedback, and one access a resource
+        if (other.resource == access.resource) { return; }
+    }
+    if (access.write) {
+        access.version = ++resource.versions;
+        access.usage = gpu ? write_usage(resource.kind) : Usage{};
+    } else {
+        access.past = options.histories && gpu && !imported && resource.versions > 0 && one_in(3);
+        if (resource.versions == 0 && !imported) { return; }
+        access.version = access.past ? 0 : resource.versions;
+        access.usage = gpu ? read_usage(resource.kind) : Usage{};
+        if (access.past) {
+            resource.remembered = true;
+            resource.lifetime = Lifetime::persistent;
+        }
+    }
+    pass.accesses.push_back(access);
+}
+
+/// Declared so that handles only flow forward; `after` may also point backward, and thus close cycles.
+inline Graph make(const Options& options) {
+    Graph graph;
+    const std::size_t count = choose(options.passes);
+    for (std::size_t index = 0; index < count; ++index) {
+        Pass pass;
+        const std::size_t accesses = choose(5);
+        for (std::size_t access = 0; access < accesses; ++access) { add_access(graph, pass, options); }
+        pass.side_effect = one_in(5);
+        pass.reads_world = one_in(4);
+        if (one_in(5)) { pass.after.insert(choose(options.backward_afters && one_in(3) ? count : index + 1)); }
+        if (!options.backward_afters) { pass.after.erase(index); }
+        graph.passes.push_back(pass);
+    }
+    return graph;
+}
+
+/// Handles of a declared graph, by resource: the newest version, or the past.
+struct Handles {
+    std::vector<ResourceHandle> newest;
+    std::map<std::size_t, ResourceHandle> past;
+    std::vector<ResourceHandle> first;
+};
+
+inline TextureDesc texture_desc(bool wide) {
+    return {{wide ? 64U : 32U, 32U}, Format::rgba16f};
+}
+inline std::uint64_t buffer_count(bool wide) {
+    return wide ? 64 : 32;
+}
+
+inline ResourceHandle declare(FrameGraph& frame, const Resource& resource, const std::string& name) {
+    switch (resource.kind) {
+        case ResourceKind::texture: return frame.texture(name, texture_desc(resource.wide), resource.lifetime);
+        case ResourceKind::buffer: return frame.buffer<float>(name, buffer_count(resource.wide), resource.lifetime);
+        case ResourceKind::value: break;
+    }
+    if (resource.lifetime == Lifetime::imported) { return frame.import_value<int>(name); }
+    return frame.value<int>(name);
+}
+
+inline void declare(candela::Pass& pass, const Resource& resource, const Access& access, Handles& handles) {
+    ResourceHandle& handle = access.past ? handles.past.at(access.resource) : handles.newest[access.resource];
+    const TextureHandle texture{handle};
+    const BufferHandle<float> buffer{handle};
+    const ValueHandle<int> value{handle};
+    switch (resource.kind) {
+        case ResourceKind::texture:
+            if (!access.write) { return pass.read(texture, access.usage); }
+            handle = pass.write(texture, access.usage);
+            return;
+        case ResourceKind::buffer:
+            if (!access.write) { return pass.read(buffer, access.usage); }
+            handle = pass.write(buffer, access.usage);
+            return;
+        case ResourceKind::value:
+            if (!access.write) { return pass.read(value); }
+            handle = pass.write(value);
+    }
+}
+
+/// `make_run(pass, handles)` gives the function of the pass numbered `pass`.
+template <class MakeRun>
+FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
+    FrameGraph frame;
+    for (std::size_t index = 0; index < graph.resources.size(); ++index) {
+        const Resource& resource = graph.resources[index];
+        const ResourceHandle handle = declare(frame, resource, resource_name(index));
+        handles.newest.push_back(handle);
+        if (!resource.remembered) { continue; }
+        const bool texture = resource.kind == ResourceKind::texture;
+        handles.past[index] = texture ? ResourceHandle(frame.history(TextureHandle{handle}))
+                                      : ResourceHandle(frame.history(BufferHandle<float>{handle}));
+    }
+    handles.first = handles.newest;
+    for (std::size_t index = 0; index < graph.passes.size(); ++index) {
+        const Pass& pass = graph.passes[index];
+        frame.add(pass_name(index), [&](candela::Pass& declared) {
+            for (const Access& access : pass.accesses) {
+                declare(declared, graph.resources[access.resource], access, handles);
+            }
+            for (const std::size_t before : pass.after) { declared.after(pass_name(before)); }
+            if (pass.side_effect) { declared.side_effect(); }
+            if (pass.reads_world) { declared.read<Number>(); }
+            declared.run(make_run(index, handles));
+        });
+    }
+    return frame;
+}
+
+inline CompileResult compile(const Graph& graph, CompileOptions options = {}) {
+    Handles handles;
+    return candela::compile(declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }),
+                            options);
+}
+
+}  // namespace candela::random_graph

@@ -1,0 +1,244 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "engine/scene/hierarchy.hpp"
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr glm::uvec2 size{96, 64};
+// What is asked for. Floats and the albedo's half floats (2⁻¹¹) leave room: acne and leaks do not.
+constexpr double tolerance = 0.005;
+
+using Irradiance = std::function<double(glm::dvec3 point)>;
+
+/// A flat surface in the world.
+struct Plane {
+    glm::dvec3 point{0.0};
+    glm::dvec3 normal{0.0, 1.0, 0.0};
+};
+
+/// Point light: E = I cos θ / r².
+double point_irradiance(glm::dvec3 light, glm::dvec3 at, glm::dvec3 normal) {
+    const glm::dvec3 to_light = light - at;
+    const double r = glm::length(to_light);
+    return std::max(glm::dot(to_light, normal), 0.0) / (r * r * r);
+}
+
+/// KHR_lights_punctual: the square of a ramp in the cosine, 1 from the inner cone on, 0 outside the outer
+/// one.
+double cone(double cosine, double inner, double outer) {
+    const double x = (cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
+    return std::pow(std::clamp(x, 0.0, 1.0), 2.0);
+}
+
+class ClosedForm : public RenderFixture {
+ protected:
+    /// Both paths, shadows and all, without indirect light, against ρ/π · E at every pixel.
+    void check(const Scene& scene, const Plane& plane, double albedo, const Irradiance& irradiance) {
+        const Picture expected = expected_picture(scene, size, plane.point, plane.normal, [&](glm::dvec3 at) {
+            return glm::dvec3(albedo / pi * irradiance(at));
+        });
+        double peak = 0.0;
+        for (const glm::dvec3 pixel : expected.pixels) {
+            peak = std::max(peak, pixel.r);
+        }
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            CAPTURE(to_string(path));
+            Configuration configuration = linear_configuration(path);
+            configuration.indirect = false;
+            configure(configuration);
+            // Where falloffs run out to zero they cancel in floats: there, relative to 10⁻⁴ of the peak.
+            CHECK(worst_error(render(scene, size), expected, 1e-4 * peak) < tolerance);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("closed forms") {
+    TEST_CASE_FIXTURE(ClosedForm, "a plane under a point light") {
+        Scene scene = ground();
+        for (const glm::vec3 light : {glm::vec3(0.4F, 1.0F, -0.2F), glm::vec3(-3.0F, 0.15F, 0.5F)}) {
+            scene.world.set(scene.light, at(light));
+            scene.world.set(scene.light, PointLight{.intensity = 3.0F});
+            check(scene, {}, 0.5, [&](glm::dvec3 p) { return 3.0 * point_irradiance(light, p, {0, 1, 0}); });
+        }
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "a point light's range") {
+        Scene scene = ground();
+        scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));
+        scene.world.set(scene.light, PointLight{.intensity = 3.0F, .range = 1.5F});
+        check(scene, {}, 0.5, [&](glm::dvec3 p) {
+            const glm::dvec3 light(0.4F, 1.0F, -0.2F);
+            // KHR_lights_punctual: max(min(1 - (r / range)⁴, 1), 0) / r².
+            const double window = 1.0 - std::pow(glm::length(light - p) / 1.5, 4.0);
+            return 3.0 * point_irradiance(light, p, {0, 1, 0}) * std::max(window, 0.0);
+        });
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "a plane under a spot light: inner cone, ramp and outside") {
+        Scene scene = ground();
+        struct Cone {
+            float inner, outer;
+        };
+        // The last is wider than a flat map can hold: its shadow comes from a cube.
+        for (const auto& [inner, outer] : {Cone{0.3F, 0.6F}, Cone{0.0F, 0.7854F}, Cone{0.2F, 1.4F}}) {
+            const Transform pose = looking({0.6F, 1.5F, 0.3F}, {0.1F, 0.0F, -0.3F});
+            scene.world.set(scene.light, pose);
+            scene.world.set(scene.light,
+                            SpotLight{.intensity = 5.0F, .inner_cone = inner, .outer_cone = outer});
+            check(scene, {}, 0.5, [&](glm::dvec3 p) {
+                const glm::dvec3 light(pose.translation);
+                const glm::dvec3 axis = glm::dquat(pose.rotation) * glm::dvec3(0, 0, -1);
+                const double cosine = glm::dot(glm::normalize(p - light), axis);
+                return 5.0 * point_irradiance(light, p, {0, 1, 0}) *
+                       cone(cosine, static_cast<double>(inner), static_cast<double>(outer));
+            });
+        }
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "a plane under a directional light, steep and grazing") {
+        Scene scene = ground();
+        for (const glm::vec3 to_light :
+             {glm::vec3(0.3F, 1.0F, 0.2F), glm::vec3(0, 1, 0), glm::vec3(3, 0.1F, 1)}) {
+            scene.world.set(scene.light, looking(to_light, {0, 0, 0}, {0, 0, 1}));
+            scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F});
+            const double cosine = glm::normalize(glm::dvec3(to_light)).y;
+            check(scene, {}, 0.5, [&](glm::dvec3) { return 2.0 * cosine; });
+        }
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "several lights add up, each in its colour") {
+        Scene scene = ground();
+        scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));
+        scene.world.set(scene.light, PointLight{.colour = {1, 0, 0}, .intensity = 3.0F});
+        add(scene.world, at({-0.4F, 1.5F, 0.3F}), PointLight{.colour = {0, 0, 1}, .intensity = 2.0F});
+        add(scene.world, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}),
+            DirectionalLight{.colour = {0, 0.5F, 0}, .illuminance = 2.0F});
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configure(configuration);
+        const Picture expected = expected_picture(scene, size, {}, {0, 1, 0}, [](glm::dvec3 p) {
+            const glm::dvec3 up(0, 1, 0);
+            return 0.5 / pi *
+                   glm::dvec3(3.0 * point_irradiance(glm::vec3(0.4F, 1.0F, -0.2F), p, up), 1.0,
+                              2.0 * point_irradiance(glm::vec3(-0.4F, 1.5F, 0.3F), p, up));
+        });
+        CHECK(worst_error(render(scene, size), expected, 1e-6) < tolerance);
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "an orthographic camera") {
+        Scene scene = ground();
+        scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                             .half_height = 1.0F,
+                                             .near_plane = 0.0F,
+                                             .far_plane = 10.0F});
+        const glm::vec3 light(0.4F, 1.0F, -0.2F);
+        scene.world.set(scene.light, at(light));
+        scene.world.set(scene.light, PointLight{});
+        check(scene, {}, 0.5, [&](glm::dvec3 p) { return point_irradiance(light, p, {0, 1, 0}); });
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "normals of tilted, sheared and mirrored instances") {
+        const glm::vec3 light(0.4F, 2.0F, 0.6F);
+        for (const float mirror : {1.0F, -1.0F}) {
+            CAPTURE(mirror);
+            Scene scene;
+            // Turned within a parent that scales unevenly: neither rotation nor scale transforms the normal.
+            const Entity parent = add(scene.world, Transform{.scale = {mirror * 1.5F, 0.6F, 1.2F}});
+            const glm::quat turn = glm::angleAxis(0.5F, glm::normalize(glm::vec3(1.0F, 0.3F, 0.4F)));
+            const Entity plane =
+                add(scene.world, Transform{.rotation = turn, .scale = {1, 1, 2}, .parent = parent},
+                    MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+            scene.light = add(scene.world, at(light), PointLight{});
+            scene.camera = add(scene.world, looking({0.2F, 2.5F, 0.6F}, {0, 0, 0}), Camera{});
+            // The plane from its tangents.
+            const glm::dmat4 matrix(world_matrix(scene.world, plane));
+            glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(matrix[2]), glm::dvec3(matrix[0])));
+            normal *= normal.y < 0.0 ? -1.0 : 1.0;
+            check(scene, {{0, 0, 0}, normal}, 0.8,
+                  [&](glm::dvec3 p) { return point_irradiance(light, p, normal); });
+        }
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "the back of a surface is lit from the back if it is double-sided") {
+        for (const bool double_sided : {true, false}) {
+            for (const float light_height : {-1.0F, 1.0F}) {
+                CAPTURE(double_sided);
+                CAPTURE(light_height);
+                Scene scene;
+                add(scene.world, Transform{},
+                    MeshInstance{square(4.0F, diffuse(glm::vec3(0.5F), double_sided))});
+                const glm::vec3 light(0.4F, light_height, -0.2F);
+                scene.light = add(scene.world, at(light), PointLight{});
+                scene.camera = add(scene.world, looking({0.3F, -3.0F, 1.2F}, {0, 0, 0}), Camera{});
+                check(scene, {}, double_sided ? 0.5 : 0.0, [&](glm::dvec3 p) {
+                    return point_irradiance(light, p, {0, -1, 0});
+                });
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(ClosedForm, "images are decoded from sRGB and lie as glTF says") {
+        // Blocks of 4 × 4 texels, so that their middles are free of filtering.
+        constexpr std::uint32_t texels = 16;
+        constexpr float half = 2.0F;
+        Image image{.width = texels, .height = texels, .texels = {}};
+        const auto value = [](std::uint32_t x, std::uint32_t y) {
+            return glm::u8vec4(5 + 80 * (x / 4), 10 + 60 * (y / 4), 255 - 70 * (x / 4), 255);
+        };
+        for (std::uint32_t y = 0; y < texels; ++y) {
+            for (std::uint32_t x = 0; x < texels; ++x) {
+                image.texels.push_back(value(x, y));
+            }
+        }
+        Material material;
+        material.base_colour = {0.5F, 0.9F, 1.0F, 1.0F};
+        material.base_colour_texture = std::make_shared<const Image>(std::move(image));
+        Scene scene;
+        add(scene.world, Transform{}, MeshInstance{square(half, std::make_shared<const Material>(material))});
+        add(scene.world, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}), DirectionalLight{.illuminance = 3.0F});
+        scene.camera = add(scene.world, looking({0.1F, 3.0F, 0.9F}, {0, 0, 0}), Camera{});
+
+        // IEC 61966-2-1.
+        const auto decode = [](double c) {
+            return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+        };
+        const Picture expected = expected_picture(scene, size, {}, {0, 1, 0}, [&](glm::dvec3 p) {
+            const glm::dvec2 at = (glm::dvec2(p.x, p.z) / (2.0 * static_cast<double>(half)) + 0.5) * 16.0;
+            // Filtering reaches half a texel; a texel is 8 pixels wide at least, so nothing is minified.
+            const glm::dvec2 in_block = glm::abs(glm::mod(at, 4.0) - 2.0);
+            if (std::max(in_block.x, in_block.y) > 1.4) return glm::dvec3(-1.0);
+            if (std::min({at.x, at.y, 16.0 - at.x, 16.0 - at.y}) < 0.0) return glm::dvec3(-1.0);
+            const glm::dvec3 srgb =
+                glm::dvec3(value(static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y))) / 255.0;
+            return 3.0 / pi * glm::dvec3(0.5 * decode(srgb.r), 0.9 * decode(srgb.g), decode(srgb.b));
+        });
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            Configuration configuration = linear_configuration(path);
+            configuration.indirect = false;
+            configure(configuration);
+            Picture picture = render(scene, size);
+            std::size_t compared = 0;
+            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+                if (expected.pixels[i].r < 0.0F) {
+                    picture.pixels[i] = expected.pixels[i];
+                } else {
+                    ++compared;
+                }
+            }
+            CHECK(compared > picture.pixels.size() / 4);
+            CHECK(worst_error(picture, expected, 1e-5) < tolerance);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/bvh/bvh.hpp"
+#include "engine/ecs/world.hpp"
+#include "engine/scene/components.hpp"
+#include "renderer/renderer.hpp"
+#include "tests/renderer/context_fixture.hpp"
+
+namespace candela {
+
+// Worlds for the tests of the renderer. Lengths in metres.
+
+/// A diffuse material without an image.
+[[nodiscard]] std::shared_ptr<const Material> diffuse(glm::vec3 albedo, bool double_sided = false);
+
+/// A square in the plane y = 0 that faces +Y, from -half to half; its texture spans it once, u along x, v
+/// along z.
+[[nodiscard]] std::shared_ptr<const Mesh> square(float half, std::shared_ptr<const Material> material);
+/// A cube around the origin whose faces look inwards.
+[[nodiscard]] std::shared_ptr<const Mesh> box_inwards(float half, std::shared_ptr<const Material> material);
+/// An icosahedron of 20·4ⁿ triangles whose corners lie on the sphere; faces and (radial) normals look
+/// inwards.
+[[nodiscard]] std::shared_ptr<const Mesh> sphere_inwards(float radius, int subdivisions,
+                                                         std::shared_ptr<const Material> material);
+/// `count` small double-sided triangles scattered through a cube from -1 to 1.
+[[nodiscard]] std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed);
+
+/// Transform at `from` whose -Z points to `at`.
+[[nodiscard]] Transform looking(glm::vec3 from, glm::vec3 at, glm::vec3 up = {0.0F, 1.0F, 0.0F});
+
+/// An entity with these components.
+template <class... Components>
+Entity add(World& world, Components... components) {
+    const Entity entity = world.create();
+    (world.set(entity, std::move(components)), ...);
+    return entity;
+}
+[[nodiscard]] Transform at(glm::vec3 position);
+
+/// A world, what is seen of it, and a light to play with.
+struct Scene {
+    World world;
+    Entity camera;
+    Entity light;
+};
+
+/// The shipped Cornell box: sandbox/scenes/cornell.gltf.
+[[nodiscard]] Scene cornell_box();
+/// A closed box of uniform albedo, from -1 to 1, with a point light of 1 cd off its centre.
+[[nodiscard]] Scene furnace_box(float albedo);
+/// A ground of 8 m × 8 m at y = 0 of albedo 0.5 that fills the view from above, at a slant. The light is an
+/// entity without a light as yet.
+[[nodiscard]] Scene ground();
+
+/// All triangles of a world, in world space.
+[[nodiscard]] std::vector<Triangle> world_triangles(const World& world);
+
+/// Linear radiance. Pixel (x, y) is `pixels[y * size.x + x]`; row 0 is at the bottom.
+struct Picture {
+    glm::uvec2 size{0};
+    std::vector<glm::vec3> pixels;
+    [[nodiscard]] glm::vec3 at(std::uint32_t x, std::uint32_t y) const { return pixels[y * size.x + x]; }
+    bool operator==(const Picture&) const = default;
+};
+/// Whether every pixel is finite and none negative.
+[[nodiscard]] bool is_sane(const Picture& picture);
+/// Mean of all pixels and channels.
+[[nodiscard]] double mean(const Picture& picture);
+/// Largest |a - b| / max(|b|, floor) over all pixels and channels; infinite where one is not a number.
+[[nodiscard]] double worst_error(const Picture& a, const Picture& b, double floor);
+
+/// The line through the centre of a pixel, worked out from the camera's definition and not from its matrices.
+struct PixelRay {
+    glm::dvec3 origin;
+    glm::dvec3 direction;  ///< not unit length
+};
+[[nodiscard]] PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size,
+                                 std::uint32_t x, std::uint32_t y);
+
+/// A picture of a plane: `radiance` of the point under each pixel of the scene's camera, 0 where there is
+/// none.
+[[nodiscard]] Picture expected_picture(const Scene& scene, glm::uvec2 size, glm::dvec3 point,
+                                       glm::dvec3 normal,
+                                       const std::function<glm::dvec3(glm::dvec3)>& radiance);
+
+/// A framebuffer of the host's that can be read.
+class RenderTarget {
+ public:
+    RenderTarget(gl::Device& device, glm::uvec2 size, Format format = Format::rgba32f);
+    [[nodiscard]] Target target() const { return {framebuffer_.name(), texture_.desc().size}; }
+    [[nodiscard]] Picture read() const;
+
+ private:
+    gl::Texture texture_;
+    gl::Framebuffer framebuffer_;
+};
+
+/// A configuration that writes linear radiance.
+[[nodiscard]] Configuration linear_configuration(ShadingPath path = ShadingPath::deferred);
+
+/// A renderer in a context of its own.
+class RenderFixture : public GlFixture {
+ protected:
+    /// Configures, which must succeed.
+    void configure(const Configuration& configuration);
+    [[nodiscard]] Picture render(const World& world, Entity camera, glm::uvec2 size);
+    [[nodiscard]] Picture render(const Scene& scene, glm::uvec2 size) {
+        return render(scene.world, scene.camera, size);
+    }
+    /// Whether the pass ran in the last frame; the graph must have it.
+    [[nodiscard]] bool ran(std::string_view pass) const;
+
+    Renderer renderer{context->get_proc()};
+};
+
+}  // namespace candela
