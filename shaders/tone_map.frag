@@ -4,7 +4,7 @@
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
 
 uniform float exposure;   // multiplies radiance
-uniform bool curve;       // off: radiance goes out as it is, linear
+uniform bool curve;       // off: radiance goes out as it is, linear, alpha telling where there is a surface
 
 layout(location = 0) out vec4 colour;
 
@@ -12,6 +12,6 @@ layout(location = 0) out vec4 colour;
 vec3 filmic(vec3 x) { return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
 
 void main() {
-    vec3 linear = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
-    colour = vec4(curve ? srgb_encode(filmic(linear * exposure)) : linear, 1.0);
+    vec4 linear = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0);
+    colour = curve ? vec4(srgb_encode(filmic(linear.rgb * exposure)), 1.0) : linear;
 }

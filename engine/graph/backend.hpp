@@ -50,8 +50,8 @@ class Backend {
     virtual void destroy_texture(ObjectId texture) = 0;
     virtual void destroy_buffer(ObjectId buffer) = 0;
     virtual void barrier(Barrier bits) = 0;
-    /// Around each pass that runs. `index` is its place in the order of the compiled graph; `targets` is null for
-    /// passes without attachments and lasts until end_pass. end_pass follows also when the pass throws.
+    /// Around each pass that runs. `index` is its place in the order of the compiled graph; `targets` is null
+    /// for passes without attachments and lasts until end_pass. end_pass follows also when the pass throws.
     virtual void begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) = 0;
     virtual void end_pass() = 0;
 };

@@ -35,8 +35,9 @@ std::vector<Edge> resolve_passes(const Declaration& declared, std::vector<Fault>
             if (before != none) {
                 afters.push_back({before, pass, none});
             } else {
-                faults.push_back({FaultCode::unknown_pass, fmt::format("pass '{}' says after '{}', which is not a pass",
-                                                                       declared.passes[pass].name, name)});
+                faults.push_back(
+                    {FaultCode::unknown_pass, fmt::format("pass '{}' says after '{}', which is not a pass",
+                                                          declared.passes[pass].name, name)});
             }
         }
     }
@@ -53,10 +54,13 @@ void check_resources(const Declaration& declared, std::vector<Fault>& faults) {
     for (std::uint32_t index = 0; index < resources.size(); ++index) {
         const Resource& resource = resources[index];
         if (resource.history != none && resource.versions == 0) {
-            faults.push_back({FaultCode::unwritten_read, fmt::format("{} '{}' has a history, but nobody writes it",
-                                                                     to_string(resource.kind), resource.name)});
+            faults.push_back(
+                {FaultCode::unwritten_read, fmt::format("{} '{}' has a history, but nobody writes it",
+                                                        to_string(resource.kind), resource.name)});
         }
-        if (!known(resource)) { continue; }
+        if (!known(resource)) {
+            continue;
+        }
         const auto same = [&](std::uint32_t other) {
             return resources[other].kind == resource.kind && resources[other].name == resource.name;
         };
@@ -81,13 +85,17 @@ void number_versions(const Declaration& declared, Plan& plan) {
     plan.writer.assign(versions, none);
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
         for (const Access& access : declared.accesses_of(pass)) {
-            if (access.write) { plan.writer[plan.version(access.resource, access.version)] = pass; }
+            if (access.write) {
+                plan.writer[plan.version(access.resource, access.version)] = pass;
+            }
         }
     }
 }
 
 bool is_root(const Declaration& declared, std::uint32_t pass) {
-    if (declared.passes[pass].side_effect) { return true; }
+    if (declared.passes[pass].side_effect) {
+        return true;
+    }
     const auto accesses = declared.accesses_of(pass);
     return std::any_of(accesses.begin(), accesses.end(), [&](const Access& access) {
         return access.write && declared.resources[access.resource].lifetime == Lifetime::imported;
@@ -100,12 +108,16 @@ std::vector<std::uint8_t> needed_passes(const Declaration& declared, const Plan&
     std::vector<std::uint32_t> open;
     open.reserve(declared.pass_count());
     const auto need = [&](std::uint32_t pass) {
-        if (pass == none || needed[pass]) { return; }
+        if (pass == none || needed[pass]) {
+            return;
+        }
         needed[pass] = 1;
         open.push_back(pass);
     };
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
-        if (is_root(declared, pass)) { need(pass); }
+        if (is_root(declared, pass)) {
+            need(pass);
+        }
     }
     while (!open.empty()) {
         const std::uint32_t pass = open.back();
@@ -130,7 +142,9 @@ std::string to_string(Barrier bits) {
         "command",       "texture update", "buffer update", "framebuffer",   "storage"};
     std::string text;
     for (std::size_t bit = 0; bit < names.size(); ++bit) {
-        if ((bits & static_cast<Barrier>(1U << bit)) == Barrier::none) { continue; }
+        if ((bits & static_cast<Barrier>(1U << bit)) == Barrier::none) {
+            continue;
+        }
         text += text.empty() ? "" : " + ";
         text += names.at(bit);
     }
@@ -138,9 +152,13 @@ std::string to_string(Barrier bits) {
 }
 
 CompiledGraph CompileResult::take() && {
-    if (graph) { return std::move(*graph); }
+    if (graph) {
+        return std::move(*graph);
+    }
     std::string message = "the frame graph does not compile:";
-    for (const Fault& fault : faults) { message += "\n  " + fault.message; }
+    for (const Fault& fault : faults) {
+        message += "\n  " + fault.message;
+    }
     throw GraphError(message);
 }
 
@@ -153,7 +171,9 @@ CompileResult compile(FrameGraph&& graph, CompileOptions options) {
     detail::check_resources(declared, faults);
     detail::number_versions(declared, plan);
     plan.order = detail::order_passes(declared, plan, afters, options.shuffle_seed, faults);
-    if (!faults.empty()) { return {std::nullopt, std::move(faults)}; }
+    if (!faults.empty()) {
+        return {std::nullopt, std::move(faults)};
+    }
 
     const std::vector<std::uint8_t> needed = detail::needed_passes(declared, plan);
     std::erase_if(plan.order, [&](std::uint32_t pass) { return !needed[pass]; });

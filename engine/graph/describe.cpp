@@ -16,15 +16,21 @@ using detail::none;
 using detail::Resource;
 
 std::string storage_text(const CompiledGraph& graph, const Resource& resource) {
-    if (resource.kind == ResourceKind::value) { return "value"; }
+    if (resource.kind == ResourceKind::value) {
+        return "value";
+    }
     if (resource.kind == ResourceKind::buffer) {
         const BufferDesc& desc = graph.declared().buffer(resource);
         return fmt::format("buffer of {} x {} bytes", desc.count, desc.stride);
     }
     const TextureDesc& desc = graph.declared().texture(resource);
     std::string text = fmt::format("texture {}x{} {}", desc.size.x, desc.size.y, to_string(desc.format));
-    if (desc.shape != TextureShape::flat) { text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers); }
-    if (desc.mips != 1) { text += fmt::format(", {} mips", desc.mips); }
+    if (desc.shape != TextureShape::flat) {
+        text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
+    }
+    if (desc.mips != 1) {
+        text += fmt::format(", {} mips", desc.mips);
+    }
     return text;
 }
 
@@ -36,18 +42,26 @@ std::string name_of(const CompiledGraph& graph, std::uint32_t resource) {
 std::string access_text(const CompiledGraph& graph, const Access& access) {
     const Resource& resource = graph.declared().resources[access.resource];
     std::string text = name_of(graph, access.resource);
-    if (resource.history_of == none) { text += fmt::format(" v{}", access.version); }
-    if (resource.kind != ResourceKind::value) { text += fmt::format(" ({})", to_string(access.usage)); }
+    if (resource.history_of == none) {
+        text += fmt::format(" v{}", access.version);
+    }
+    if (resource.kind != ResourceKind::value) {
+        text += fmt::format(" ({})", to_string(access.usage));
+    }
     return text;
 }
 
 /// Passes that compiling left out, in the order of declaration.
 std::vector<std::uint32_t> culled_passes(const CompiledGraph& graph) {
     std::vector<bool> kept(graph.declared().pass_count(), false);
-    for (const std::uint32_t pass : graph.plan().order) { kept[pass] = true; }
+    for (const std::uint32_t pass : graph.plan().order) {
+        kept[pass] = true;
+    }
     std::vector<std::uint32_t> culled;
     for (std::uint32_t pass = 0; pass < kept.size(); ++pass) {
-        if (!kept[pass]) { culled.push_back(pass); }
+        if (!kept[pass]) {
+            culled.push_back(pass);
+        }
     }
     return culled;
 }
@@ -57,7 +71,9 @@ std::vector<std::uint32_t> used_resources(const CompiledGraph& graph) {
     std::vector<std::uint32_t> used;
     for (std::uint32_t index = 0; index < graph.declared().resources.size(); ++index) {
         const bool past = graph.declared().resources[index].history_of != none;
-        if (!past && graph.plan().object[index] != none) { used.push_back(index); }
+        if (!past && graph.plan().object[index] != none) {
+            used.push_back(index);
+        }
     }
     return used;
 }
@@ -76,35 +92,49 @@ std::vector<std::uint32_t> object_numbers(const CompiledGraph& graph) {
 std::string pass_text(const CompiledGraph& graph, std::uint32_t position) {
     const std::uint32_t pass = graph.plan().order[position];
     const detail::PassNode& node = graph.declared().passes[pass];
-    std::string text = fmt::format("  {} {}{}\n", position, node.name, node.side_effect ? " (side effect)" : "");
+    std::string text =
+        fmt::format("  {} {}{}\n", position, node.name, node.side_effect ? " (side effect)" : "");
     const auto line = [&](std::string_view verb, std::string_view what) {
         text += fmt::format("      {} {}\n", verb, what);
     };
     const Barrier barrier = graph.plan().barrier[position];
-    if (barrier != Barrier::none) { line("barrier", to_string(barrier)); }
-    for (const std::string_view before : graph.declared().afters_of(pass)) { line("after", before); }
-    for (const detail::ComponentRead& read : graph.declared().components_of(pass)) { line("world", read.name); }
+    if (barrier != Barrier::none) {
+        line("barrier", to_string(barrier));
+    }
+    for (const std::string_view before : graph.declared().afters_of(pass)) {
+        line("after", before);
+    }
+    for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
+        line("world", read.name);
+    }
     for (const Access& access : graph.declared().accesses_of(pass)) {
         line(access.write ? "write" : "read", access_text(graph, access));
     }
     return text;
 }
 
-std::string resource_text(const CompiledGraph& graph, std::uint32_t index, const std::vector<std::uint32_t>& numbers) {
+std::string resource_text(const CompiledGraph& graph, std::uint32_t index,
+                          const std::vector<std::uint32_t>& numbers) {
     const Resource& resource = graph.declared().resources[index];
     const detail::Span span = graph.plan().lifetime[index];
     const std::uint32_t object = numbers[graph.plan().object[index]];
     std::string text = fmt::format("  {}: {}, {} [{}..{}]", resource.name, storage_text(graph, resource),
                                    to_string(resource.lifetime), span.first, span.last);
-    if (object != none) { text += fmt::format(", object {}", object); }
-    if (resource.history != none) { text += fmt::format(", history in {}", object + 1); }
+    if (object != none) {
+        text += fmt::format(", object {}", object);
+    }
+    if (resource.history != none) {
+        text += fmt::format(", history in {}", object + 1);
+    }
     return text + "\n";
 }
 
 std::string dot_name(std::string_view text) {
     std::string escaped = "\"";
     for (const char character : text) {
-        if (character == '"' || character == '\\') { escaped += '\\'; }
+        if (character == '"' || character == '\\') {
+            escaped += '\\';
+        }
         escaped += character;
     }
     return escaped + "\"";
@@ -120,11 +150,16 @@ nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t posit
                                 {"world", nlohmann::ordered_json::array()},
                                 {"reads", nlohmann::ordered_json::array()},
                                 {"writes", nlohmann::ordered_json::array()}};
-    for (const detail::ComponentRead& read : graph.declared().components_of(pass)) { json["world"].push_back(read.name); }
+    for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
+        json["world"].push_back(read.name);
+    }
     for (const Access& access : graph.declared().accesses_of(pass)) {
-        nlohmann::ordered_json entry{{"resource", name_of(graph, access.resource)}, {"version", access.version}};
+        nlohmann::ordered_json entry{{"resource", name_of(graph, access.resource)},
+                                     {"version", access.version}};
         const bool value = graph.declared().resources[access.resource].kind == ResourceKind::value;
-        if (!value) { entry["usage"] = to_string(access.usage); }
+        if (!value) {
+            entry["usage"] = to_string(access.usage);
+        }
         json[access.write ? "writes" : "reads"].push_back(std::move(entry));
     }
     return json;
@@ -134,13 +169,21 @@ nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t posit
 
 std::string describe_text(const CompiledGraph& graph) {
     std::string text = "passes\n";
-    for (std::uint32_t position = 0; position < graph.pass_count(); ++position) { text += pass_text(graph, position); }
+    for (std::uint32_t position = 0; position < graph.pass_count(); ++position) {
+        text += pass_text(graph, position);
+    }
     const std::vector<std::uint32_t> culled = culled_passes(graph);
-    if (!culled.empty()) { text += "culled\n"; }
-    for (const std::uint32_t pass : culled) { text += fmt::format("  {}\n", graph.declared().passes[pass].name); }
+    if (!culled.empty()) {
+        text += "culled\n";
+    }
+    for (const std::uint32_t pass : culled) {
+        text += fmt::format("  {}\n", graph.declared().passes[pass].name);
+    }
     text += "resources\n";
     const std::vector<std::uint32_t> numbers = object_numbers(graph);
-    for (const std::uint32_t index : used_resources(graph)) { text += resource_text(graph, index, numbers); }
+    for (const std::uint32_t index : used_resources(graph)) {
+        text += resource_text(graph, index, numbers);
+    }
     return text;
 }
 
@@ -148,7 +191,9 @@ std::string describe_dot(const CompiledGraph& graph) {
     const detail::Declaration& declared = graph.declared();
     const detail::Plan& plan = graph.plan();
     std::string text = "digraph frame {\n    rankdir=LR;\n    node [shape=box];\n";
-    for (const std::uint32_t pass : plan.order) { text += fmt::format("    {};\n", dot_name(declared.passes[pass].name)); }
+    for (const std::uint32_t pass : plan.order) {
+        text += fmt::format("    {};\n", dot_name(declared.passes[pass].name));
+    }
     for (const std::uint32_t pass : plan.order) {
         const std::string to = dot_name(declared.passes[pass].name);
         for (const Access& access : declared.accesses_of(pass)) {
@@ -157,9 +202,12 @@ std::string describe_dot(const CompiledGraph& graph) {
                 past_of == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
                                 : plan.version(past_of, declared.resources[past_of].versions);
             const std::uint32_t writer = plan.writer[version];
-            if (writer == none || (writer == pass && past_of == none)) { continue; }
+            if (writer == none || (writer == pass && past_of == none)) {
+                continue;
+            }
             text += fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[writer].name), to,
-                                dot_name(name_of(graph, access.resource)), past_of == none ? "" : ", style=dashed");
+                                dot_name(name_of(graph, access.resource)),
+                                past_of == none ? "" : ", style=dashed");
         }
     }
     return text + "}\n";
@@ -185,8 +233,12 @@ std::string describe_json(const CompiledGraph& graph) {
                                      {"first", span.first},
                                      {"last", span.last}};
         const std::uint32_t object = numbers[graph.plan().object[index]];
-        if (object != none) { entry["object"] = object; }
-        if (resource.history != none) { entry["history_object"] = object + 1; }
+        if (object != none) {
+            entry["object"] = object;
+        }
+        if (resource.history != none) {
+            entry["history_object"] = object + 1;
+        }
         json["resources"].push_back(std::move(entry));
     }
     return json.dump(2) + "\n";

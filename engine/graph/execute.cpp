@@ -42,11 +42,14 @@ double milliseconds(Clock::duration duration) {
 // The frame
 
 const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
-    if (!graph_) { throw GraphError("no frame graph has been adopted"); }
+    if (!graph_) {
+        throw GraphError("no frame graph has been adopted");
+    }
     require_imports();
     notice_world(world);
     mark_dirty(world);
-    while (mark_missing()) {}
+    while (mark_missing()) {
+    }
 
     record_.frame = frame_;
     std::fill(state_.turned.begin(), state_.turned.end(), std::uint8_t{0});
@@ -58,9 +61,13 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
         record.ran = false;
         record.cpu_ms = 0;
         carried_ = carried_ | step.barrier;
-        if (state_.need[position] == nothing) { continue; }
+        if (state_.need[position] == nothing) {
+            continue;
+        }
         const bool changed = dirty(step, world);
-        if (!changed && (state_.need[position] & certain) == 0) { continue; }
+        if (!changed && (state_.need[position] & certain) == 0) {
+            continue;
+        }
 
         execution.position_ = position;
         run_step(execution, changed);
@@ -79,29 +86,42 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
 void GraphRuntime::require_imports() const {
     for (const std::uint32_t index : state_.imports) {
         const detail::Slot& slot = state_.slots[graph_->plan().object[index]];
-        if (slot.object != 0 || slot.value) { continue; }
+        if (slot.filled || slot.value) {
+            continue;
+        }
         const detail::Resource& resource = graph_->declared().resources[index];
-        const std::string_view lack = resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
+        const std::string_view lack =
+            resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
         throw GraphError(fmt::format("imported {} '{}' {}", to_string(resource.kind), resource.name, lack));
     }
 }
 
 /// Another world's revisions say nothing about this one's.
 void GraphRuntime::notice_world(const World& world) {
-    if (world_ == &world) { return; }
+    if (world_ == &world) {
+        return;
+    }
     world_ = &world;
-    for (detail::Revision& revision : state_.revisions) { revision.tick = std::numeric_limits<Tick>::max(); }
+    for (detail::Revision& revision : state_.revisions) {
+        revision.tick = std::numeric_limits<Tick>::max();
+    }
 }
 
 bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
     const detail::Step& next = *(&step + 1);
-    if (!step.has_run || step.side_effect) { return true; }
+    if (!step.has_run || step.side_effect) {
+        return true;
+    }
     for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
-        if (state_.versions[state_.inputs[at]].stamp != state_.input_stamps[at]) { return true; }
+        if (state_.versions[state_.inputs[at]].stamp != state_.input_stamps[at]) {
+            return true;
+        }
     }
     for (std::uint32_t at = step.first_revision; at < next.first_revision; ++at) {
         const detail::Revision& revision = state_.revisions[at];
-        if (revision.of(world) != revision.tick) { return true; }
+        if (revision.of(world) != revision.tick) {
+            return true;
+        }
     }
     return false;
 }
@@ -116,20 +136,24 @@ void GraphRuntime::mark_dirty(const World& world) {
             need = may_change | certain;
         } else {
             for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
-                if ((state_.need[state_.versions[state_.inputs[at]].producer] & may_change) != 0) { need |= may_change; }
+                if ((state_.need[state_.versions[state_.inputs[at]].producer] & may_change) != 0) {
+                    need |= may_change;
+                }
             }
         }
         state_.need[position] = need;
     }
 }
 
-/// Backward: whoever makes what a running pass lacks must run as well. A run also takes the place of what a later pass
-/// has put into the same object, be it a later version or another resource. Gives whether that has taken something
-/// away which readers seen before may lack, so that another round is due.
+/// Backward: whoever makes what a running pass lacks must run as well. A run also takes the place of what a
+/// later pass has put into the same object, be it a later version or another resource. Gives whether that has
+/// taken something away which readers seen before may lack, so that another round is due.
 bool GraphRuntime::mark_missing() {
     bool again = false;
     for (std::uint32_t position = state_.step_count(); position-- > 0;) {
-        if (state_.need[position] == nothing) { continue; }
+        if (state_.need[position] == nothing) {
+            continue;
+        }
         const detail::Step& step = state_.steps[position];
         const detail::Step& next = state_.steps[position + 1];
         for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
@@ -138,7 +162,9 @@ bool GraphRuntime::mark_missing() {
         }
         for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
             const std::uint32_t held = state_.holds[state_.outputs[at].slot];
-            if (held == none) { continue; }
+            if (held == none) {
+                continue;
+            }
             detail::Version& version = state_.versions[held];
             const bool lost = version.present & (version.producer > position);
             again |= lost & ((state_.need[version.producer] & certain) == 0);
@@ -152,12 +178,16 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
     detail::Step& step = state_.steps[execution.position_];
     step.has_run = false;
     begin_outputs(step);
-    if (carried_ != Barrier::none) { backend_.barrier(carried_); }
+    if (carried_ != Barrier::none) {
+        backend_.barrier(carried_);
+    }
     carried_ = Barrier::none;
     begin_pass(execution.position_);
     {
         const OnExit end([this] { backend_.end_pass(); });
-        if (step.invoke) { step.invoke(step.function, execution); }
+        if (step.invoke) {
+            step.invoke(step.function, execution);
+        }
     }
     keep_record(step, execution.world(), changed);
 }
@@ -167,15 +197,21 @@ void GraphRuntime::begin_outputs(const detail::Step& step) {
     const detail::Step& next = *(&step + 1);
     for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
         const detail::Output& output = state_.outputs[at];
-        if (output.turns_over) { turn_over(output.slot); }
-        if (output.value) { state_.slots[output.slot].changed = state_.holds[output.slot] != output.version; }
+        if (output.turns_over) {
+            turn_over(output.slot);
+        }
+        if (output.value) {
+            state_.slots[output.slot].changed = state_.holds[output.slot] != output.version;
+        }
         release(output.slot);
     }
 }
 
 void GraphRuntime::release(std::uint32_t slot) {
     std::uint32_t& held = state_.holds[slot];
-    if (held != none) { state_.versions[held].present = false; }
+    if (held != none) {
+        state_.versions[held].present = false;
+    }
     held = none;
 }
 
@@ -189,7 +225,9 @@ void GraphRuntime::turn_over(std::uint32_t slot) {
 void GraphRuntime::begin_pass(std::uint32_t position) {
     const detail::Step& step = state_.steps[position];
     const std::uint32_t end = state_.steps[position + 1].first_target;
-    if (step.first_target == end) { return backend_.begin_pass(step.name, position, nullptr); }
+    if (step.first_target == end) {
+        return backend_.begin_pass(step.name, position, nullptr);
+    }
 
     PassTargets targets;
     colours_.clear();
@@ -207,8 +245,8 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
     backend_.begin_pass(step.name, position, &targets);
 }
 
-/// A pass that ran only to bring back what it had made before keeps the stamps of its results; so does a value that
-/// was set to what it was.
+/// A pass that ran only to bring back what it had made before keeps the stamps of its results; so does a
+/// value that was set to what it was.
 void GraphRuntime::keep_record(detail::Step& step, const World& world, bool changed) {
     const detail::Step& next = *(&step + 1);
     for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
@@ -224,21 +262,31 @@ void GraphRuntime::keep_record(detail::Step& step, const World& world, bool chan
         release(output.slot);
         state_.holds[output.slot] = output.version;
         version.present = true;
-        if (output.turns_over) { state_.slots[output.slot].filled = true; }
-        if (changed && (!output.value || state_.slots[output.slot].changed)) { version.stamp = clock_; }
+        if (output.turns_over) {
+            state_.slots[output.slot].filled = true;
+        }
+        if (changed && (!output.value || state_.slots[output.slot].changed)) {
+            version.stamp = clock_;
+        }
     }
     step.has_run = true;
 }
 
 void GraphRuntime::invalidate() {
-    for (detail::Step& step : state_.steps) { step.has_run = false; }
+    for (detail::Step& step : state_.steps) {
+        step.has_run = false;
+    }
 }
 
 // What passes and the host may touch
 
 const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
-    if (!graph_) { throw GraphError("no frame graph has been adopted"); }
-    if (handle.graph != graph_->declared().id) { throw GraphError("a handle is not of the adopted frame graph"); }
+    if (!graph_) {
+        throw GraphError("no frame graph has been adopted");
+    }
+    if (handle.graph != graph_->declared().id) {
+        throw GraphError("a handle is not of the adopted frame graph");
+    }
     return graph_->declared().resources.at(handle.resource);
 }
 
@@ -253,10 +301,13 @@ detail::Slot* GraphRuntime::import_slot(ResourceHandle handle) {
 void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture,
                         const BufferDesc& buffer) {
     detail::Slot* const slot = import_slot(imported);
-    if (!slot) { return; }
-    slot->object = object;
+    if (!slot) {
+        return;
+    }
+    slot->object = object;  // may be 0, as the window's framebuffer is
     slot->texture = texture;
     slot->buffer = buffer;
+    slot->filled = true;
     touch(imported);
 }
 
@@ -268,7 +319,9 @@ void GraphRuntime::touch(ResourceHandle imported) {
 detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
     const std::uint32_t past_of = graph_->declared().resources[index].history_of;
     const std::uint32_t slot = graph_->plan().object[past_of == none ? index : past_of];
-    if (slot == none) { return nullptr; }
+    if (slot == none) {
+        return nullptr;
+    }
     return &state_.slots[past_of != none && state_.turned[slot] ? slot + 1 : slot];
 }
 
@@ -310,7 +363,8 @@ bool Execution::valid(ResourceHandle history) const {
     const detail::Slot& past = slot(history, false);
     const std::uint32_t present_of = runtime_.resource(history).history_of;
     if (present_of == none) {
-        throw GraphError(fmt::format("{} '{}' is not a history", to_string(past.kind), runtime_.resource(history).name));
+        throw GraphError(
+            fmt::format("{} '{}' is not a history", to_string(past.kind), runtime_.resource(history).name));
     }
     const detail::Slot& present = *runtime_.slot_of(present_of);
     return !runtime_.cut_ && past.filled && past.texture == present.texture && past.buffer == present.buffer;
@@ -326,15 +380,20 @@ detail::Slot& Execution::reservable(ResourceHandle handle) const {
                access.usage != Usage::colour_target && access.usage != Usage::depth_target;
     });
     const detail::Resource& resource = runtime_.resource(handle);
-    if (from_start && resource.lifetime == Lifetime::persistent) { return found; }
-    throw GraphError(fmt::format(
-        "pass '{}' reserves {} '{}', but may only what is persistent and what it writes from version 0, not as a target",
-        graph.declared().passes[pass].name, to_string(resource.kind), resource.name));
+    if (from_start && resource.lifetime == Lifetime::persistent) {
+        return found;
+    }
+    throw GraphError(
+        fmt::format("pass '{}' reserves {} '{}', but may only what is persistent and what it writes from "
+                    "version 0, not as a target",
+                    graph.declared().passes[pass].name, to_string(resource.kind), resource.name));
 }
 
 void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
     detail::Slot& old = reservable(buffer);
-    if (count <= old.buffer.count) { return; }
+    if (count <= old.buffer.count) {
+        return;
+    }
     detail::Slot grown = old;
     grown.buffer.count = std::max(count, old.buffer.count + old.buffer.count / 2);
     runtime_.create(grown, runtime_.resource(buffer).name);
@@ -344,7 +403,9 @@ void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
 
 void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
     detail::Slot& old = reservable(texture);
-    if (desc == old.texture) { return; }
+    if (desc == old.texture) {
+        return;
+    }
     detail::Slot other = old;
     other.texture = desc;
     runtime_.create(other, runtime_.resource(texture).name);

@@ -33,8 +33,9 @@ struct FrameRecord {
 struct MemoryUse {
     std::uint64_t texture_bytes = 0;
     std::uint64_t buffer_bytes = 0;
-    std::uint64_t shared_by_aliasing_bytes = 0;  ///< what transients would need in addition if they shared nothing
-    std::uint64_t spare_bytes = 0;               ///< of the above, kept for a return to the previous graph
+    std::uint64_t shared_by_aliasing_bytes =
+        0;                          ///< what transients would need in addition if they shared nothing
+    std::uint64_t spare_bytes = 0;  ///< of the above, kept for a return to the previous graph
 };
 
 enum class Timing : bool { off, on };
@@ -53,7 +54,9 @@ class Execution {
     }
 
     /// As it is now: after `reserve`, and as bound by the host.
-    [[nodiscard]] const TextureDesc& desc(TextureHandle texture) const { return slot(texture, false).texture; }
+    [[nodiscard]] const TextureDesc& desc(TextureHandle texture) const {
+        return slot(texture, false).texture;
+    }
     /// Elements that the buffer has room for now; at least what was declared or reserved.
     template <class T>
     [[nodiscard]] std::uint64_t count(BufferHandle<T> buffer) const {
@@ -66,24 +69,26 @@ class Execution {
         return *static_cast<const T*>(content(value));
     }
 
-    /// What a value that the pass reads or writes holds now, null if it was never set: how a pass comes by its own
-    /// last result.
+    /// What a value that the pass reads or writes holds now, null if it was never set: how a pass comes by
+    /// its own last result.
     template <class T>
     [[nodiscard]] const T* find(ValueHandle<T> value) const {
         return static_cast<const T*>(slot(value, false).value.get());
     }
 
-    /// Sets a value that the pass writes. One that equals the present (where T compares) leaves its readers clean.
+    /// Sets a value that the pass writes. One that equals the present (where T compares) leaves its readers
+    /// clean.
     template <class T>
     void set(ValueHandle<T> value, std::type_identity_t<T> content);
 
-    /// Makes room for `count` elements in a persistent buffer that the pass writes from version 0. Grows by half at
-    /// least, and never shrinks; growing loses the content.
+    /// Makes room for `count` elements in a persistent buffer that the pass writes from version 0. Grows by
+    /// half at least, and never shrinks; growing loses the content.
     template <class T>
     void reserve(BufferHandle<T> buffer, std::uint64_t count) {
         reserve_buffer(buffer, count);
     }
-    /// Gives a persistent texture that the pass writes from version 0 this description; another one loses the content.
+    /// Gives a persistent texture that the pass writes from version 0 this description; another one loses the
+    /// content.
     void reserve(TextureHandle texture, const TextureDesc& desc);
 
     /// Whether a history handle has content of the resource's present description, with no cut since.
@@ -108,12 +113,12 @@ class Execution {
     std::uint32_t position_ = 0;
 };
 
-/// Runs compiled graphs, one at a time, and owns what must outlast a frame: the objects of the graph's resources, the
-/// values, and for each pass and version the stamps that tell whether a pass must run again.
+/// Runs compiled graphs, one at a time, and owns what must outlast a frame: the objects of the graph's
+/// resources, the values, and for each pass and version the stamps that tell whether a pass must run again.
 ///
-/// A pass runs when it has not yet run, when a stamp of its inputs (what it reads or changes, component pools,
-/// imported values) is not the one of its last run, when it has a side effect or writes an imported resource, and when
-/// a pass that runs needs a result of it that has been overwritten. Not synchronised.
+/// A pass runs when it has not yet run, when a stamp of its inputs (what it reads or changes, component
+/// pools, imported values) is not the one of its last run, when it has a side effect or writes an imported
+/// resource, and when a pass that runs needs a result of it that has been overwritten. Not synchronised.
 class GraphRuntime {
  public:
     /// The back end must outlive the runtime.
@@ -123,33 +128,36 @@ class GraphRuntime {
     /// Destroys every object that it made.
     ~GraphRuntime();
 
-    /// Replaces the graph. Persistent resources and values that both graphs declare alike stay, and so do the records
-    /// of passes with the same name, parameters and inputs: what was clean stays clean. Objects that the new graph
-    /// does not need are spared until the graph after it, or `trim`. If the back end throws, nothing has changed.
-    /// Imported textures and buffers must be bound anew.
+    /// Replaces the graph. Persistent resources and values that both graphs declare alike stay, and so do the
+    /// records of passes with the same name, parameters and inputs: what was clean stays clean. Objects that
+    /// the new graph does not need are spared until the graph after it, or `trim`. If the back end throws,
+    /// nothing has changed. Imported textures and buffers must be bound anew.
     void adopt(CompiledGraph graph);
 
     /// The adopted graph, or null.
     [[nodiscard]] const CompiledGraph* graph() const { return graph_ ? &*graph_ : nullptr; }
 
-    /// Sets an imported value; it stays until set again, and an equal one (where T compares) leaves its readers clean.
+    /// Sets an imported value; it stays until set again, and an equal one (where T compares) leaves its
+    /// readers clean.
     template <class T>
     void set(ValueHandle<T> imported, std::type_identity_t<T> value);
 
-    /// Gives an imported texture or buffer its object, which the host keeps. Stays until bound again; each call counts
-    /// as new content.
-    void bind(TextureHandle imported, ObjectId object, const TextureDesc& desc) { bind(imported, object, desc, {}); }
+    /// Gives an imported texture or buffer its object, which the host keeps. Stays until bound again; each
+    /// call counts as new content.
+    void bind(TextureHandle imported, ObjectId object, const TextureDesc& desc) {
+        bind(imported, object, desc, {});
+    }
     template <class T>
     void bind(BufferHandle<T> imported, ObjectId object, std::uint64_t count) {
         bind(imported, object, {}, {count, sizeof(T)});
     }
 
-    /// Runs one frame and tells which passes ran. The record lasts until the next run. GraphError if nothing is
-    /// adopted or an import is missing. What a pass throws passes through: that pass then counts as not having run,
-    /// and the next run takes up from there.
+    /// Runs one frame and tells which passes ran. The record lasts until the next run. GraphError if nothing
+    /// is adopted or an import is missing. What a pass throws passes through: that pass then counts as not
+    /// having run, and the next run takes up from there.
     ///
-    /// A world is known by its address and its pools' revisions. Call `invalidate` after replacing the content of the
-    /// world at one address by that of another.
+    /// A world is known by its address and its pools' revisions. Call `invalidate` after replacing the
+    /// content of the world at one address by that of another.
     const FrameRecord& run(const World& world, Timing timing = Timing::off);
 
     /// All passes run in the next frame.
@@ -164,8 +172,8 @@ class GraphRuntime {
     [[nodiscard]] const T& value(ValueHandle<T> value) const {
         return *static_cast<const T*>(content(value));
     }
-    /// The object that holds a resource of the adopted graph; 0 if no kept pass uses it. A transient's content lasts
-    /// only until its object's next user.
+    /// The object that holds a resource of the adopted graph; 0 if no kept pass uses it. A transient's
+    /// content lasts only until its object's next user.
     [[nodiscard]] ObjectId object(ResourceHandle resource) const;
     [[nodiscard]] MemoryUse memory() const;
 
@@ -210,7 +218,9 @@ class GraphRuntime {
 template <class T>
 void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
     detail::Slot& target = slot(value, true);
-    if (detail::holds_equal<T>(target, content)) { return; }
+    if (detail::holds_equal<T>(target, content)) {
+        return;
+    }
     target.value = std::make_shared<T>(std::move(content));
     target.changed = true;
 }
@@ -218,7 +228,9 @@ void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
 template <class T>
 void GraphRuntime::set(ValueHandle<T> imported, std::type_identity_t<T> value) {
     detail::Slot* const target = import_slot(imported);
-    if (!target || detail::holds_equal<T>(*target, value)) { return; }
+    if (!target || detail::holds_equal<T>(*target, value)) {
+        return;
+    }
     target->value = std::make_shared<T>(std::move(value));
     touch(imported);
 }

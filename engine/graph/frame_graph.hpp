@@ -21,10 +21,11 @@ struct CompileResult;
 
 /// Declares one pass: what it reads, what it writes, what it runs. Lives only inside `FrameGraph::add`.
 ///
-/// Writing gives the next version of a resource. Version 0 has no content in this frame, and the pass must fill it;
-/// from version 1 on the pass changes what is there and depends on it, without having to read it as well. Each
-/// version is written once: who writes a version that another pass has overwritten must say `after` that pass, and
-/// then writes its result. Passes declared after a write must read the handle that it gave.
+/// Writing gives the next version of a resource. Version 0 has no content in this frame, and the pass must
+/// fill it; from version 1 on the pass changes what is there and depends on it, without having to read it as
+/// well. Each version is written once: who writes a version that another pass has overwritten must say
+/// `after` that pass, and then writes its result. Passes declared after a write must read the handle that it
+/// gave.
 class Pass {
  public:
     Pass(const Pass&) = delete;
@@ -43,7 +44,8 @@ class Pass {
     /// Reads a component pool of the world: the pass is dirty when the pool's revision has moved.
     template <Component C>
     void read() {
-        declared_.components.push_back({component_name<C>(), [](const World& world) { return world.revision<C>(); }});
+        declared_.components.push_back(
+            {component_name<C>(), [](const World& world) { return world.revision<C>(); }});
     }
 
     [[nodiscard]] TextureHandle write(TextureHandle texture, Usage usage) {
@@ -58,8 +60,8 @@ class Pass {
         return {declared_.write(value, ResourceKind::value, {})};
     }
 
-    /// A constant of the declaration that the pass's result depends on. When a new graph is adopted, a pass whose
-    /// parameters compare equal keeps its results.
+    /// A constant of the declaration that the pass's result depends on. When a new graph is adopted, a pass
+    /// whose parameters compare equal keeps its results.
     template <std::equality_comparable T>
     void parameter(T value) {
         const auto equal = [](const void* a, const void* b) {
@@ -71,8 +73,8 @@ class Pass {
     /// Never culled, and runs in every frame.
     void side_effect() { declared_.passes.back().side_effect = true; }
 
-    /// An order that no data states: this pass runs after the named one, which may be declared later. It keeps
-    /// nobody alive. Unknown names are faults.
+    /// An order that no data states: this pass runs after the named one, which may be declared later. It
+    /// keeps nobody alive. Unknown names are faults.
     void after(std::string_view pass) { declared_.after(pass); }
 
     /// What the pass does: `void(Execution&)`. The last call counts.
@@ -90,12 +92,12 @@ class Pass {
     detail::Declaration& declared_;
 };
 
-/// The declaration of a frame. Declaring never throws on misuse; `compile` reports every fault by name, and leaves
-/// nothing to declare into.
+/// The declaration of a frame. Declaring never throws on misuse; `compile` reports every fault by name, and
+/// leaves nothing to declare into.
 class FrameGraph {
  public:
-    // Names are for people, and the key under which persistent and imported resources and values are known from one
-    // graph to the next: among those, each kind's names must be unique.
+    // Names are for people, and the key under which persistent and imported resources and values are known
+    // from one graph to the next: among those, each kind's names must be unique.
     [[nodiscard]] TextureHandle texture(std::string_view name, const TextureDesc& desc,
                                         Lifetime lifetime = Lifetime::transient) {
         return {declared_.add_texture(name, desc, lifetime)};
@@ -120,9 +122,9 @@ class FrameGraph {
         return {declared_.add_value(name, typeid(T), Lifetime::imported)};
     }
 
-    /// What the resource held at the end of the last frame, which makes the resource persistent; read only. Invalid in
-    /// the first frame, after a cut and after a resize: ask `Execution::history_valid`. A memory, not an input:
-    /// reading it never makes a pass dirty.
+    /// What the resource held at the end of the last frame, which makes the resource persistent; read only.
+    /// Invalid in the first frame, after a cut and after a resize: ask `Execution::history_valid`. A memory,
+    /// not an input: reading it never makes a pass dirty.
     [[nodiscard]] TextureHandle history(TextureHandle texture) {
         return {declared_.add_history(texture, ResourceKind::texture)};
     }
@@ -131,7 +133,8 @@ class FrameGraph {
         return {declared_.add_history(buffer, ResourceKind::buffer)};
     }
 
-    /// Adds a pass; `declare(Pass&)` is called at once and its result (the handles that the pass gives) is returned.
+    /// Adds a pass; `declare(Pass&)` is called at once and its result (the handles that the pass gives) is
+    /// returned.
     template <std::invocable<Pass&> Declare>
     std::invoke_result_t<Declare, Pass&> add(std::string_view name, Declare&& declare) {
         declared_.begin_pass(name);

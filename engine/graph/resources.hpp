@@ -7,8 +7,8 @@
 
 namespace candela {
 
-/// One version of one resource of one graph. Declaring a write yields the next version; the older handle is then
-/// stale for passes declared later. Plain value, owns nothing.
+/// One version of one resource of one graph. Declaring a write yields the next version; the older handle is
+/// then stale for passes declared later. Plain value, owns nothing.
 struct ResourceHandle {
     std::uint32_t graph = 0;     ///< identity of the declaring FrameGraph; 0 is no graph
     std::uint32_t resource = 0;  ///< index within the graph
@@ -29,7 +29,18 @@ struct ValueHandle : ResourceHandle {};
 enum class ResourceKind : std::uint8_t { texture, buffer, value };
 [[nodiscard]] std::string_view to_string(ResourceKind kind);
 
-enum class Format : std::uint8_t { rgba8, srgb8_alpha8, rgba16f, rgba32f, rg32f, r32f, rg16f, r16f, r32ui, depth32f };
+enum class Format : std::uint8_t {
+    rgba8,
+    srgb8_alpha8,
+    rgba16f,
+    rgba32f,
+    rg32f,
+    r32f,
+    rg16f,
+    r16f,
+    r32ui,
+    depth32f
+};
 [[nodiscard]] bool is_depth(Format format);
 [[nodiscard]] std::uint32_t bytes_per_texel(Format format);
 [[nodiscard]] std::string_view to_string(Format format);
@@ -73,7 +84,8 @@ enum class Usage : std::uint8_t {
 [[nodiscard]] std::string_view to_string(Usage usage);
 
 enum class Lifetime : std::uint8_t {
-    transient,   ///< lives between its first and last use in a frame; memory is shared where lifetimes are disjoint
+    transient,   ///< lives between its first and last use in a frame; memory is shared where lifetimes are
+                 ///< disjoint
     persistent,  ///< kept from frame to frame, and across graphs that declare the same name and description
     imported     ///< owned by the host, bound before it is used
 };

@@ -221,11 +221,10 @@ std::string name_of(const tinygltf::Model& model, int index) {
     return fmt::format("node {}", index);
 }
 
-StagedEntity stage(const tinygltf::Model& model, int index,
-                   const std::vector<std::shared_ptr<const Mesh>>& meshes) {
+/// Adds what the node holds to its (innermost) entity.
+void equip(StagedEntity& entity, const tinygltf::Model& model, int index,
+           const std::vector<std::shared_ptr<const Mesh>>& meshes) {
     const tinygltf::Node& node = node_at(model, index);
-    StagedEntity entity;
-    entity.name = name_of(model, index);
     if (node.mesh >= 0) {
         entity.mesh = meshes[static_cast<std::size_t>(node.mesh)];
     }
@@ -235,7 +234,6 @@ StagedEntity stage(const tinygltf::Model& model, int index,
     if (const int light = light_of(node); light >= 0) {
         entity.light = read_light(model.lights[static_cast<std::size_t>(light)], light);
     }
-    return entity;
 }
 
 /// The last of `ahead` is visited next.
@@ -254,18 +252,14 @@ std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
     while (!ahead.empty()) {
         auto [node, parent] = ahead.back();
         ahead.pop_back();
-        const std::vector<Transform> transforms = read_transforms(node_at(model, node), node);
-        for (std::size_t i = 0; i < transforms.size(); ++i) {
-            const bool is_node = i + 1 == transforms.size();
-            StagedEntity entity = is_node ? stage(model, node, meshes) : StagedEntity{};
-            if (!is_node) {
-                entity.name = name_of(model, node) + " (shear)";
-            }
-            entity.transform = transforms[i];
+        for (const Transform& transform : read_transforms(node_at(model, node), node)) {
+            StagedEntity& entity = entities.emplace_back();
             entity.parent = parent;
-            entities.push_back(std::move(entity));
+            entity.name = name_of(model, node);
+            entity.transform = transform;
             parent = entities.size() - 1;
         }
+        equip(entities.back(), model, node, meshes);
         put_ahead(node_at(model, node).children, parent, ahead);
     }
     return entities;

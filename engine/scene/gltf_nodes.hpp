@@ -24,9 +24,9 @@ struct StagedEntity {
 };
 
 /// The nodes of the default scene (the first where none is named), parents before children, siblings in the
-/// file's order. A sheared node makes two entities, the first of them the second's parent (see decompose). A
-/// node without a name is called after its camera, light or mesh, or else `node N`. Throws SceneError that
-/// names the node, camera or light and the fault: two parents, a cycle, no scene.
+/// file's order. A sheared node makes two entities of its name, the first the second's parent (see
+/// decompose). A node without a name is called after its camera, light or mesh, or else `node N`. Throws
+/// SceneError that names the node, camera or light and the fault: two parents, a cycle, no scene.
 [[nodiscard]] std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
                                                    const std::vector<std::shared_ptr<const Mesh>>& meshes);
 

@@ -28,7 +28,7 @@ glm::mat4 world_matrix(const World& world, Entity entity) {
     const auto deepest = world.count<Transform>();
     Entity at = entity;
     for (std::size_t depth = 0;; ++depth) {
-        const Transform* transform = world.find<Transform>(at);
+        const auto* transform = world.find<Transform>(at);
         if (!transform) {
             return matrix;
         }

@@ -32,7 +32,7 @@ struct Lighting {
     ShadowMaps shadows;
     std::optional<Vpls> vpls;  ///< none: no indirect light
     Show show = Show::total;
-    float geometry_bound = 1.0F;  ///< see `bound_geometry_term`
+    float geometry_bound = 0.1F;  ///< see `bound_geometry_term`
 };
 
 /// Bound on a VPL's geometry term cos θ cos θ' / r², in 1/m². N VPLs stand for patches of A/N each, A being

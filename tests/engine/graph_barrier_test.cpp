@@ -24,13 +24,27 @@ struct Event {
 /// OpenGL 4.5, section 7.13.2, from the point of view of who accesses.
 Barrier bit_of(ResourceKind kind, Usage usage) {
     const bool texture = kind == ResourceKind::texture;
-    if (usage == Usage::sampled) { return Barrier::texture_fetch; }
-    if (usage == Usage::uniform) { return Barrier::uniform; }
-    if (usage == Usage::vertex) { return Barrier::vertex_attrib; }
-    if (usage == Usage::index) { return Barrier::element; }
-    if (usage == Usage::indirect) { return Barrier::command; }
-    if (usage == Usage::storage) { return texture ? Barrier::image_access : Barrier::storage; }
-    if (usage == Usage::copy) { return texture ? Barrier::texture_update : Barrier::buffer_update; }
+    if (usage == Usage::sampled) {
+        return Barrier::texture_fetch;
+    }
+    if (usage == Usage::uniform) {
+        return Barrier::uniform;
+    }
+    if (usage == Usage::vertex) {
+        return Barrier::vertex_attrib;
+    }
+    if (usage == Usage::index) {
+        return Barrier::element;
+    }
+    if (usage == Usage::indirect) {
+        return Barrier::command;
+    }
+    if (usage == Usage::storage) {
+        return texture ? Barrier::image_access : Barrier::storage;
+    }
+    if (usage == Usage::copy) {
+        return texture ? Barrier::texture_update : Barrier::buffer_update;
+    }
     return Barrier::framebuffer;
 }
 
@@ -45,9 +59,12 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
     const std::size_t count = compiled.plan().order.size();
     for (std::size_t frame = 0; frame < frames; ++frame) {
         for (std::size_t position = 0; position < count; ++position) {
-            for (const random_graph::Access& access : graph.passes[compiled.plan().order[position]].accesses) {
+            for (const random_graph::Access& access :
+                 graph.passes[compiled.plan().order[position]].accesses) {
                 const random_graph::Resource& resource = graph.resources[access.resource];
-                if (resource.kind == ResourceKind::value) { continue; }
+                if (resource.kind == ResourceKind::value) {
+                    continue;
+                }
                 const std::size_t turn = resource.remembered ? (frame + (access.past ? 1 : 0)) % 2 : 0;
                 events.push_back({frame * count + position,
                                   first_object[access.resource] + static_cast<std::uint32_t>(turn),
@@ -64,24 +81,32 @@ TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and no
         const Graph graph = random_graph::make({.backward_afters = false});
         const bool shuffled = *rc::gen::arbitrary<bool>();
         const CompiledGraph compiled =
-            random_graph::compile(graph, {.shuffle_seed = shuffled ? std::optional(std::uint64_t{7}) : std::nullopt})
+            random_graph::compile(graph,
+                                  {.shuffle_seed = shuffled ? std::optional(std::uint64_t{7}) : std::nullopt})
                 .take();
         const auto& barriers = compiled.plan().barrier;
-        // A hazard spans two frames at most (of histories), so five frames show each of them in the midst of others.
+        // A hazard spans two frames at most (of histories), so five frames show each of them in the midst of
+        // others.
         const std::vector<Event> events = unroll(graph, compiled, 5);
         std::vector<Barrier> needed(barriers.size(), Barrier::none);
         for (const Event& early : events) {
             for (const Event& late : events) {
                 const bool after_write = early.incoherent;
                 const bool after_read = !early.write && late.incoherent;
-                if (late.time <= early.time || late.object != early.object || !(after_write || after_read)) { continue; }
+                if (late.time <= early.time || late.object != early.object || !(after_write || after_read)) {
+                    continue;
+                }
                 std::set<std::size_t> between;
                 for (std::size_t time = early.time + 1; time <= late.time; ++time) {
                     const std::size_t position = time % barriers.size();
-                    if ((barriers[position] & late.bit) == late.bit) { between.insert(position); }
+                    if ((barriers[position] & late.bit) == late.bit) {
+                        between.insert(position);
+                    }
                 }
                 RC_ASSERT(!between.empty());
-                if (between.size() == 1) { needed[*between.begin()] = needed[*between.begin()] | late.bit; }
+                if (between.size() == 1) {
+                    needed[*between.begin()] = needed[*between.begin()] | late.bit;
+                }
             }
         }
         RC_ASSERT(needed == barriers);
@@ -91,7 +116,8 @@ TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and no
 TEST_CASE("graph: a barrier serves all that was written before it") {
     FrameGraph graph;
     const auto write = [&](std::string_view name) {
-        return graph.add(name, [&](Pass& pass) { return pass.write(graph.buffer<int>(name, 4), Usage::storage); });
+        return graph.add(name,
+                         [&](Pass& pass) { return pass.write(graph.buffer<int>(name, 4), Usage::storage); });
     };
     const auto read = [&](std::string_view name, BufferHandle<int> buffer, Usage usage) {
         graph.add(name, [&](Pass& pass) {
@@ -106,8 +132,8 @@ TEST_CASE("graph: a barrier serves all that was written before it") {
     read("draw b", b, Usage::vertex);
     const auto compiled = compile(std::move(graph)).take();
     // "a" and "b" overwrite what the frame before has read; one barrier serves both.
-    CHECK(compiled.plan().barrier == std::vector{Barrier::storage, Barrier::none, Barrier::uniform, Barrier::none,
-                                                 Barrier::vertex_attrib});
+    CHECK(compiled.plan().barrier == std::vector{Barrier::storage, Barrier::none, Barrier::uniform,
+                                                 Barrier::none, Barrier::vertex_attrib});
 }
 
 TEST_CASE("graph: coherent writes need no barriers") {

@@ -176,7 +176,8 @@ TEST_CASE("graph description: systems, values and planned barriers") {
         pass.side_effect();
     });
     add_show(graph, lit, import_target(graph));
-    // Waiting for the frame before: "trace" overwrites what "light" and "count" read, "light" what "show" sampled.
+    // Waiting for the frame before: "trace" overwrites what "light" and "count" read, "light" what "show"
+    // sampled.
     CHECK(text_of(graph) == R"(
 passes
   0 gather-lights

@@ -49,12 +49,16 @@ TEST_CASE("graph fault: handles of no graph, of another, of another kind") {
     (void)add_draw(graph, "write", foreign);
     add_read(graph, "unknown version", TextureHandle{{own.graph, own.resource, 7}});
     add_read(graph, "unknown resource", TextureHandle{{own.graph, 99, 0}});
-    graph.add("kind", [&](Pass& pass) { pass.read(BufferHandle<int>{{own.graph, own.resource, 0}}, Usage::storage); });
+    graph.add("kind", [&](Pass& pass) {
+        pass.read(BufferHandle<int>{{own.graph, own.resource, 0}}, Usage::storage);
+    });
     (void)graph.history(foreign);
 
     const std::vector<Fault> faults = faults_of(graph);
     REQUIRE(faults.size() == 7);
-    for (const Fault& fault : faults) { CHECK(fault.code == FaultCode::foreign_handle); }
+    for (const Fault& fault : faults) {
+        CHECK(fault.code == FaultCode::foreign_handle);
+    }
     CHECK(faults[0].message == "pass 'default' reads a texture of another graph");
     CHECK(faults[2].message == "pass 'write' writes a texture of another graph");
     CHECK(faults[5].message == "pass 'kind' reads a buffer of another graph");
@@ -68,7 +72,8 @@ TEST_CASE("graph fault: a read of a version since overwritten names both passes"
     (void)add_draw(graph, "overdraw more", second);
     add_read(graph, "show", first);
     CHECK(fault_of(graph) ==
-          Fault{FaultCode::stale_handle, "pass 'show' reads texture 'image' as it was before pass 'overdraw' wrote it"});
+          Fault{FaultCode::stale_handle,
+                "pass 'show' reads texture 'image' as it was before pass 'overdraw' wrote it"});
 }
 
 TEST_CASE("graph fault: two writers without an order") {
@@ -76,8 +81,9 @@ TEST_CASE("graph fault: two writers without an order") {
     const TextureHandle blank = graph.texture("image", colour);
     (void)add_draw(graph, "draw", blank);
     (void)add_draw(graph, "draw too", blank);
-    CHECK(fault_of(graph) == Fault{FaultCode::two_writers, "passes 'draw' and 'draw too' both write version 1 of "
-                                                           "texture 'image' without an order"});
+    CHECK(fault_of(graph) == Fault{FaultCode::two_writers,
+                                   "passes 'draw' and 'draw too' both write version 1 of "
+                                   "texture 'image' without an order"});
 }
 
 TEST_CASE("graph: after orders two writers, the second of which writes the result of the first") {
@@ -112,7 +118,8 @@ TEST_CASE("graph fault: reads of what nobody writes") {
     graph.add("use", [&](Pass& pass) { pass.read(graph.value<int>("number")); });
     const std::vector<Fault> faults = faults_of(graph);
     REQUIRE(faults.size() == 3);
-    CHECK(faults[0] == Fault{FaultCode::unwritten_read, "pass 'show' reads texture 'image', which nobody has written"});
+    CHECK(faults[0] ==
+          Fault{FaultCode::unwritten_read, "pass 'show' reads texture 'image', which nobody has written"});
     CHECK(faults[1].message == "pass 'show kept' reads texture 'kept', which nobody has written");
     CHECK(faults[2].message == "pass 'use' reads value 'number', which nobody has written");
 }
@@ -147,7 +154,9 @@ TEST_CASE("graph fault: histories of what has none, and writes of what is read o
     graph.add("host", [&](Pass& pass) { (void)pass.write(graph.import_value<int>("number")); });
     const std::vector<Fault> faults = faults_of(graph);
     REQUIRE(faults.size() == 4);
-    for (const Fault& fault : faults) { CHECK(fault.code == FaultCode::wrong_usage); }
+    for (const Fault& fault : faults) {
+        CHECK(fault.code == FaultCode::wrong_usage);
+    }
     CHECK(faults[0].message == "texture 'sky' has no history: it is imported");
     CHECK(faults[1].message == "texture 'image' has no history: it is a history itself");
     CHECK(faults[2].message == "pass 'rewrite' writes the history of texture 'image', which is read only");
@@ -169,8 +178,8 @@ TEST_CASE("graph fault: each usage that a kind of resource or a direction does n
     const auto one_of = [](Usage usage, std::initializer_list<Usage> usages) {
         return std::find(usages.begin(), usages.end(), usage) != usages.end();
     };
-    for (const Usage usage :
-         {sampled, storage, uniform, vertex, index, indirect, colour_target, depth_target, layer_target, copy}) {
+    for (const Usage usage : {sampled, storage, uniform, vertex, index, indirect, colour_target, depth_target,
+                              layer_target, copy}) {
         CAPTURE(to_string(usage));
         const TextureDesc& desc = usage == depth_target ? depth : colour;
         CHECK(faulty(desc, [&](Pass& pass, auto texture, auto) { pass.read(texture, usage); }) !=
@@ -196,8 +205,9 @@ TEST_CASE("graph fault: wrong usage and wrong format are named") {
     CHECK(faults[0] == Fault{FaultCode::wrong_usage, "pass 'draw' writes texture 'normal' as sampled"});
     CHECK(faults[1] == Fault{FaultCode::wrong_usage,
                              "pass 'draw' writes texture 'z' as colour target, but its format is depth32f"});
-    CHECK(faults[2] == Fault{FaultCode::wrong_usage,
-                             "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
+    CHECK(faults[2] ==
+          Fault{FaultCode::wrong_usage,
+                "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
 }
 
 TEST_CASE("graph fault: a pass reads what it overwrites, in either order of declaring") {
@@ -205,14 +215,19 @@ TEST_CASE("graph fault: a pass reads what it overwrites, in either order of decl
         FrameGraph graph;
         const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
         graph.add("loop", [&](Pass& pass) {
-            if (read_first) { pass.read(image, Usage::sampled); }
+            if (read_first) {
+                pass.read(image, Usage::sampled);
+            }
             (void)pass.write(image, Usage::colour_target);
-            if (!read_first) { pass.read(image, Usage::sampled); }
+            if (!read_first) {
+                pass.read(image, Usage::sampled);
+            }
             pass.side_effect();
         });
-        CHECK(fault_of(graph) == Fault{FaultCode::feedback, "pass 'loop' reads texture 'image' and overwrites it: a "
-                                                            "write from version 1 on depends on what was there by "
-                                                            "itself"});
+        CHECK(fault_of(graph) == Fault{FaultCode::feedback,
+                                       "pass 'loop' reads texture 'image' and overwrites it: a "
+                                       "write from version 1 on depends on what was there by "
+                                       "itself"});
     }
 }
 
@@ -240,7 +255,8 @@ TEST_CASE("graph fault: attachments of different sizes, and two depth targets") 
     CHECK(faults[0] ==
           Fault{FaultCode::attachment_mismatch,
                 "pass 'draw' has attachments of different sizes: 'albedo' is 64x32, 'normal' is 64x64"});
-    CHECK(faults[1] == Fault{FaultCode::attachment_mismatch, "pass 'draw' has two depth targets, 'near' and 'far'"});
+    CHECK(faults[1] ==
+          Fault{FaultCode::attachment_mismatch, "pass 'draw' has two depth targets, 'near' and 'far'"});
 }
 
 TEST_CASE("graph fault: names used twice") {
@@ -262,7 +278,8 @@ TEST_CASE("graph fault: names used twice") {
 TEST_CASE("graph fault: after what is no pass") {
     FrameGraph graph;
     graph.add("draw", [&](Pass& pass) { pass.after("shadows"); });
-    CHECK(fault_of(graph) == Fault{FaultCode::unknown_pass, "pass 'draw' says after 'shadows', which is not a pass"});
+    CHECK(fault_of(graph) ==
+          Fault{FaultCode::unknown_pass, "pass 'draw' says after 'shadows', which is not a pass"});
 }
 
 TEST_CASE("graph fault: a pass inside a pass") {
@@ -284,8 +301,9 @@ TEST_CASE("graph fault: a cycle is told with its path and its links") {
     graph.add("c", [&](Pass& pass) { pass.read(found, Usage::storage); });
     graph.add("behind", [&](Pass& pass) { pass.after("c"); });
     CHECK(fault_of(graph) ==
-          Fault{FaultCode::cycle, "passes wait for each other: a -> b -> c -> a ('a' hands 'image' to 'b', 'b' hands "
-                                  "'found' to 'c', 'a' says after 'c')"});
+          Fault{FaultCode::cycle,
+                "passes wait for each other: a -> b -> c -> a ('a' hands 'image' to 'b', 'b' hands "
+                "'found' to 'c', 'a' says after 'c')"});
 }
 
 TEST_CASE("graph fault: every cycle is told, also that of one pass") {
@@ -297,7 +315,8 @@ TEST_CASE("graph fault: every cycle is told, also that of one pass") {
     REQUIRE(faults.size() == 2);
     CHECK(faults[0].message == "passes wait for each other: self -> self ('self' says after 'self')");
     CHECK(faults[1].message ==
-          "passes wait for each other: ping -> pong -> ping ('pong' says after 'ping', 'ping' says after 'pong')");
+          "passes wait for each other: ping -> pong -> ping ('pong' says after 'ping', 'ping' says after "
+          "'pong')");
 }
 
 TEST_CASE("graph fault: all faults are found at once, and taking the graph tells them") {

@@ -1,5 +1,5 @@
-// Random graphs against slow, separate answers to the questions that compiling answers: which passes are needed, which
-// orders are legal, which resources may share an object.
+// Random graphs against slow, separate answers to the questions that compiling answers: which passes are
+// needed, which orders are legal, which resources may share an object.
 
 #include <doctest/doctest.h>
 
@@ -17,14 +17,20 @@ using random_graph::Graph;
 using Precedence = std::vector<std::vector<bool>>;
 
 bool must_precede(const Graph& graph, std::size_t a, std::size_t b) {
-    if (graph.passes[b].after.contains(a)) { return true; }
+    if (graph.passes[b].after.contains(a)) {
+        return true;
+    }
     for (const random_graph::Access& first : graph.passes[a].accesses) {
         for (const random_graph::Access& second : graph.passes[b].accesses) {
-            if (a == b || first.resource != second.resource || first.past || second.past) { continue; }
+            if (a == b || first.resource != second.resource || first.past || second.past) {
+                continue;
+            }
             const bool hands_over = first.write && !second.write && first.version == second.version;
             const bool reads_before = !first.write && second.write && second.version == first.version + 1;
             const bool writes_before = first.write && second.write && second.version == first.version + 1;
-            if (hands_over || reads_before || writes_before) { return true; }
+            if (hands_over || reads_before || writes_before) {
+                return true;
+            }
         }
     }
     return false;
@@ -34,12 +40,16 @@ Precedence precedence(const Graph& graph) {
     const std::size_t count = graph.passes.size();
     Precedence precedes(count, std::vector<bool>(count, false));
     for (std::size_t a = 0; a < count; ++a) {
-        for (std::size_t b = 0; b < count; ++b) { precedes[a][b] = must_precede(graph, a, b); }
+        for (std::size_t b = 0; b < count; ++b) {
+            precedes[a][b] = must_precede(graph, a, b);
+        }
     }
     for (std::size_t via = 0; via < count; ++via) {
         for (std::size_t a = 0; a < count; ++a) {
             for (std::size_t b = 0; b < count; ++b) {
-                if (precedes[a][via] && precedes[via][b]) { precedes[a][b] = true; }
+                if (precedes[a][via] && precedes[via][b]) {
+                    precedes[a][b] = true;
+                }
             }
         }
     }
@@ -48,7 +58,9 @@ Precedence precedence(const Graph& graph) {
 
 bool cyclic(const Precedence& precedes) {
     for (std::size_t pass = 0; pass < precedes.size(); ++pass) {
-        if (precedes[pass][pass]) { return true; }
+        if (precedes[pass][pass]) {
+            return true;
+        }
     }
     return false;
 }
@@ -57,9 +69,13 @@ bool cyclic(const Precedence& precedes) {
 bool feeds(const Graph& graph, std::size_t writer, std::size_t reader) {
     for (const random_graph::Access& made : graph.passes[writer].accesses) {
         for (const random_graph::Access& used : graph.passes[reader].accesses) {
-            if (!made.write || made.resource != used.resource) { continue; }
+            if (!made.write || made.resource != used.resource) {
+                continue;
+            }
             const bool last = made.version == graph.resources[made.resource].versions;
-            if (used.past ? last : made.version == used.version - (used.write ? 1 : 0)) { return true; }
+            if (used.past ? last : made.version == used.version - (used.write ? 1 : 0)) {
+                return true;
+            }
         }
     }
     return false;
@@ -71,14 +87,18 @@ std::vector<bool> needed(const Graph& graph) {
         needed[pass] = graph.passes[pass].side_effect;
         for (const random_graph::Access& access : graph.passes[pass].accesses) {
             const bool imported = graph.resources[access.resource].lifetime == Lifetime::imported;
-            if (access.write && imported) { needed[pass] = true; }
+            if (access.write && imported) {
+                needed[pass] = true;
+            }
         }
     }
     for (bool grew = true; grew;) {
         grew = false;
         for (std::size_t writer = 0; writer < needed.size(); ++writer) {
             for (std::size_t reader = 0; reader < needed.size() && !needed[writer]; ++reader) {
-                if (needed[reader] && feeds(graph, writer, reader)) { grew = needed[writer] = true; }
+                if (needed[reader] && feeds(graph, writer, reader)) {
+                    grew = needed[writer] = true;
+                }
             }
         }
     }
@@ -108,7 +128,9 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
     for (std::size_t position = 0; position < compiled.plan().order.size(); ++position) {
         for (const random_graph::Access& access : graph.passes[compiled.plan().order[position]].accesses) {
             Use& use = uses[access.resource];
-            if (!use.used) { use = {true, position, position}; }
+            if (!use.used) {
+                use = {true, position, position};
+            }
             use.last = position;
         }
     }
@@ -122,29 +144,42 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
     for (std::size_t a = 0; a < uses.size(); ++a) {
         RC_ASSERT(uses[a].used == (object[a] != detail::none));
         for (std::size_t b = a + 1; b < uses.size(); ++b) {
-            if (!uses[a].used || !uses[b].used) { continue; }
+            if (!uses[a].used || !uses[b].used) {
+                continue;
+            }
             const random_graph::Resource& one = graph.resources[a];
             const random_graph::Resource& other = graph.resources[b];
-            if (one.remembered) { RC_ASSERT(object[b] != object[a] + 1); }
-            if (other.remembered) { RC_ASSERT(object[a] != object[b] + 1); }
-            if (object[a] != object[b]) { continue; }
+            if (one.remembered) {
+                RC_ASSERT(object[b] != object[a] + 1);
+            }
+            if (other.remembered) {
+                RC_ASSERT(object[a] != object[b] + 1);
+            }
+            if (object[a] != object[b]) {
+                continue;
+            }
             RC_ASSERT(one.lifetime == Lifetime::transient);
             RC_ASSERT(other.lifetime == Lifetime::transient);
             RC_ASSERT(one.kind == other.kind);
-            RC_ASSERT(one.wide == other.wide);
+            RC_ASSERT(one.deep == other.deep);
             RC_ASSERT((uses[a].last < uses[b].first || uses[b].last < uses[a].first));
         }
     }
 }
 
-TEST_CASE("graph: random graphs are culled, ordered and given objects as a slow check says, or told as cyclic") {
+TEST_CASE(
+    "graph: random graphs are culled, ordered and given objects as a slow check says, or told as cyclic") {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({});
         const Precedence precedes = precedence(graph);
         CompileResult result = random_graph::compile(graph);
         RC_ASSERT(result.faults.empty() == !cyclic(precedes));
-        for (const Fault& fault : result.faults) { RC_ASSERT(fault.code == FaultCode::cycle); }
-        if (!result) { return; }
+        for (const Fault& fault : result.faults) {
+            RC_ASSERT(fault.code == FaultCode::cycle);
+        }
+        if (!result) {
+            return;
+        }
         check_order(graph, precedes, *result.graph);
         check_objects(graph, *result.graph);
     }));
@@ -175,7 +210,8 @@ TEST_CASE("graph: seeds give different orders") {
     CHECK(order(1) != order(2));
 }
 
-/// Declares and compiles `count` passes of which each reads the `reads` before it, and gives the seconds that took.
+/// Declares and compiles `count` passes of which each reads the `reads` before it, and gives the seconds that
+/// took.
 double seconds_to_compile(std::size_t count, std::size_t reads) {
     const auto start = std::chrono::steady_clock::now();
     FrameGraph graph;
@@ -185,7 +221,9 @@ double seconds_to_compile(std::size_t count, std::size_t reads) {
             for (std::size_t back = 1; back <= std::min(reads, index); ++back) {
                 pass.read(made[index - back], Usage::sampled);
             }
-            if (index + 1 == count) { pass.side_effect(); }
+            if (index + 1 == count) {
+                pass.side_effect();
+            }
             return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::storage);
         }));
     }
@@ -196,7 +234,8 @@ double seconds_to_compile(std::size_t count, std::size_t reads) {
 }
 
 TEST_CASE("graph: ten thousand passes compile in an instant, also where paths double from pass to pass") {
-    // Quadratic time would take minutes here and doubling paths for ever; the bound leaves room for sanitizers.
+    // Quadratic time would take minutes here and doubling paths for ever; the bound leaves room for
+    // sanitizers.
     CHECK(seconds_to_compile(10'000, 1) < 5.0);
     CHECK(seconds_to_compile(10'000, 2) < 5.0);
 }

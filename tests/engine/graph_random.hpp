@@ -22,7 +22,7 @@ struct Number {
 struct Resource {
     ResourceKind kind = ResourceKind::texture;
     Lifetime lifetime = Lifetime::transient;
-    bool wide = false;  // one of two descriptions
+    bool deep = false;  // one of two descriptions
     bool remembered = false;
     std::uint32_t versions = 0;
 };
@@ -89,24 +89,32 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
         access.resource = graph.resources.size();
         Resource made;
         made.kind = static_cast<ResourceKind>(choose(3));
-        made.wide = made.kind != ResourceKind::value && one_in(2);
+        made.deep = made.kind != ResourceKind::value && one_in(2);
         made.lifetime = made.kind == ResourceKind::value ? Lifetime::persistent : Lifetime::transient;
-        if (one_in(5)) { made.lifetime = one_in(2) ? Lifetime::imported : Lifetime::persistent; }
+        if (one_in(5)) {
+            made.lifetime = one_in(2) ? Lifetime::imported : Lifetime::persistent;
+        }
         graph.resources.push_back(made);
     }
     Resource& resource = graph.resources[access.resource];
     const bool gpu = resource.kind != ResourceKind::value;
     const bool imported = resource.lifetime == Lifetime::imported;
-    if (imported && !gpu) { access.write = false; }
+    if (imported && !gpu) {
+        access.write = false;
+    }
     for (const Access& other : pass.accesses) {  // no feedback, and one access a resource
-        if (other.resource == access.resource) { return; }
+        if (other.resource == access.resource) {
+            return;
+        }
     }
     if (access.write) {
         access.version = ++resource.versions;
         access.usage = gpu ? write_usage(resource.kind) : Usage{};
     } else {
         access.past = options.histories && gpu && !imported && resource.versions > 0 && one_in(3);
-        if (resource.versions == 0 && !imported) { return; }
+        if (resource.versions == 0 && !imported) {
+            return;
+        }
         access.version = access.past ? 0 : resource.versions;
         access.usage = gpu ? read_usage(resource.kind) : Usage{};
         if (access.past) {
@@ -124,11 +132,17 @@ inline Graph make(const Options& options) {
     for (std::size_t index = 0; index < count; ++index) {
         Pass pass;
         const std::size_t accesses = choose(5);
-        for (std::size_t access = 0; access < accesses; ++access) { add_access(graph, pass, options); }
+        for (std::size_t access = 0; access < accesses; ++access) {
+            add_access(graph, pass, options);
+        }
         pass.side_effect = one_in(5);
         pass.reads_world = one_in(4);
-        if (one_in(5)) { pass.after.insert(choose(options.backward_afters && one_in(3) ? count : index + 1)); }
-        if (!options.backward_afters) { pass.after.erase(index); }
+        if (one_in(5)) {
+            pass.after.insert(choose(options.backward_afters && one_in(3) ? count : index + 1));
+        }
+        if (!options.backward_afters) {
+            pass.after.erase(index);
+        }
         graph.passes.push_back(pass);
     }
     return graph;
@@ -138,23 +152,27 @@ inline Graph make(const Options& options) {
 struct Handles {
     std::vector<ResourceHandle> newest;
     std::map<std::size_t, ResourceHandle> past;
-    std::vector<ResourceHandle> first;
 };
 
-inline TextureDesc texture_desc(bool wide) {
-    return {{wide ? 64U : 32U, 32U}, Format::rgba16f};
+inline TextureDesc texture_desc(bool deep) {
+    return {{32, 32}, Format::rgba16f, TextureShape::flat, 1, deep ? 2U : 1U};
 }
-inline std::uint64_t buffer_count(bool wide) {
-    return wide ? 64 : 32;
+inline std::uint64_t buffer_count(bool deep) {
+    return deep ? 64 : 32;
 }
 
 inline ResourceHandle declare(FrameGraph& frame, const Resource& resource, const std::string& name) {
     switch (resource.kind) {
-        case ResourceKind::texture: return frame.texture(name, texture_desc(resource.wide), resource.lifetime);
-        case ResourceKind::buffer: return frame.buffer<float>(name, buffer_count(resource.wide), resource.lifetime);
-        case ResourceKind::value: break;
+        case ResourceKind::texture:
+            return frame.texture(name, texture_desc(resource.deep), resource.lifetime);
+        case ResourceKind::buffer:
+            return frame.buffer<float>(name, buffer_count(resource.deep), resource.lifetime);
+        case ResourceKind::value:
+            break;
     }
-    if (resource.lifetime == Lifetime::imported) { return frame.import_value<int>(name); }
+    if (resource.lifetime == Lifetime::imported) {
+        return frame.import_value<int>(name);
+    }
     return frame.value<int>(name);
 }
 
@@ -165,15 +183,21 @@ inline void declare(candela::Pass& pass, const Resource& resource, const Access&
     const ValueHandle<int> value{handle};
     switch (resource.kind) {
         case ResourceKind::texture:
-            if (!access.write) { return pass.read(texture, access.usage); }
+            if (!access.write) {
+                return pass.read(texture, access.usage);
+            }
             handle = pass.write(texture, access.usage);
             return;
         case ResourceKind::buffer:
-            if (!access.write) { return pass.read(buffer, access.usage); }
+            if (!access.write) {
+                return pass.read(buffer, access.usage);
+            }
             handle = pass.write(buffer, access.usage);
             return;
         case ResourceKind::value:
-            if (!access.write) { return pass.read(value); }
+            if (!access.write) {
+                return pass.read(value);
+            }
             handle = pass.write(value);
     }
 }
@@ -186,21 +210,28 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
         const Resource& resource = graph.resources[index];
         const ResourceHandle handle = declare(frame, resource, resource_name(index));
         handles.newest.push_back(handle);
-        if (!resource.remembered) { continue; }
+        if (!resource.remembered) {
+            continue;
+        }
         const bool texture = resource.kind == ResourceKind::texture;
         handles.past[index] = texture ? ResourceHandle(frame.history(TextureHandle{handle}))
                                       : ResourceHandle(frame.history(BufferHandle<float>{handle}));
     }
-    handles.first = handles.newest;
     for (std::size_t index = 0; index < graph.passes.size(); ++index) {
         const Pass& pass = graph.passes[index];
         frame.add(pass_name(index), [&](candela::Pass& declared) {
             for (const Access& access : pass.accesses) {
                 declare(declared, graph.resources[access.resource], access, handles);
             }
-            for (const std::size_t before : pass.after) { declared.after(pass_name(before)); }
-            if (pass.side_effect) { declared.side_effect(); }
-            if (pass.reads_world) { declared.read<Number>(); }
+            for (const std::size_t before : pass.after) {
+                declared.after(pass_name(before));
+            }
+            if (pass.side_effect) {
+                declared.side_effect();
+            }
+            if (pass.reads_world) {
+                declared.read<Number>();
+            }
             declared.run(make_run(index, handles));
         });
     }
@@ -209,8 +240,8 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
 
 inline CompileResult compile(const Graph& graph, CompileOptions options = {}) {
     Handles handles;
-    return candela::compile(declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }),
-                            options);
+    return candela::compile(
+        declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }), options);
 }
 
 }  // namespace candela::random_graph

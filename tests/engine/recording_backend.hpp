@@ -12,8 +12,8 @@
 
 namespace candela {
 
-/// A back end without a GPU. Notes what it is told, knows what lives, and gives every object a content: a number that
-/// tests write and read instead of texels.
+/// A back end without a GPU. Notes what it is told, knows what lives, and gives every object a content: a
+/// number that tests write and read instead of texels.
 class RecordingBackend final : public Backend {
  public:
     struct Object {
@@ -43,7 +43,9 @@ class RecordingBackend final : public Backend {
     void begin_pass(std::string_view name, std::uint32_t, const PassTargets* given) override {
         log.push_back("begin " + std::string(name));
         targets = {};
-        if (given) { targets = {{given->colour.begin(), given->colour.end()}, given->depth, given->size}; }
+        if (given) {
+            targets = {{given->colour.begin(), given->colour.end()}, given->depth, given->size};
+        }
         ++open_passes;
     }
     void end_pass() override {
@@ -61,7 +63,9 @@ class RecordingBackend final : public Backend {
 
  private:
     ObjectId create(Object object) {
-        if (creations_left == 0) { throw std::runtime_error("out of memory"); }
+        if (creations_left == 0) {
+            throw std::runtime_error("out of memory");
+        }
         --creations_left;
         ++created;
         objects.emplace(next_, std::move(object));

@@ -463,7 +463,7 @@ TEST_SUITE("malformed glTF") {
             std::memcpy(changed.data() + offset, &value, 4);
             return fault_of(changed);
         };
-        const std::size_t binary = 20 + (whole[12] | whole[13] << 8);
+        const std::size_t binary = 20 + std::size_t{whole[12]} + std::size_t{whole[13]} * 256;
         CHECK(with_u32(4, 1) == "the .glb has version 1; only 2 is read");
         CHECK(with_u32(8, 8) ==
               "the .glb says it has 8 bytes, but " + std::to_string(whole.size()) + " are there");

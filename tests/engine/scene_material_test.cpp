@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <stb/stb_image_write.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 

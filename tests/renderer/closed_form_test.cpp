@@ -56,8 +56,9 @@ class ClosedForm : public RenderFixture {
             Configuration configuration = linear_configuration(path);
             configuration.indirect = false;
             configure(configuration);
+            renderer.invalidate();  // the scenes of a loop lie at one address
             // Where falloffs run out to zero they cancel in floats: there, relative to 10⁻⁴ of the peak.
-            CHECK(worst_error(render(scene, size), expected, 1e-4 * peak) < tolerance);
+            CHECK(worst_error(render(scene, size), expected, std::max(1e-4 * peak, 1e-9)) < tolerance);
         }
     }
 };
@@ -210,35 +211,39 @@ TEST_SUITE("closed forms") {
         add(scene.world, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}), DirectionalLight{.illuminance = 3.0F});
         scene.camera = add(scene.world, looking({0.1F, 3.0F, 0.9F}, {0, 0, 0}), Camera{});
 
-        // IEC 61966-2-1.
-        const auto decode = [](double c) {
-            return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-        };
+        // The image's bytes in the middle of each block; -1 elsewhere.
         const Picture expected = expected_picture(scene, size, {}, {0, 1, 0}, [&](glm::dvec3 p) {
             const glm::dvec2 at = (glm::dvec2(p.x, p.z) / (2.0 * static_cast<double>(half)) + 0.5) * 16.0;
             // Filtering reaches half a texel; a texel is 8 pixels wide at least, so nothing is minified.
-            const glm::dvec2 in_block = glm::abs(glm::mod(at, 4.0) - 2.0);
-            if (std::max(in_block.x, in_block.y) > 1.4) return glm::dvec3(-1.0);
-            if (std::min({at.x, at.y, 16.0 - at.x, 16.0 - at.y}) < 0.0) return glm::dvec3(-1.0);
-            const glm::dvec3 srgb =
-                glm::dvec3(value(static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y))) / 255.0;
-            return 3.0 / pi * glm::dvec3(0.5 * decode(srgb.r), 0.9 * decode(srgb.g), decode(srgb.b));
+            const glm::dvec2 from_middle = glm::abs(glm::mod(at, 4.0) - 2.0);
+            const bool outside = std::min({at.x, at.y, 16.0 - at.x, 16.0 - at.y}) < 0.0;
+            if (outside || std::max(from_middle.x, from_middle.y) > 1.4) return glm::dvec3(-1.0);
+            return glm::dvec3(value(static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)));
         });
+        // IEC 61966-2-1.
+        const auto encode = [](double c) {
+            return 255.0 * (c <= 0.0031308 ? c * 12.92 : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055);
+        };
+        const glm::dvec3 scale = glm::dvec3(0.5, 0.9, 1.0) * 3.0 / pi;
         for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
             Configuration configuration = linear_configuration(path);
             configuration.indirect = false;
             configure(configuration);
-            Picture picture = render(scene, size);
+            const Picture picture = render(scene, size);
+            double worst = 0.0;
             std::size_t compared = 0;
             for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-                if (expected.pixels[i].r < 0.0F) {
-                    picture.pixels[i] = expected.pixels[i];
-                } else {
-                    ++compared;
+                const glm::dvec3 byte(expected.pixels[i]);
+                if (byte.r < 0.0) continue;
+                ++compared;
+                const glm::dvec3 albedo = glm::dvec3(picture.pixels[i]) / scale;
+                for (int c = 0; c < 3; ++c) {
+                    worst = std::max(worst, std::abs(encode(albedo[c]) - byte[c]));
                 }
             }
             CHECK(compared > picture.pixels.size() / 4);
-            CHECK(worst_error(picture, expected, 1e-5) < tolerance);
+            // Drivers decode by approximation: half a step of the eight bits is theirs.
+            CHECK(worst < 0.5);
         }
     }
 }

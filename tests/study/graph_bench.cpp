@@ -1,5 +1,5 @@
-// What the frame graph itself costs: declaring and compiling, and running passes that do nothing, at 10 to 10,000
-// passes. `per_pass` is the figure to look at.
+// What the frame graph itself costs: declaring and compiling, and running passes that do nothing, at 10 to
+// 10,000 passes. `per_pass` is the figure to look at.
 
 #include <benchmark/benchmark.h>
 
@@ -21,7 +21,9 @@ using Wiring = std::vector<std::vector<std::size_t>>;
 
 Wiring chain(std::size_t passes) {
     Wiring reads(passes);
-    for (std::size_t pass = 1; pass < passes; ++pass) { reads[pass] = {pass - 1}; }
+    for (std::size_t pass = 1; pass < passes; ++pass) {
+        reads[pass] = {pass - 1};
+    }
     return reads;
 }
 
@@ -30,7 +32,9 @@ Wiring random_dag(std::size_t passes) {
     std::mt19937 random(1);
     Wiring reads(passes);
     for (std::size_t pass = 1; pass < passes; ++pass) {
-        for (int read = 0; read < 3; ++read) { reads[pass].push_back(random() % pass); }
+        for (int read = 0; read < 3; ++read) {
+            reads[pass].push_back(random() % pass);
+        }
     }
     return reads;
 }
@@ -40,9 +44,15 @@ Wiring diamonds(std::size_t passes) {
     Wiring reads(passes);
     for (std::size_t pass = 1; pass < passes; ++pass) {
         switch (pass % 3) {
-            case 0: reads[pass] = {pass - 1, pass - 2}; break;
-            case 1: reads[pass] = {pass - 1}; break;
-            default: reads[pass] = {pass - 2}; break;
+            case 0:
+                reads[pass] = {pass - 1, pass - 2};
+                break;
+            case 1:
+                reads[pass] = {pass - 1};
+                break;
+            default:
+                reads[pass] = {pass - 2};
+                break;
         }
     }
     return reads;
@@ -59,7 +69,9 @@ Plans plans(Wiring reads) {
     plans.unread.assign(plans.reads.size(), true);
     for (std::size_t pass = 0; pass < plans.reads.size(); ++pass) {
         plans.names.push_back("pass " + std::to_string(pass));
-        for (const std::size_t read : plans.reads[pass]) { plans.unread[read] = false; }
+        for (const std::size_t read : plans.reads[pass]) {
+            plans.unread[read] = false;
+        }
     }
     return plans;
 }
@@ -70,8 +82,12 @@ FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool al
     std::uint64_t ran = 0;
     for (std::size_t index = 0; index < plans.reads.size(); ++index) {
         made[index] = graph.add(plans.names[index], [&](Pass& pass) {
-            for (const std::size_t read : plans.reads[index]) { pass.read(made[read], Usage::sampled); }
-            if (all_run || plans.unread[index]) { pass.side_effect(); }
+            for (const std::size_t read : plans.reads[index]) {
+                pass.read(made[read], Usage::sampled);
+            }
+            if (all_run || plans.unread[index]) {
+                pass.side_effect();
+            }
             pass.run([index, ran](Execution&) mutable { benchmark::DoNotOptimize(ran += index); });
             return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::colour_target);
         });
@@ -95,14 +111,16 @@ class Idle final : public Backend {
 
 void count(benchmark::State& state) {
     const auto passes = static_cast<double>(state.range(0));
-    state.counters["per_pass"] =
-        benchmark::Counter(passes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    state.counters["per_pass"] = benchmark::Counter(
+        passes, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void build_and_compile(benchmark::State& state, Wiring (*wiring)(std::size_t)) {
     const Plans plan = plans(wiring(static_cast<std::size_t>(state.range(0))));
     std::vector<TextureHandle> made(plan.reads.size());
-    for (auto _ : state) { benchmark::DoNotOptimize(compile(declare(plan, made, false))); }
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(compile(declare(plan, made, false)));
+    }
     count(state);
 }
 
@@ -113,12 +131,16 @@ void run_idle_passes(benchmark::State& state, Wiring (*wiring)(std::size_t)) {
     GraphRuntime runtime(backend);
     runtime.adopt(compile(declare(plan, made, true)).take());
     const World world;
-    for (auto _ : state) { benchmark::DoNotOptimize(runtime.run(world).passes.data()); }
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(runtime.run(world).passes.data());
+    }
     count(state);
 }
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
-    for (const std::int64_t passes : {10, 100, 1'000, 10'000}) { benchmark->Arg(passes); }
+    for (const std::int64_t passes : {10, 100, 1'000, 10'000}) {
+        benchmark->Arg(passes);
+    }
 }
 
 BENCHMARK_CAPTURE(build_and_compile, chain, chain)->Apply(sizes);

@@ -22,7 +22,9 @@ bool alike(const detail::Slot& a, const detail::Slot& b) {
 class Stock {
  public:
     explicit Stock(std::vector<detail::Slot>& slots) : slots_(slots) {
-        for (std::size_t index = 0; index < slots.size(); ++index) { by_hash_.emplace(hash_of(slots[index]), index); }
+        for (std::size_t index = 0; index < slots.size(); ++index) {
+            by_hash_.emplace(hash_of(slots[index]), index);
+        }
     }
 
     /// 0 if there is none alike.
@@ -30,7 +32,9 @@ class Stock {
         const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
         for (auto found = first; found != last; ++found) {
             detail::Slot& slot = slots_[found->second];
-            if (!alike(slot, wanted)) { continue; }
+            if (!alike(slot, wanted)) {
+                continue;
+            }
             by_hash_.erase(found);
             return std::exchange(slot.object, 0);
         }
@@ -45,7 +49,9 @@ class Stock {
 }  // namespace
 
 GraphRuntime::~GraphRuntime() {
-    for (const detail::Slot& slot : state_.slots) { destroy(slot); }
+    for (const detail::Slot& slot : state_.slots) {
+        destroy(slot);
+    }
     trim();
 }
 
@@ -59,25 +65,30 @@ void GraphRuntime::adopt(CompiledGraph graph) {
     if (graph_) {
         const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, state_);
         for (std::size_t index = 0; index < taken.size(); ++index) {
-            if (!taken[index] && state_.slots[index].owned) { stock.push_back(state_.slots[index]); }
+            if (!taken[index] && state_.slots[index].owned) {
+                stock.push_back(state_.slots[index]);
+            }
         }
     }
     provide_objects(graph, state, stock);
 
-    // From here on nothing fails. What the graph before had and this one does not use is spared; what was spared for
-    // it until now goes.
+    // From here on nothing fails. What the graph before had and this one does not use is spared; what was
+    // spared for it until now goes.
     const auto spared = stock.begin() + static_cast<std::ptrdiff_t>(spare_.size());
     std::for_each(stock.begin(), spared, [this](const detail::Slot& slot) { destroy(slot); });
     stock.erase(stock.begin(), spared);
     std::erase_if(stock, [](const detail::Slot& slot) { return slot.object == 0; });
-    if (graph_) { carried_ = all_barriers; }  // for whatever the graph before has written
+    if (graph_) {
+        carried_ = all_barriers;
+    }  // for whatever the graph before has written
     spare_ = std::move(stock);
     state_ = std::move(state);
     graph_ = std::move(graph);
     record_.passes = std::move(passes);
 }
 
-/// Objects for the slots that lack one: from the stock, else new. If the back end throws, what was made goes again.
+/// Objects for the slots that lack one: from the stock, else new. If the back end throws, what was made goes
+/// again.
 void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& state,
                                    std::vector<detail::Slot>& stock) {
     Stock available(stock);
@@ -86,14 +97,20 @@ void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& st
     try {
         for (std::uint32_t object = 0; object < state.slots.size(); ++object) {
             detail::Slot& slot = state.slots[object];
-            if (!slot.owned || slot.object != 0) { continue; }
+            if (!slot.owned || slot.object != 0) {
+                continue;
+            }
             slot.object = available.take(slot);
-            if (slot.object != 0) { continue; }
+            if (slot.object != 0) {
+                continue;
+            }
             create(slot, graph.declared().resources[graph.plan().owner[object]].name);
             made.push_back(object);
         }
     } catch (...) {
-        for (const std::uint32_t object : made) { destroy(state.slots[object]); }
+        for (const std::uint32_t object : made) {
+            destroy(state.slots[object]);
+        }
         throw;
     }
 }
@@ -104,7 +121,9 @@ void GraphRuntime::create(detail::Slot& slot, std::string_view name) {
 }
 
 void GraphRuntime::destroy(const detail::Slot& slot) {
-    if (!slot.owned || slot.object == 0) { return; }
+    if (!slot.owned || slot.object == 0) {
+        return;
+    }
     if (slot.kind == ResourceKind::texture) {
         backend_.destroy_texture(slot.object);
     } else {
@@ -113,7 +132,9 @@ void GraphRuntime::destroy(const detail::Slot& slot) {
 }
 
 void GraphRuntime::trim() {
-    for (const detail::Slot& slot : spare_) { destroy(slot); }
+    for (const detail::Slot& slot : spare_) {
+        destroy(slot);
+    }
     spare_.clear();
 }
 
@@ -123,19 +144,29 @@ MemoryUse GraphRuntime::memory() const {
         return slot.kind == ResourceKind::texture ? byte_size(slot.texture) : byte_size(slot.buffer);
     };
     const auto add = [&](const detail::Slot& slot) {
-        if (slot.owned) { (slot.kind == ResourceKind::texture ? use.texture_bytes : use.buffer_bytes) += bytes(slot); }
+        if (slot.owned) {
+            (slot.kind == ResourceKind::texture ? use.texture_bytes : use.buffer_bytes) += bytes(slot);
+        }
     };
-    for (const detail::Slot& slot : state_.slots) { add(slot); }
+    for (const detail::Slot& slot : state_.slots) {
+        add(slot);
+    }
     for (const detail::Slot& slot : spare_) {
         add(slot);
         use.spare_bytes += bytes(slot);
     }
-    if (!graph_) { return use; }
+    if (!graph_) {
+        return use;
+    }
     for (std::uint32_t index = 0; index < graph_->declared().resources.size(); ++index) {
         const detail::Resource& resource = graph_->declared().resources[index];
         const std::uint32_t object = graph_->plan().object[index];
-        if (resource.lifetime != Lifetime::transient || object == detail::none) { continue; }
-        if (graph_->plan().owner[object] != index) { use.shared_by_aliasing_bytes += bytes(state_.slots[object]); }
+        if (resource.lifetime != Lifetime::transient || object == detail::none) {
+            continue;
+        }
+        if (graph_->plan().owner[object] != index) {
+            use.shared_by_aliasing_bytes += bytes(state_.slots[object]);
+        }
     }
     return use;
 }

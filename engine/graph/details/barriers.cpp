@@ -26,8 +26,8 @@ bool any_incoherent(const Declaration& declared, const Plan& plan) {
     });
 }
 
-/// Follows the accesses of every object through frames that repeat. With a history, the resource and its past swap
-/// objects from frame to frame.
+/// Follows the accesses of every object through frames that repeat. With a history, the resource and its past
+/// swap objects from frame to frame.
 class Timeline {
  public:
     Timeline(const Declaration& declared, const Plan& plan)
@@ -39,8 +39,12 @@ class Timeline {
         for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
             ++now_;
             const auto accesses = declared_.accesses_of(plan_.order[position]);
-            for (const Access& access : accesses) { visit(access, position, need); }
-            for (const Access& access : accesses) { note(access); }
+            for (const Access& access : accesses) {
+                visit(access, position, need);
+            }
+            for (const Access& access : accesses) {
+                note(access);
+            }
         }
         ++frame_;
     }
@@ -49,22 +53,36 @@ class Timeline {
     template <class Need>
     void visit(const Access& access, std::uint32_t position, Need need) {
         const Resource& resource = declared_.resources[access.resource];
-        if (resource.kind == ResourceKind::value) { return; }
+        if (resource.kind == ResourceKind::value) {
+            return;
+        }
         const std::uint32_t object = object_of(access);
         const Time since = std::max(wrote_[object], incoherent(access) ? read_[object] : 0);
-        if (since != 0) { need(position, now_, index_of(barrier_for(resource.kind, access.usage)), since); }
+        if (since != 0) {
+            need(position, now_, index_of(barrier_for(resource.kind, access.usage)), since);
+        }
     }
 
     void note(const Access& access) {
-        if (declared_.resources[access.resource].kind == ResourceKind::value) { return; }
-        if (incoherent(access)) { wrote_[object_of(access)] = now_; }
-        if (!access.write) { read_[object_of(access)] = now_; }
+        if (declared_.resources[access.resource].kind == ResourceKind::value) {
+            return;
+        }
+        if (incoherent(access)) {
+            wrote_[object_of(access)] = now_;
+        }
+        if (!access.write) {
+            read_[object_of(access)] = now_;
+        }
     }
 
     [[nodiscard]] std::uint32_t object_of(const Access& access) const {
         const Resource& resource = declared_.resources[access.resource];
-        if (resource.history_of != none) { return plan_.object[resource.history_of] + (frame_ + 1) % 2; }
-        if (resource.history != none) { return plan_.object[access.resource] + frame_ % 2; }
+        if (resource.history_of != none) {
+            return plan_.object[resource.history_of] + (frame_ + 1) % 2;
+        }
+        if (resource.history != none) {
+            return plan_.object[access.resource] + frame_ % 2;
+        }
         return plan_.object[access.resource];
     }
 
@@ -81,23 +99,33 @@ class Timeline {
 Barrier barrier_for(ResourceKind kind, Usage usage) {
     const bool texture = kind == ResourceKind::texture;
     switch (usage) {
-        case Usage::sampled: return Barrier::texture_fetch;
-        case Usage::storage: return texture ? Barrier::image_access : Barrier::storage;
-        case Usage::uniform: return Barrier::uniform;
-        case Usage::vertex: return Barrier::vertex_attrib;
-        case Usage::index: return Barrier::element;
-        case Usage::indirect: return Barrier::command;
-        case Usage::copy: return texture ? Barrier::texture_update : Barrier::buffer_update;
+        case Usage::sampled:
+            return Barrier::texture_fetch;
+        case Usage::storage:
+            return texture ? Barrier::image_access : Barrier::storage;
+        case Usage::uniform:
+            return Barrier::uniform;
+        case Usage::vertex:
+            return Barrier::vertex_attrib;
+        case Usage::index:
+            return Barrier::element;
+        case Usage::indirect:
+            return Barrier::command;
+        case Usage::copy:
+            return texture ? Barrier::texture_update : Barrier::buffer_update;
         case Usage::colour_target:
         case Usage::depth_target:
-        case Usage::layer_target: return Barrier::framebuffer;
+        case Usage::layer_target:
+            return Barrier::framebuffer;
     }
     return Barrier::none;
 }
 
 std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan) {
     std::vector<Barrier> barriers(plan.order.size(), Barrier::none);
-    if (!any_incoherent(declared, plan)) { return barriers; }
+    if (!any_incoherent(declared, plan)) {
+        return barriers;
+    }
 
     // A past is overwritten two frames after it was written: two frames bring every hazard into being.
     Timeline timeline(declared, plan);
@@ -105,7 +133,8 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
     timeline.run_frame(ignore);
     timeline.run_frame(ignore);
 
-    // One frame planned as if no barrier came before it is right for all frames: issue each as late as possible.
+    // One frame planned as if no barrier came before it is right for all frames: issue each as late as
+    // possible.
     struct Bit {
         Time issued = 0;
         std::uint32_t first = none;   // where it is issued first
@@ -115,7 +144,9 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
     std::array<Bit, bit_count> bits;
     timeline.run_frame([&](std::uint32_t position, Time now, std::size_t index, Time since) {
         Bit& bit = bits[index];
-        if (bit.issued > since) { return; }
+        if (bit.issued > since) {
+            return;
+        }
         bit.issued = now;
         if (bit.first == none) {
             bit.first = position;
@@ -128,12 +159,17 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
     // Only a bit's first barrier can be one too many, where the last one of the frame before serves as well.
     timeline.run_frame([&](std::uint32_t position, Time, std::size_t index, Time since) {
         Bit& bit = bits[index];
-        if (bit.issued <= since) { bit.due = std::min(bit.due, position); }
+        if (bit.issued <= since) {
+            bit.due = std::min(bit.due, position);
+        }
     });
     for (std::size_t index = 0; index < bit_count; ++index) {
         const Bit& bit = bits[index];
-        if (bit.second == none || bit.due < bit.second) { continue; }
-        barriers[bit.first] = static_cast<Barrier>(static_cast<std::uint32_t>(barriers[bit.first]) & ~(1U << index));
+        if (bit.second == none || bit.due < bit.second) {
+            continue;
+        }
+        barriers[bit.first] =
+            static_cast<Barrier>(static_cast<std::uint32_t>(barriers[bit.first]) & ~(1U << index));
     }
     return barriers;
 }

@@ -8,12 +8,13 @@
 namespace candela::detail {
 namespace {
 
-/// Tells graphs apart without a process-wide counter: no two live graphs share an address, and no two successive ones
-/// at one address the time. Never 0, which is no graph.
+/// Tells graphs apart without a process-wide counter: no two live graphs share an address, and no two
+/// successive ones at one address the time. Never 0, which is no graph.
 std::uint32_t make_identity(const void* address) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
     auto bits = static_cast<std::uint64_t>(now) ^ (reinterpret_cast<std::uintptr_t>(address) << 16U);
-    bits *= 0x9e37'79b9'7f4a'7c15U;  // 2^64 divided by the golden ratio: spreads the low bits over the high ones
+    bits *=
+        0x9e37'79b9'7f4a'7c15U;  // 2^64 divided by the golden ratio: spreads the low bits over the high ones
     return static_cast<std::uint32_t>(bits >> 32U) | 1U;
 }
 
@@ -30,15 +31,20 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
     const bool texture = kind == ResourceKind::texture;
     switch (usage) {
         case Usage::storage:
-        case Usage::copy: return true;
-        case Usage::sampled: return texture && !write;
+        case Usage::copy:
+            return true;
+        case Usage::sampled:
+            return texture && !write;
         case Usage::uniform:
         case Usage::vertex:
         case Usage::index:
-        case Usage::indirect: return !texture && !write;
-        case Usage::depth_target: return texture;
+        case Usage::indirect:
+            return !texture && !write;
+        case Usage::depth_target:
+            return texture;
         case Usage::colour_target:
-        case Usage::layer_target: return texture && write;
+        case Usage::layer_target:
+            return texture && write;
     }
     return false;
 }
@@ -82,12 +88,16 @@ ResourceHandle Declaration::add_resource(std::string_view name, ResourceKind kin
 }
 
 ResourceHandle Declaration::add_texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
-    if (textures.empty() || textures.back() != desc) { textures.push_back(desc); }
+    if (textures.empty() || textures.back() != desc) {
+        textures.push_back(desc);
+    }
     return add_resource(name, ResourceKind::texture, lifetime, textures.size() - 1);
 }
 
 ResourceHandle Declaration::add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime) {
-    if (buffers.empty() || buffers.back() != desc) { buffers.push_back(desc); }
+    if (buffers.empty() || buffers.back() != desc) {
+        buffers.push_back(desc);
+    }
     return add_resource(name, ResourceKind::buffer, lifetime, buffers.size() - 1);
 }
 
@@ -108,7 +118,9 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
               fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, what));
         return {id, of.resource, of.version};
     }
-    if (base.history != none) { return {id, base.history, 0}; }
+    if (base.history != none) {
+        return {id, base.history, 0};
+    }
 
     const auto past = size_of(resources);
     resources[of.resource].lifetime = Lifetime::persistent;
@@ -144,8 +156,8 @@ void Declaration::end_pass() {
 }
 
 bool Declaration::owns(ResourceHandle handle, ResourceKind kind) const {
-    return handle.graph == id && handle.resource < resources.size() && resources[handle.resource].kind == kind &&
-           handle.version <= resources[handle.resource].versions;
+    return handle.graph == id && handle.resource < resources.size() &&
+           resources[handle.resource].kind == kind && handle.version <= resources[handle.resource].versions;
 }
 
 std::string_view Declaration::writer_of(std::uint32_t resource, std::uint32_t version) const {
@@ -168,20 +180,22 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Usage usage) {
     check_usage(resource, usage, false);
     if (handle.version < resource.versions) {
         if (resource.writer == pass) {
-            fault(FaultCode::feedback, fmt::format("pass '{}' reads {} '{}' and overwrites it: a write from version 1 "
-                                                   "on depends on what was there by itself",
-                                                   name, to_string(kind), resource.name));
+            fault(FaultCode::feedback,
+                  fmt::format("pass '{}' reads {} '{}' and overwrites it: a write from version 1 "
+                              "on depends on what was there by itself",
+                              name, to_string(kind), resource.name));
         } else {
-            fault(FaultCode::stale_handle, fmt::format("pass '{}' reads {} '{}' as it was before pass '{}' wrote it", name,
-                                                       to_string(kind), resource.name,
-                                                       writer_of(handle.resource, handle.version + 1)));
+            fault(
+                FaultCode::stale_handle,
+                fmt::format("pass '{}' reads {} '{}' as it was before pass '{}' wrote it", name,
+                            to_string(kind), resource.name, writer_of(handle.resource, handle.version + 1)));
         }
         return;
     }
     const bool given = resource.lifetime == Lifetime::imported || resource.history_of != none;
     if (handle.version == 0 && !given) {
-        fault(FaultCode::unwritten_read,
-              fmt::format("pass '{}' reads {} '{}', which nobody has written", name, to_string(kind), resource.name));
+        fault(FaultCode::unwritten_read, fmt::format("pass '{}' reads {} '{}', which nobody has written",
+                                                     name, to_string(kind), resource.name));
     }
     resource.reader = pass;
     accesses.push_back({handle.resource, handle.version, usage, false});
@@ -198,8 +212,8 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usag
     Resource& resource = resources[handle.resource];
     if (resource.history_of != none) {
         fault(FaultCode::wrong_usage,
-              fmt::format("pass '{}' writes the history of {} '{}', which is read only", name, to_string(kind),
-                          resource.name));
+              fmt::format("pass '{}' writes the history of {} '{}', which is read only", name,
+                          to_string(kind), resource.name));
         return handle;
     }
     if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {
@@ -210,9 +224,10 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usag
     check_usage(resource, usage, true);
     if (resource.reader == pass) {
         fault(FaultCode::feedback,
-              fmt::format("pass '{}' reads {} '{}' and overwrites it: a write from version 1 on depends on what was "
-                          "there by itself",
-                          name, to_string(kind), resource.name));
+              fmt::format(
+                  "pass '{}' reads {} '{}' and overwrites it: a write from version 1 on depends on what was "
+                  "there by itself",
+                  name, to_string(kind), resource.name));
     }
     if (handle.version < resource.versions) {
         late_writes_.push_back({handle.resource, handle.version, resource.writer});
@@ -223,15 +238,21 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usag
 }
 
 void Declaration::check_usage(const Resource& resource, Usage usage, bool write) {
-    if (resource.kind == ResourceKind::value) { return; }
+    if (resource.kind == ResourceKind::value) {
+        return;
+    }
     const std::string_view verb = write ? "writes" : "reads";
     if (!allowed(resource.kind, usage, write)) {
-        return fault(FaultCode::wrong_usage, fmt::format("pass '{}' {} {} '{}' as {}", passes.back().name, verb,
-                                                         to_string(resource.kind), resource.name, to_string(usage)));
+        return fault(FaultCode::wrong_usage,
+                     fmt::format("pass '{}' {} {} '{}' as {}", passes.back().name, verb,
+                                 to_string(resource.kind), resource.name, to_string(usage)));
     }
-    if (resource.kind != ResourceKind::texture) { return; }
+    if (resource.kind != ResourceKind::texture) {
+        return;
+    }
     const Format format = texture(resource).format;
-    if ((usage == Usage::colour_target && is_depth(format)) || (usage == Usage::depth_target && !is_depth(format))) {
+    if ((usage == Usage::colour_target && is_depth(format)) ||
+        (usage == Usage::depth_target && !is_depth(format))) {
         fault(FaultCode::wrong_usage,
               fmt::format("pass '{}' {} texture '{}' as {}, but its format is {}", passes.back().name, verb,
                           resource.name, to_string(usage), to_string(format)));
@@ -241,9 +262,13 @@ void Declaration::check_usage(const Resource& resource, Usage usage, bool write)
 void Declaration::check_late_writes() {
     const auto afters_here = afters_of(pass_count() - 1);
     for (const LateWrite& late : late_writes_) {
-        if (late.writer == pass_count() - 1) { continue; }
+        if (late.writer == pass_count() - 1) {
+            continue;
+        }
         const std::string_view writer = passes[late.writer].name;
-        if (std::find(afters_here.begin(), afters_here.end(), writer) != afters_here.end()) { continue; }
+        if (std::find(afters_here.begin(), afters_here.end(), writer) != afters_here.end()) {
+            continue;
+        }
         const Resource& resource = resources[late.resource];
         fault(FaultCode::two_writers,
               fmt::format("passes '{}' and '{}' both write version {} of {} '{}' without an order",
@@ -259,18 +284,24 @@ void Declaration::check_attachments() {
     for (const Access& access : accesses_of(pass_count() - 1)) {
         const Resource& resource = resources[access.resource];
         const bool is_target = access.usage == Usage::colour_target || access.usage == Usage::depth_target;
-        if (resource.kind != ResourceKind::texture || !is_target) { continue; }
+        if (resource.kind != ResourceKind::texture || !is_target) {
+            continue;
+        }
         if (access.usage == Usage::depth_target) {
             if (depth && depth != &resource) {
                 fault(FaultCode::attachment_mismatch,
-                      fmt::format("pass '{}' has two depth targets, '{}' and '{}'", passes.back().name, depth->name,
-                                  resource.name));
+                      fmt::format("pass '{}' has two depth targets, '{}' and '{}'", passes.back().name,
+                                  depth->name, resource.name));
             }
             depth = &resource;
         }
         const TextureDesc& desc = texture(resource);
-        if (desc.shape != TextureShape::flat) { continue; }
-        if (!first) { first = &resource; }
+        if (desc.shape != TextureShape::flat) {
+            continue;
+        }
+        if (!first) {
+            first = &resource;
+        }
         const glm::uvec2 size = texture(*first).size;
         if (size != desc.size) {
             fault(FaultCode::attachment_mismatch,

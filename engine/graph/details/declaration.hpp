@@ -73,12 +73,16 @@ class Arena {
     Arena(const Arena&) = delete;
     Arena& operator=(const Arena&) = delete;
     ~Arena() {
-        for (const Owned& owned : owned_) { owned.destroy(owned.object); }
+        for (const Owned& owned : owned_) {
+            owned.destroy(owned.object);
+        }
     }
 
     template <class T>
     T* store(T value) {
-        if constexpr (!std::is_trivially_destructible_v<T>) { owned_.reserve(owned_.size() + 1); }
+        if constexpr (!std::is_trivially_destructible_v<T>) {
+            owned_.reserve(owned_.size() + 1);
+        }
         T* const object = ::new (memory_.allocate(sizeof(T), alignof(T))) T(std::move(value));
         if constexpr (!std::is_trivially_destructible_v<T>) {
             owned_.push_back({object, [](void* stored) { static_cast<T*>(stored)->~T(); }});
@@ -134,7 +138,9 @@ class Declaration {
     [[nodiscard]] std::span<const ComponentRead> components_of(std::uint32_t pass) const;
     [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const;
     [[nodiscard]] std::span<const std::string_view> afters_of(std::uint32_t pass) const;
-    [[nodiscard]] const TextureDesc& texture(const Resource& resource) const { return textures[resource.desc]; }
+    [[nodiscard]] const TextureDesc& texture(const Resource& resource) const {
+        return textures[resource.desc];
+    }
     [[nodiscard]] const BufferDesc& buffer(const Resource& resource) const { return buffers[resource.desc]; }
 
     std::uint32_t id = 0;
@@ -150,7 +156,8 @@ class Declaration {
     std::vector<Fault> faults;  // found while declaring
 
  private:
-    ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime, std::size_t desc);
+    ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
+                                std::size_t desc);
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
     void fault(FaultCode code, std::string message) { faults.push_back({code, std::move(message)}); }

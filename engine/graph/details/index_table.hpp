@@ -15,7 +15,8 @@ class IndexTable {
  public:
     explicit IndexTable(std::size_t capacity) : entries_(std::bit_ceil(2 * capacity + 1)) {}
 
-    /// The index filed under `hash` for which `same(index)` holds; if there is none, files `index` and gives `none`.
+    /// The index filed under `hash` for which `same(index)` holds; if there is none, files `index` and gives
+    /// `none`.
     template <class Same>
     std::uint32_t find_or_insert(std::size_t hash, std::uint32_t index, Same same) {
         Entry& entry = find(hash, same);
@@ -43,8 +44,12 @@ class IndexTable {
         const std::size_t mask = entries_.size() - 1;
         for (std::size_t at = hash & mask;; at = (at + 1) & mask) {
             Entry& entry = entries_[at];
-            if (entry.index == none) { return entry; }
-            if (entry.hash == static_cast<std::uint32_t>(hash) && same(entry.index)) { return entry; }
+            if (entry.index == none) {
+                return entry;
+            }
+            if (entry.hash == static_cast<std::uint32_t>(hash) && same(entry.index)) {
+                return entry;
+            }
         }
     }
 

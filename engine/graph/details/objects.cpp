@@ -34,21 +34,29 @@ class Objects {
 
     void give(std::uint32_t index) {
         const Resource& resource = declared_.resources[index];
-        if (resource.history_of != none) { return give(resource.history_of); }
-        if (plan_.object[index] != none) { return; }
+        if (resource.history_of != none) {
+            return give(resource.history_of);
+        }
+        if (plan_.object[index] != none) {
+            return;
+        }
         if (resource.lifetime == Lifetime::transient) {
             std::uint32_t& free = free_list(resource);
             plan_.object[index] = free != none ? take(free) : create(index);
         } else {
             plan_.object[index] = create(index);
-            if (resource.history != none) { plan_.object[resource.history] = create(resource.history); }
+            if (resource.history != none) {
+                plan_.object[resource.history] = create(resource.history);
+            }
         }
     }
 
     void take_back(std::uint32_t index) {
         const Resource& resource = declared_.resources[index];
         const std::uint32_t object = plan_.object[index];
-        if (resource.lifetime != Lifetime::transient || next_[object] != in_use) { return; }
+        if (resource.lifetime != Lifetime::transient || next_[object] != in_use) {
+            return;
+        }
         std::uint32_t& free = free_list(resource);
         next_[object] = free;
         free = object;
@@ -91,7 +99,9 @@ void plan_lifetimes(const Declaration& declared, Plan& plan) {
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {
         for (const Access& access : declared.accesses_of(plan.order[position])) {
             Span& span = plan.lifetime[access.resource];
-            if (span.first == none) { span.first = position; }
+            if (span.first == none) {
+                span.first = position;
+            }
             span.last = position;
         }
     }
@@ -102,9 +112,13 @@ void plan_objects(const Declaration& declared, Plan& plan) {
     Objects objects(declared, plan);
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {
         const auto accesses = declared.accesses_of(plan.order[position]);
-        for (const Access& access : accesses) { objects.give(access.resource); }
         for (const Access& access : accesses) {
-            if (plan.lifetime[access.resource].last == position) { objects.take_back(access.resource); }
+            objects.give(access.resource);
+        }
+        for (const Access& access : accesses) {
+            if (plan.lifetime[access.resource].last == position) {
+                objects.take_back(access.resource);
+            }
         }
     }
 }

@@ -16,7 +16,9 @@ std::vector<Edge> edges_of(const Declaration& declared, const Plan& plan) {
     std::vector<Edge> edges;
     edges.reserve(2 * declared.accesses.size());
     const auto add = [&](std::uint32_t before, std::uint32_t after, std::uint32_t resource) {
-        if (before != none && before != after) { edges.push_back({before, after, resource}); }
+        if (before != none && before != after) {
+            edges.push_back({before, after, resource});
+        }
     };
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
         for (const Access& access : declared.accesses_of(pass)) {
@@ -41,22 +43,29 @@ struct Successors {
     std::vector<std::uint32_t> pass;
 
     Successors(std::uint32_t passes, const std::vector<Edge>& edges) : first(passes + 1), pass(edges.size()) {
-        for (const Edge& edge : edges) { ++first[edge.before]; }
+        for (const Edge& edge : edges) {
+            ++first[edge.before];
+        }
         std::partial_sum(first.begin(), first.end(), first.begin());
-        for (const Edge& edge : edges) { pass[--first[edge.before]] = edge.after; }
+        for (const Edge& edge : edges) {
+            pass[--first[edge.before]] = edge.after;
+        }
     }
 };
 
 /// Takes ready passes one by one: the earliest declared, or any.
 class Ready {
  public:
-    explicit Ready(std::optional<std::uint64_t> seed) : shuffled_(seed.has_value()), random_(seed.value_or(0)) {}
+    explicit Ready(std::optional<std::uint64_t> seed)
+        : shuffled_(seed.has_value()), random_(seed.value_or(0)) {}
 
     [[nodiscard]] bool empty() const { return passes_.empty(); }
 
     void push(std::uint32_t pass) {
         passes_.push_back(pass);
-        if (!shuffled_) { std::push_heap(passes_.begin(), passes_.end(), std::greater<>{}); }
+        if (!shuffled_) {
+            std::push_heap(passes_.begin(), passes_.end(), std::greater<>{});
+        }
     }
 
     std::uint32_t pop() {
@@ -84,9 +93,9 @@ std::string cycle_text(const Declaration& declared, const std::vector<Edge>& cyc
         const std::string_view after = declared.passes[edge.after].name;
         path += fmt::format(" -> {}", after);
         links += links.empty() ? "" : ", ";
-        links += edge.resource == none
-                     ? fmt::format("'{}' says after '{}'", after, before)
-                     : fmt::format("'{}' hands '{}' to '{}'", before, declared.resources[edge.resource].name, after);
+        links += edge.resource == none ? fmt::format("'{}' says after '{}'", after, before)
+                                       : fmt::format("'{}' hands '{}' to '{}'", before,
+                                                     declared.resources[edge.resource].name, after);
     }
     return fmt::format("passes wait for each other: {} ({})", path, links);
 }
@@ -96,17 +105,23 @@ void report_cycles(const Declaration& declared, const std::vector<Edge>& edges,
                    const std::vector<std::uint32_t>& waits, std::vector<Fault>& faults) {
     std::vector<std::uint32_t> back(waits.size(), none);
     for (std::uint32_t index = 0; index < edges.size(); ++index) {
-        if (waits[edges[index].before] != 0) { back[edges[index].after] = index; }
+        if (waits[edges[index].before] != 0) {
+            back[edges[index].after] = index;
+        }
     }
     std::vector<std::uint32_t> walk(waits.size(), none);  // the walk that came by
     for (std::uint32_t start = 0; start < waits.size(); ++start) {
-        if (waits[start] == 0) { continue; }
+        if (waits[start] == 0) {
+            continue;
+        }
         std::uint32_t pass = start;
         while (walk[pass] == none) {
             walk[pass] = start;
             pass = edges[back[pass]].before;
         }
-        if (walk[pass] != start) { continue; }
+        if (walk[pass] != start) {
+            continue;
+        }
         std::vector<Edge> cycle;
         const std::uint32_t end = pass;
         do {
@@ -123,7 +138,8 @@ void report_cycles(const Declaration& declared, const std::vector<Edge>& edges,
 }  // namespace
 
 std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan& plan,
-                                        const std::vector<Edge>& afters, std::optional<std::uint64_t> shuffle_seed,
+                                        const std::vector<Edge>& afters,
+                                        std::optional<std::uint64_t> shuffle_seed,
                                         std::vector<Fault>& faults) {
     std::vector<std::uint32_t> order;
     const bool backward =
@@ -138,21 +154,29 @@ std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan&
     edges.insert(edges.end(), afters.begin(), afters.end());
     const Successors successors(declared.pass_count(), edges);
     std::vector<std::uint32_t> waits(declared.pass_count());
-    for (const Edge& edge : edges) { ++waits[edge.after]; }
+    for (const Edge& edge : edges) {
+        ++waits[edge.after];
+    }
 
     Ready ready(shuffle_seed);
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
-        if (waits[pass] == 0) { ready.push(pass); }
+        if (waits[pass] == 0) {
+            ready.push(pass);
+        }
     }
     order.reserve(declared.pass_count());
     while (!ready.empty()) {
         const std::uint32_t pass = ready.pop();
         order.push_back(pass);
         for (std::uint32_t at = successors.first[pass]; at < successors.first[pass + 1]; ++at) {
-            if (--waits[successors.pass[at]] == 0) { ready.push(successors.pass[at]); }
+            if (--waits[successors.pass[at]] == 0) {
+                ready.push(successors.pass[at]);
+            }
         }
     }
-    if (order.size() < declared.pass_count()) { report_cycles(declared, edges, waits, faults); }
+    if (order.size() < declared.pass_count()) {
+        report_cycles(declared, edges, waits, faults);
+    }
     return order;
 }
 

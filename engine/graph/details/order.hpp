@@ -16,8 +16,8 @@ struct Edge {
     std::uint32_t resource;
 };
 
-/// All passes in a legal order: that of declaration as far as `afters` allow, or with a seed a random one. Where passes
-/// wait for each other, they are missing, and `faults` gets the cycles.
+/// All passes in a legal order: that of declaration as far as `afters` allow, or with a seed a random one.
+/// Where passes wait for each other, they are missing, and `faults` gets the cycles.
 [[nodiscard]] std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan& plan,
                                                       const std::vector<Edge>& afters,
                                                       std::optional<std::uint64_t> shuffle_seed,

@@ -19,7 +19,9 @@ class StateMaker {
     State make() {
         const auto step_count = static_cast<std::uint32_t>(plan_.order.size());
         state_.versions.assign(plan_.writer.size(), {.producer = step_count});
-        for (std::uint32_t position = 0; position < plan_.order.size(); ++position) { add_step(position); }
+        for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
+            add_step(position);
+        }
         Step end;
         close_lists(end);
         state_.steps.push_back(end);
@@ -75,13 +77,19 @@ class StateMaker {
 
     void add_input(const Access& access, std::uint32_t pass) {
         const bool past = declared_.resources[access.resource].history_of != none;
-        if (past || (access.write && access.version == 1)) { return; }
+        if (past || (access.write && access.version == 1)) {
+            return;
+        }
         const std::uint32_t version = plan_.version(access.resource, access.version - (access.write ? 1 : 0));
-        if (plan_.writer[version] != pass) { state_.inputs.push_back(version); }
+        if (plan_.writer[version] != pass) {
+            state_.inputs.push_back(version);
+        }
     }
 
     void add_target(const Access& access) {
-        if (declared_.resources[access.resource].kind != ResourceKind::texture) { return; }
+        if (declared_.resources[access.resource].kind != ResourceKind::texture) {
+            return;
+        }
         const bool depth = access.usage == Usage::depth_target;
         if (depth || access.usage == Usage::colour_target) {
             state_.targets.push_back({plan_.object[access.resource], depth});
@@ -96,12 +104,18 @@ class StateMaker {
             Slot& slot = state_.slots[object];
             slot.kind = resource.kind;
             slot.owned = slot.kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
-            if (slot.kind == ResourceKind::texture) { slot.texture = declared_.texture(resource); }
-            if (slot.kind == ResourceKind::buffer) { slot.buffer = declared_.buffer(resource); }
+            if (slot.kind == ResourceKind::texture) {
+                slot.texture = declared_.texture(resource);
+            }
+            if (slot.kind == ResourceKind::buffer) {
+                slot.buffer = declared_.buffer(resource);
+            }
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const bool imported = declared_.resources[index].lifetime == Lifetime::imported;
-            if (imported && plan_.object[index] != none) { state_.imports.push_back(index); }
+            if (imported && plan_.object[index] != none) {
+                state_.imports.push_back(index);
+            }
         }
     }
 
@@ -130,7 +144,9 @@ class Heir {
         for (const auto& [slot, old_slot] : slot_pairs_) {
             const std::uint32_t old_version = old_.holds[old_slot];
             const std::uint32_t version = old_version == none ? none : new_version_[old_version];
-            if (version == none) { continue; }
+            if (version == none) {
+                continue;
+            }
             state_.holds[slot] = version;
             state_.versions[version].present = old_.versions[old_version].present;
         }
@@ -145,8 +161,10 @@ class Heir {
             return false;
         }
         switch (resource.kind) {
-            case ResourceKind::texture: return declared_.texture(resource) == old_declared_.texture(old);
-            case ResourceKind::buffer: return declared_.buffer(resource) == old_declared_.buffer(old);
+            case ResourceKind::texture:
+                return declared_.texture(resource) == old_declared_.texture(old);
+            case ResourceKind::buffer:
+                return declared_.buffer(resource) == old_declared_.buffer(old);
             case ResourceKind::value:
                 return declared_.value_types[resource.desc] == old_declared_.value_types[old.desc];
         }
@@ -170,10 +188,15 @@ class Heir {
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const Resource& resource = declared_.resources[index];
-            if (!known(resource) || plan_.object[index] == none) { continue; }
-            const std::uint32_t old = table.find_index(
-                hash(resource), [&](std::uint32_t other) { return alike(resource, old_declared_.resources[other]); });
-            if (old != none) { take_resource(index, old); }
+            if (!known(resource) || plan_.object[index] == none) {
+                continue;
+            }
+            const std::uint32_t old = table.find_index(hash(resource), [&](std::uint32_t other) {
+                return alike(resource, old_declared_.resources[other]);
+            });
+            if (old != none) {
+                take_resource(index, old);
+            }
         }
     }
 
@@ -181,11 +204,18 @@ class Heir {
         const Resource& resource = declared_.resources[index];
         const std::uint32_t version = plan_.version(index, 0);
         const std::uint32_t old_version = old_plan_.version(old, 0);
-        const bool bound_anew = resource.lifetime == Lifetime::imported && resource.kind != ResourceKind::value;
-        if (resource.lifetime == Lifetime::imported) { pair_versions(version, old_version); }
-        if (bound_anew) { return; }
+        const bool bound_anew =
+            resource.lifetime == Lifetime::imported && resource.kind != ResourceKind::value;
+        if (resource.lifetime == Lifetime::imported) {
+            pair_versions(version, old_version);
+        }
+        if (bound_anew) {
+            return;
+        }
         take_slot(plan_.object[index], old_plan_.object[old]);
-        if (resource.history != none) { take_slot(plan_.object[index] + 1, old_plan_.object[old] + 1); }
+        if (resource.history != none) {
+            take_slot(plan_.object[index] + 1, old_plan_.object[old] + 1);
+        }
     }
 
     void take_slot(std::uint32_t slot, std::uint32_t old_slot) {
@@ -203,13 +233,16 @@ class Heir {
     void take_records() {
         IndexTable table(old_.step_count());
         for (std::uint32_t index = 0; index < old_.step_count(); ++index) {
-            (void)table.find_or_insert(hash_of(old_.steps[index].name), index, [](std::uint32_t) { return false; });
+            (void)table.find_or_insert(hash_of(old_.steps[index].name), index,
+                                       [](std::uint32_t) { return false; });
         }
         for (std::uint32_t index = 0; index < state_.step_count(); ++index) {
             const std::string_view name = state_.steps[index].name;
             const std::uint32_t old = table.find_index(
                 hash_of(name), [&](std::uint32_t other) { return old_.steps[other].name == name; });
-            if (old != none && same_pass(plan_.order[index], old_plan_.order[old])) { take_record(index, old); }
+            if (old != none && same_pass(plan_.order[index], old_plan_.order[old])) {
+                take_record(index, old);
+            }
         }
     }
 
@@ -223,19 +256,25 @@ class Heir {
                                   [](const Parameter& a, const Parameter& b) {
                                       return a.type == b.type && a.equal(a.value, b.value);
                                   }) &&
-               std::ranges::equal(accesses, old_declared_.accesses_of(old), [&](const Access& a, const Access& b) {
-                   return same_access(a, pass, b, old);
-               });
+               std::ranges::equal(
+                   accesses, old_declared_.accesses_of(old),
+                   [&](const Access& a, const Access& b) { return same_access(a, pass, b, old); });
     }
 
     /// Of resources alike, and of content alike where it is an input.
-    [[nodiscard]] bool same_access(const Access& a, std::uint32_t pass, const Access& b, std::uint32_t old) const {
+    [[nodiscard]] bool same_access(const Access& a, std::uint32_t pass, const Access& b,
+                                   std::uint32_t old) const {
         const Resource& resource = declared_.resources[a.resource];
-        if (a.usage != b.usage || a.write != b.write || !alike(resource, old_declared_.resources[b.resource])) {
+        if (a.usage != b.usage || a.write != b.write ||
+            !alike(resource, old_declared_.resources[b.resource])) {
             return false;
         }
-        if (resource.history_of != none) { return true; }
-        if (a.write && (a.version == 1 || b.version == 1)) { return a.version == b.version; }
+        if (resource.history_of != none) {
+            return true;
+        }
+        if (a.write && (a.version == 1 || b.version == 1)) {
+            return a.version == b.version;
+        }
         const std::uint32_t step_back = a.write ? 1 : 0;
         const std::uint32_t version = plan_.version(a.resource, a.version - step_back);
         const std::uint32_t old_version = old_plan_.version(b.resource, b.version - step_back);
@@ -251,7 +290,8 @@ class Heir {
         const Step& next = state_.steps[index + 1];
         std::copy_n(old_.input_stamps.begin() + old_step.first_input, next.first_input - step.first_input,
                     state_.input_stamps.begin() + step.first_input);
-        std::copy_n(old_.revisions.begin() + old_step.first_revision, next.first_revision - step.first_revision,
+        std::copy_n(old_.revisions.begin() + old_step.first_revision,
+                    next.first_revision - step.first_revision,
                     state_.revisions.begin() + step.first_revision);
         for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
             pair_versions(state_.outputs[at].version,
@@ -266,7 +306,8 @@ class Heir {
     const Plan& old_plan_;
     const State& old_;
     std::vector<std::uint8_t> taken_;
-    std::vector<std::uint32_t> old_version_;  // by version id, or none: the old graph's version of the same content
+    std::vector<std::uint32_t>
+        old_version_;  // by version id, or none: the old graph's version of the same content
     std::vector<std::uint32_t> new_version_;  // and back
     std::vector<std::pair<std::uint32_t, std::uint32_t>> slot_pairs_;
 };

@@ -25,7 +25,7 @@ struct Slot {
     ResourceKind kind = ResourceKind::value;
     bool owned = false;    // by the runtime; false for what is imported, and for values
     bool changed = false;  // the running pass has set another value
-    bool filled = false;   // written since it was made
+    bool filled = false;   // written since it was made, or bound by the host
     ObjectId object = 0;
     TextureDesc texture;
     BufferDesc buffer;
@@ -82,7 +82,7 @@ struct Step {
 
 /// What a frame walks and what it remembers, for one graph. A slot is an object of the plan.
 struct State {
-    std::vector<Step> steps;  // and one more, which ends the lists
+    std::vector<Step> steps;            // and one more, which ends the lists
     std::vector<std::uint32_t> inputs;  // version ids of what passes read, or change
     std::vector<Stamp> input_stamps;    // at the pass's last run
     std::vector<Output> outputs;
@@ -101,8 +101,8 @@ struct State {
 /// The state of a graph that has not run, whose slots have no objects yet.
 [[nodiscard]] State make_state(const CompiledGraph& graph);
 
-/// Takes over from `before` what both graphs declare alike: slots (objects and values), stamps, and the records of
-/// passes. Gives for each of `before`'s slots whether it was taken.
+/// Takes over from `before` what both graphs declare alike: slots (objects and values), stamps, and the
+/// records of passes. Gives for each of `before`'s slots whether it was taken.
 std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
                                   const State& before);
 

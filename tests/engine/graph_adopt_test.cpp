@@ -1,0 +1,299 @@
+// From one graph to the next: what stays, what goes, and what a failure leaves.
+
+#include <doctest/doctest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine/graph/compile.hpp"
+#include "engine/graph/execute.hpp"
+#include "tests/engine/recording_backend.hpp"
+
+namespace {
+
+using namespace candela;
+
+const TextureDesc colour{{64, 32}, Format::rgba16f};
+
+struct Light {
+    int power = 0;
+};
+
+std::string ran(const FrameRecord& record) {
+    std::string names;
+    for (const PassRecord& pass : record.passes) {
+        if (pass.ran) {
+            names += (names.empty() ? "" : " ") + std::string(pass.name);
+        }
+    }
+    return names;
+}
+
+/// A configuration of the graph below: a light's shadow map is drawn by way of a transient, and kept; the
+/// picture is shaded by one of two paths.
+struct Configuration {
+    int map_size = 8;
+    int bias = 1;
+    bool deferred = false;
+    glm::uvec2 target_size{64, 32};
+    bool faulty = false;
+};
+
+struct Handles {
+    TextureHandle target;
+    TextureHandle shadow_map;
+    ValueHandle<int> lights;
+    ValueHandle<int> exposure;
+};
+
+struct Declared {
+    FrameGraph graph;
+    Handles handles;
+};
+
+Declared declare(const Configuration& configuration) {
+    Declared declared;
+    FrameGraph& graph = declared.graph;
+    Handles& handles = declared.handles;
+    handles.target = graph.texture("target", {configuration.target_size}, Lifetime::imported);
+    handles.exposure = graph.import_value<int>("exposure");
+    handles.lights = graph.add("gather", [&](Pass& pass) {
+        pass.read<Light>();
+        const auto lights = pass.write(graph.value<int>("lights"));
+        pass.run([=](Execution& run) { run.set(lights, static_cast<int>(run.world().count<Light>())); });
+        return lights;
+    });
+    const TextureHandle casters = graph.add("casters", [&](Pass& pass) {
+        pass.read(handles.lights);
+        return pass.write(graph.texture("casters", {{64, 32}, Format::r32f}), Usage::storage);
+    });
+    const TextureDesc map{glm::uvec2(static_cast<unsigned>(configuration.map_size)), Format::depth32f};
+    handles.shadow_map = graph.add("shadow-maps", [&](Pass& pass) {
+        pass.read(casters, Usage::sampled);
+        pass.parameter(configuration.bias);
+        return pass.write(graph.texture("shadow-map", map, Lifetime::persistent), Usage::depth_target);
+    });
+    const TextureDesc lit_desc{configuration.target_size, Format::rgba16f};
+    TextureHandle lit;
+    if (configuration.deferred) {
+        const TextureHandle albedo = graph.add("gbuffer", [&](Pass& pass) {
+            return pass.write(graph.texture("albedo", lit_desc), Usage::colour_target);
+        });
+        lit = graph.add("deferred", [&](Pass& pass) {
+            pass.read(albedo, Usage::sampled);
+            pass.read(handles.shadow_map, Usage::sampled);
+            return pass.write(graph.texture("lit", lit_desc), Usage::colour_target);
+        });
+    } else {
+        lit = graph.add("forward", [&](Pass& pass) {
+            pass.read(handles.shadow_map, Usage::sampled);
+            return pass.write(graph.texture("lit", lit_desc), Usage::colour_target);
+        });
+    }
+    graph.add("tone-map", [&](Pass& pass) {
+        pass.read(lit, Usage::sampled);
+        pass.read(handles.exposure);
+        (void)pass.write(handles.target, Usage::colour_target);
+        if (configuration.faulty) {
+            pass.after("nobody");
+        }
+    });
+    return declared;
+}
+
+struct Fixture {
+    RecordingBackend backend;
+    GraphRuntime runtime{backend};
+    World world;
+    Handles handles;
+
+    void adopt(const Configuration& configuration) {
+        Declared declared = declare(configuration);
+        runtime.adopt(compile(std::move(declared.graph)).take());
+        handles = declared.handles;
+        runtime.bind(handles.target, 1000, {configuration.target_size});
+    }
+    std::string run() { return ran(runtime.run(world)); }
+    void start() {
+        adopt({});
+        runtime.set(handles.exposure, 1);
+        CHECK(run() == "gather casters shadow-maps forward tone-map");
+        CHECK(run() == "tone-map");
+    }
+};
+
+TEST_CASE_FIXTURE(Fixture,
+                  "graph adoption: another path finds the shadow maps done and the host's values set") {
+    start();
+    const ObjectId map = runtime.object(handles.shadow_map);
+    adopt({.deferred = true});
+    CHECK(runtime.object(handles.shadow_map) == map);
+    CHECK(runtime.value(handles.lights) == 0);
+    CHECK(run() == "gbuffer deferred tone-map");
+    CHECK(run() == "tone-map");
+    world.set(world.create(), Light{});
+    CHECK(run() == "gather casters shadow-maps deferred tone-map");
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: another parameter has its pass run, the same again does not") {
+    start();
+    adopt({.bias = 2});
+    CHECK(run() == "casters shadow-maps forward tone-map");  // what "casters" makes is transient
+    adopt({.bias = 2});
+    CHECK(run() == "forward tone-map");  // so is what "forward" makes
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: another description is another resource") {
+    start();
+    adopt({.map_size = 16});
+    CHECK(backend.objects.at(runtime.object(handles.shadow_map)).texture_desc.size == glm::uvec2(16));
+    CHECK(run() == "casters shadow-maps forward tone-map");
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: changes of the world between two graphs are seen") {
+    start();
+    world.set(world.create(), Light{});
+    adopt({.deferred = true});
+    CHECK(run() == "gather casters shadow-maps gbuffer deferred tone-map");
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "graph adoption: an imported object must be bound anew, its old handle is of no use") {
+    start();
+    const TextureHandle old_target = handles.target;
+    Declared declared = declare({});
+    runtime.adopt(compile(std::move(declared.graph)).take());
+    CHECK_THROWS_WITH_AS(run(), "imported texture 'target' has not been bound", GraphError);
+    CHECK_THROWS_WITH_AS(runtime.bind(old_target, 1000, {}), "a handle is not of the adopted frame graph",
+                         GraphError);
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: what does not compile leaves the running graph as it is") {
+    start();
+    const std::size_t objects = backend.objects.size();
+    const CompileResult result = compile(declare({.deferred = true, .faulty = true}).graph);
+    CHECK_FALSE(result);
+    CHECK(run() == "tone-map");
+    CHECK(backend.objects.size() == objects);
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: a back end that fails leaves the running graph as it is") {
+    start();
+    const std::size_t objects = backend.objects.size();
+    for (const std::size_t creations : {0, 1, 2}) {
+        backend.creations_left = creations;
+        Declared declared = declare({.map_size = 32, .deferred = true, .target_size = {128, 128}});
+        CHECK_THROWS_WITH_AS(runtime.adopt(compile(std::move(declared.graph)).take()), "out of memory",
+                             std::runtime_error);
+        CHECK(backend.objects.size() == objects);
+        CHECK(run() == "tone-map");
+    }
+    CHECK(backend.misuse.empty());
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: switching back and forth creates nothing after the first round") {
+    start();
+    adopt({.deferred = true});
+    (void)run();
+    adopt({});
+    (void)run();
+    const std::size_t created = backend.created;
+    const std::size_t objects = backend.objects.size();
+    const MemoryUse memory = runtime.memory();
+    for (int time = 0; time < 500; ++time) {
+        adopt({.deferred = true});
+        (void)run();
+        adopt({});
+        (void)run();
+    }
+    CHECK(backend.created == created);
+    CHECK(backend.objects.size() == objects);
+    CHECK(runtime.memory().texture_bytes == memory.texture_bytes);
+    CHECK(backend.misuse.empty());
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph adoption: 200 sizes leave as many objects as one") {
+    start();
+    runtime.trim();
+    const std::size_t objects = backend.objects.size();
+    for (unsigned size = 1; size <= 200; ++size) {
+        adopt({.target_size = {size, 200 - size / 2}});
+        CHECK(run() == "forward tone-map");
+        CHECK(backend.objects.size() <= 2 * objects);
+    }
+    adopt({});
+    runtime.trim();
+    CHECK(backend.objects.size() == objects);
+    CHECK(backend.misuse.empty());
+}
+
+TEST_CASE("graph adoption: a runtime leaves nothing behind") {
+    RecordingBackend backend;
+    {
+        GraphRuntime runtime(backend);
+        runtime.adopt(compile(declare({}).graph).take());
+        runtime.adopt(compile(declare({.deferred = true}).graph).take());
+        CHECK(!backend.objects.empty());
+    }
+    CHECK(backend.objects.empty());
+    CHECK(backend.misuse.empty());
+}
+
+TEST_CASE("graph adoption: history survives, and so does what it remembers") {
+    RecordingBackend backend;
+    GraphRuntime runtime(backend);
+    const World world;
+    std::vector<std::uint64_t> seen;
+    for (std::uint64_t frame = 1; frame <= 3; ++frame) {
+        FrameGraph graph;
+        graph.add("mix", [&](Pass& pass) {
+            const TextureHandle blank = graph.texture("mixed", colour);
+            const TextureHandle past = graph.history(blank);
+            pass.read(past, Usage::sampled);
+            pass.side_effect();
+            const TextureHandle mixed = pass.write(blank, Usage::storage);
+            pass.run([&, frame, past, mixed](Execution& run) {
+                seen.push_back(run.history_valid(past) ? backend.objects.at(run.object(past)).content : 0);
+                backend.objects.at(run.object(mixed)).content = frame;
+            });
+        });
+        runtime.adopt(compile(std::move(graph)).take());
+        (void)runtime.run(world);
+    }
+    CHECK(seen == std::vector<std::uint64_t>{0, 1, 2});
+    CHECK(backend.created == 2);
+}
+
+TEST_CASE("graph memory: what is shared, and what is spared, is told") {
+    RecordingBackend backend;
+    GraphRuntime runtime(backend);
+    const auto chain = [](std::size_t length) {
+        FrameGraph graph;
+        TextureHandle last;
+        for (std::size_t index = 0; index < length; ++index) {
+            last = graph.add("draw " + std::to_string(index), [&](Pass& pass) {
+                if (index > 0) {
+                    pass.read(last, Usage::sampled);
+                }
+                if (index + 1 == length) {
+                    pass.side_effect();
+                }
+                return pass.write(graph.texture("image", colour), Usage::colour_target);
+            });
+        }
+        return compile(std::move(graph)).take();
+    };
+    const std::uint64_t bytes = 64 * 32 * 8;
+    runtime.adopt(chain(5));
+    CHECK(runtime.memory().texture_bytes == 2 * bytes);
+    CHECK(runtime.memory().shared_by_aliasing_bytes == 3 * bytes);
+    CHECK(runtime.memory().spare_bytes == 0);
+    runtime.adopt(chain(1));
+    CHECK(runtime.memory().texture_bytes == 2 * bytes);
+    CHECK(runtime.memory().spare_bytes == bytes);
+    runtime.trim();
+    CHECK(runtime.memory().texture_bytes == bytes);
+}
+
+}  // namespace

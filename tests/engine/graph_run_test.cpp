@@ -1,0 +1,471 @@
+// Which passes run, frame by frame, and what they may touch.
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "engine/graph/compile.hpp"
+#include "engine/graph/execute.hpp"
+#include "tests/engine/recording_backend.hpp"
+
+namespace {
+
+using namespace candela;
+
+const TextureDesc colour{{64, 32}, Format::rgba16f};
+
+struct Light {
+    int power = 0;
+    bool operator==(const Light&) const = default;
+};
+struct Name {
+    std::string text;
+};
+
+/// Names of the passes that ran, joined by spaces.
+std::string ran(const FrameRecord& record) {
+    std::string names;
+    for (const PassRecord& pass : record.passes) {
+        if (pass.ran) {
+            names += (names.empty() ? "" : " ") + std::string(pass.name);
+        }
+    }
+    return names;
+}
+
+struct Fixture {
+    RecordingBackend backend;
+    GraphRuntime runtime{backend};
+    World world;
+    FrameGraph graph;
+
+    void adopt() { runtime.adopt(compile(std::move(graph)).take()); }
+    std::string run() { return ran(runtime.run(world)); }
+
+    TextureHandle draw(std::string_view name, std::vector<TextureHandle> sources, TextureHandle target) {
+        return graph.add(name, [&](Pass& pass) {
+            for (const TextureHandle source : sources) {
+                pass.read(source, Usage::sampled);
+            }
+            return pass.write(target, Usage::colour_target);
+        });
+    }
+    TextureHandle texture(std::string_view name, Lifetime lifetime = Lifetime::transient) {
+        return graph.texture(name, colour, lifetime);
+    }
+};
+
+TEST_CASE_FIXTURE(Fixture, "graph run: a component pool that changes dirties its readers and theirs") {
+    const Entity entity = world.create();
+    world.set(entity, Light{1});
+    const auto power = graph.add("gather", [&](Pass& pass) {
+        pass.read<Light>();
+        const auto written = pass.write(graph.value<int>("power"));
+        pass.run([=](Execution& run) { run.set(written, run.world().get<Light>(entity).power); });
+        return written;
+    });
+    const TextureHandle lit = graph.add("light", [&](Pass& pass) {
+        pass.read(power);
+        return pass.write(texture("lit"), Usage::colour_target);
+    });
+    const TextureHandle target = texture("target", Lifetime::imported);
+    draw("show", {lit}, target);
+    adopt();
+    runtime.bind(target, 77, colour);
+
+    CHECK(run() == "gather light show");
+    CHECK(run() == "show");
+    world.set(entity, Name{"lamp"});  // a pool that nobody reads
+    CHECK(run() == "show");
+    world.set(entity, Light{2});
+    CHECK(run() == "gather light show");
+    CHECK(runtime.value(power) == 2);
+
+    SUBCASE("an equal value leaves its readers clean") {
+        world.set(entity, Light{3});
+        world.set(entity, Light{2});
+        CHECK(run() == "gather show");
+    }
+    SUBCASE("another world is another world") {
+        const World copy = world;
+        CHECK(ran(runtime.run(copy)) == "gather show");
+    }
+    SUBCASE("all runs after invalidating") {
+        runtime.invalidate();
+        CHECK(run() == "gather light show");
+    }
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: what only culled passes read the host need not provide") {
+    const auto exposure = graph.import_value<float>("exposure");
+    const TextureHandle sky = texture("sky", Lifetime::imported);
+    graph.add("unseen", [&](Pass& pass) {
+        pass.read(exposure);
+        pass.read(sky, Usage::sampled);
+        (void)pass.write(graph.value<float>("mapped"));
+    });
+    graph.add("print", [&](Pass& pass) { pass.side_effect(); });
+    adopt();
+    CHECK(run() == "print");
+    runtime.set(exposure, 1.0F);  // allowed, and of no consequence
+    runtime.bind(sky, 9, colour);
+    CHECK(run() == "print");
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: an imported value is needed once, an imported object too") {
+    const auto exposure = graph.import_value<float>("exposure");
+    const TextureHandle target = texture("target", Lifetime::imported);
+    const TextureHandle mapped = graph.add("tone-map", [&](Pass& pass) {
+        pass.read(exposure);
+        return pass.write(texture("mapped"), Usage::colour_target);
+    });
+    draw("show", {mapped}, target);
+    CHECK_THROWS_WITH_AS(run(), "no frame graph has been adopted", GraphError);
+    CHECK_THROWS_WITH_AS(runtime.set(exposure, 1.0F), "no frame graph has been adopted", GraphError);
+    adopt();
+    CHECK_THROWS_WITH_AS(run(), "imported value 'exposure' has not been set", GraphError);
+    runtime.set(exposure, 1.0F);
+    CHECK_THROWS_WITH_AS(run(), "imported texture 'target' has not been bound", GraphError);
+    runtime.bind(target, 77, colour);
+    CHECK(run() == "tone-map show");
+    runtime.set(exposure, 1.0F);
+    CHECK(run() == "show");
+    runtime.set(exposure, 2.0F);
+    CHECK(run() == "tone-map show");
+    CHECK(runtime.value(exposure) == 2.0F);
+
+    CHECK_THROWS_WITH_AS(runtime.bind(mapped, 5, colour), "texture 'mapped' is not imported", GraphError);
+    FrameGraph other;
+    CHECK_THROWS_WITH_AS(runtime.set(other.import_value<int>("x"), 1),
+                         "a handle is not of the adopted frame graph", GraphError);
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: a bind is new content to the readers") {
+    const TextureHandle sky = texture("sky", Lifetime::imported);
+    const TextureHandle blurred = draw("blur", {sky}, texture("blurred"));
+    graph.add("show", [&](Pass& pass) {
+        pass.read(blurred, Usage::sampled);
+        pass.side_effect();
+    });
+    adopt();
+    runtime.bind(sky, 9, colour);
+    CHECK(run() == "blur show");
+    CHECK(run() == "show");
+    runtime.bind(sky, 9, colour);
+    CHECK(run() == "blur show");
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: what shares an object is made again for a reader, and only for that") {
+    // "a" and "c" share an object: after a frame it holds "c".
+    const auto knob = graph.import_value<int>("knob");
+    const TextureHandle a = draw("draw a", {}, texture("a"));
+    const TextureHandle b = draw("draw b", {a}, texture("b"));
+    const TextureHandle c = graph.add("draw c", [&](Pass& pass) {
+        pass.read(b, Usage::sampled);
+        return pass.write(texture("c"), Usage::colour_target);
+    });
+    const auto turn = graph.import_value<int>("turn");
+    graph.add("show", [&](Pass& pass) {
+        pass.read(c, Usage::sampled);
+        pass.side_effect();
+    });
+    const TextureHandle late = graph.add("late", [&](Pass& pass) {
+        pass.read(b, Usage::sampled);
+        pass.read(knob);
+        return pass.write(texture("late", Lifetime::persistent), Usage::colour_target);
+    });
+    graph.add("show late", [&](Pass& pass) {
+        pass.read(late, Usage::sampled);
+        pass.read(turn);
+        pass.side_effect();
+    });
+    adopt();
+    runtime.set(knob, 1);
+    runtime.set(turn, 1);
+    CHECK(runtime.object(a) == runtime.object(c));
+    CHECK(run() == "draw a draw b draw c show late show late");
+    CHECK(run() == "show show late");  // what they read is still there
+    runtime.set(knob, 2);
+    CHECK(run() == "show late show late");  // "b" is still there
+}
+
+TEST_CASE_FIXTURE(
+    Fixture,
+    "graph run: whoever changes what is there has its maker run first, and keeps later readers clean") {
+    const auto knob = graph.import_value<int>("knob");
+    const TextureHandle lit = draw("opaque", {}, texture("lit"));
+    const TextureHandle both = graph.add("transparent", [&](Pass& pass) {
+        pass.read(knob);
+        return pass.write(lit, Usage::colour_target);
+    });
+    const TextureHandle mapped = draw("tone-map", {both}, texture("mapped"));
+    graph.add("show", [&](Pass& pass) {
+        pass.read(mapped, Usage::sampled);
+        pass.side_effect();
+    });
+    adopt();
+    runtime.set(knob, 1);
+    CHECK(run() == "opaque transparent tone-map show");
+    CHECK(run() == "show");
+    runtime.set(knob, 2);
+    CHECK(run() == "opaque transparent tone-map show");
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "graph run: a pass that only brings back a result leaves the other readers clean") {
+    // "peek" reads the first version of "lit", which "transparent" has overwritten.
+    const auto knob = graph.import_value<int>("knob");
+    const TextureHandle lit = draw("opaque", {}, texture("lit"));
+    const TextureHandle seen = graph.add("peek", [&](Pass& pass) {
+        pass.read(lit, Usage::sampled);
+        pass.read(knob);
+        return pass.write(texture("seen", Lifetime::persistent), Usage::colour_target);
+    });
+    const TextureHandle both = draw("transparent", {}, lit);
+    const TextureHandle mapped = draw("tone-map", {both}, texture("mapped", Lifetime::persistent));
+    graph.add("show", [&](Pass& pass) {
+        pass.read(mapped, Usage::sampled);
+        pass.read(seen, Usage::sampled);
+        pass.side_effect();
+    });
+    adopt();
+    runtime.set(knob, 1);
+    CHECK(run() == "opaque peek transparent tone-map show");
+    CHECK(run() == "show");
+    runtime.set(knob, 2);
+    CHECK(run() == "opaque peek show");  // "mapped" is still right, though "lit" is back to its first version
+    CHECK(run() == "show");
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "graph run: history is what the last frame left, and invalid until there is some") {
+    std::vector<std::uint64_t> seen;
+    const auto knob = graph.import_value<int>("knob");
+    const TextureHandle blank = texture("accumulated");
+    const TextureHandle past = graph.history(blank);
+    const TextureHandle mixed = graph.add("mix", [&](Pass& pass) {
+        pass.read(past, Usage::sampled);
+        pass.read(knob);
+        const TextureHandle written = pass.write(blank, Usage::colour_target);
+        pass.run([&, past, knob, written](Execution& run) {
+            CHECK(run.object(past) != run.object(written));
+            seen.push_back(run.history_valid(past) ? backend.objects.at(run.object(past)).content : 0);
+            backend.objects.at(run.object(written)).content = static_cast<std::uint64_t>(run.value(knob));
+        });
+        return written;
+    });
+    std::uint64_t shown = 0;
+    graph.add("show", [&](Pass& pass) {
+        pass.read(mixed, Usage::sampled);
+        pass.side_effect();
+        pass.run([&, mixed](Execution& run) { shown = backend.objects.at(run.object(mixed)).content; });
+    });
+    adopt();
+    for (const int frame : {1, 2}) {
+        runtime.set(knob, frame);
+        CHECK(run() == "mix show");
+    }
+    CHECK(run() == "show");  // a memory is no input
+    CHECK(shown == 2);
+    runtime.set(knob, 3);
+    CHECK(run() == "mix show");
+    CHECK(shown == 3);
+    runtime.invalidate_history();
+    runtime.set(knob, 4);
+    CHECK(run() == "mix show");
+    runtime.set(knob, 5);
+    CHECK(run() == "mix show");
+    CHECK(seen == std::vector<std::uint64_t>{0, 1, 2, 0, 4});
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: reserving makes room, keeps it, and loses history") {
+    const auto wanted = graph.import_value<std::uint64_t>("wanted");
+    const auto blank = graph.buffer<float>("vpls", 100, Lifetime::persistent);
+    const TextureHandle map = texture("map");
+    const TextureHandle past = graph.history(map);
+    std::vector<bool> valid;
+    std::uint64_t room = 0;
+    graph.add("trace", [&](Pass& pass) {
+        pass.read(wanted);
+        pass.read(past, Usage::sampled);
+        const auto vpls = pass.write(blank, Usage::storage);
+        const auto drawn = pass.write(map, Usage::layer_target);
+        pass.side_effect();
+        pass.run([&, wanted, vpls, drawn, past](Execution& run) {
+            const std::uint64_t count = run.value(wanted);
+            run.reserve(vpls, count);
+            const TextureDesc desc{{static_cast<std::uint32_t>(count), 1}};
+            run.reserve(drawn, desc);
+            CHECK(run.desc(drawn) == desc);
+            CHECK(backend.objects.at(run.object(drawn)).texture_desc == desc);
+            CHECK(backend.objects.at(run.object(vpls)).buffer_desc ==
+                  BufferDesc{run.count(vpls), sizeof(float)});
+            room = run.count(vpls);
+            valid.push_back(run.history_valid(past));
+        });
+    });
+    adopt();
+    const auto room_for = [&](std::uint64_t count) {
+        runtime.set(wanted, count);
+        (void)run();
+        return room;
+    };
+    CHECK(room_for(10) == 100);
+    CHECK(room_for(101) == 150);  // grows by half at least
+    CHECK(room_for(101) == 150);
+    CHECK(room_for(1000) == 1000);
+    CHECK(room_for(1) == 1000);  // never shrinks
+    CHECK(valid == std::vector<bool>{false, false, true, false, false});
+    CHECK(backend.objects.size() == 3);
+    CHECK(backend.misuse.empty());
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: what a pass did not declare it may not touch") {
+    const TextureHandle a = draw("draw", {}, texture("a"));
+    const TextureHandle blank = texture("b");
+    const auto number = graph.import_value<int>("number");
+    std::vector<std::string> errors;
+    const auto attempt = [&](auto act) {
+        try {
+            act();
+        } catch (const GraphError& error) {
+            errors.emplace_back(error.what());
+        }
+    };
+    FrameGraph other;
+    const TextureHandle foreign = other.texture("foreign", colour);
+    graph.add("use", [&](Pass& pass) {
+        pass.read(a, Usage::sampled);
+        pass.side_effect();
+        const auto unset = pass.write(graph.value<int>("unset"));
+        pass.run([&, a, blank, number, foreign, unset](Execution& run) {
+            attempt([&] { (void)run.object(blank); });
+            attempt([&] { (void)run.value(number); });
+            attempt([&] { run.set(number, 1); });
+            attempt([&] { (void)run.object(foreign); });
+            attempt([&] { (void)run.value(unset); });
+            attempt([&] { run.reserve(a, colour); });
+            attempt([&] { (void)run.history_valid(a); });
+        });
+    });
+    adopt();
+    (void)run();
+    CHECK(errors == std::vector<std::string>{"pass 'use' uses texture 'b' without having declared it",
+                                             "pass 'use' uses value 'number' without having declared it",
+                                             "pass 'use' writes value 'number' without having declared it",
+                                             "a handle is not of the adopted frame graph",
+                                             "value 'unset' has not been set",
+                                             "pass 'use' writes texture 'a' without having declared it",
+                                             "texture 'a' is not a history"});
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: only what is persistent may be reserved, and not what is attached") {
+    int refused = 0;
+    const auto attempt = [&](Execution& run, auto resource, auto extent) {
+        try {
+            run.reserve(resource, extent);
+        } catch (const GraphError&) {
+            ++refused;
+        }
+    };
+    const auto kept = graph.buffer<int>("kept", 4, Lifetime::persistent);
+    graph.add("write", [&](Pass& pass) {
+        const TextureHandle drawn = pass.write(texture("target", Lifetime::persistent), Usage::colour_target);
+        const auto transient = pass.write(graph.buffer<int>("transient", 4), Usage::storage);
+        const auto written = pass.write(pass.write(kept, Usage::copy), Usage::storage);
+        pass.side_effect();
+        pass.run([=](Execution& run) {
+            attempt(run, drawn, TextureDesc{{8, 8}});
+            attempt(run, transient, 8);
+            run.reserve(written, 8);  // from version 0, in two steps
+        });
+    });
+    adopt();
+    (void)run();
+    CHECK(refused == 2);
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: what a pass throws leaves a runtime that goes on") {
+    bool fail = false;
+    const auto knob = graph.import_value<int>("knob");
+    const TextureHandle a = draw("draw", {}, texture("a", Lifetime::persistent));
+    const TextureHandle b = graph.add("filter", [&](Pass& pass) {
+        pass.read(a, Usage::sampled);
+        pass.read(knob);
+        pass.run([&](Execution&) {
+            if (fail) {
+                throw std::runtime_error("out of luck");
+            }
+        });
+        return pass.write(texture("b", Lifetime::persistent), Usage::colour_target);
+    });
+    graph.add("show", [&](Pass& pass) {
+        pass.read(b, Usage::sampled);
+        pass.side_effect();
+    });
+    adopt();
+    runtime.set(knob, 1);
+    CHECK(run() == "draw filter show");
+    fail = true;
+    runtime.set(knob, 2);
+    CHECK_THROWS_WITH_AS(run(), "out of luck", std::runtime_error);
+    CHECK(backend.open_passes == 0);
+    CHECK_THROWS_AS(run(), std::runtime_error);
+    fail = false;
+    runtime.set(knob, 1);  // what it ran with the last time that it came through
+    CHECK(run() == "filter show");
+    CHECK(run() == "show");
+    CHECK(runtime.run(world).frame == 3);  // frames that came through
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "graph run: the back end hears passes, their targets, and the barriers of passes skipped") {
+    const auto knob = graph.import_value<int>("knob");
+    const auto traced = graph.add("trace", [&](Pass& pass) {
+        pass.read(knob);
+        return pass.write(graph.buffer<int>("hits", 4), Usage::storage);
+    });
+    const auto counted = graph.add("count", [&](Pass& pass) {
+        pass.read(traced, Usage::storage);
+        return pass.write(graph.buffer<int>("sum", 1), Usage::copy);
+    });
+    const TextureHandle target = texture("target", Lifetime::imported);
+    const TextureHandle depth = graph.texture("depth", {colour.size, Format::depth32f}, Lifetime::imported);
+    graph.add("show", [&](Pass& pass) {
+        pass.read(counted, Usage::uniform);
+        (void)pass.write(target, Usage::colour_target);
+        (void)pass.write(depth, Usage::depth_target);
+    });
+    adopt();
+    runtime.bind(target, 70, colour);
+    runtime.bind(depth, 71, {colour.size, Format::depth32f});
+    runtime.set(knob, 1);
+    (void)run();
+    CHECK(backend.log == std::vector<std::string>{"barrier storage", "begin trace", "end", "barrier storage",
+                                                  "begin count", "end", "begin show", "end"});
+    CHECK(backend.targets.colour == std::vector<ObjectId>{70});
+    CHECK(backend.targets.depth == 71);
+    CHECK(backend.targets.size == colour.size);
+    backend.log.clear();
+    (void)run();
+    CHECK(backend.log == std::vector<std::string>{"barrier storage", "begin show", "end"});
+}
+
+TEST_CASE_FIXTURE(Fixture, "graph run: time is taken where asked for") {
+    graph.add("work", [&](Pass& pass) {
+        pass.side_effect();
+        pass.run([](Execution&) {
+            const auto start = std::chrono::steady_clock::now();
+            while (std::chrono::steady_clock::now() - start < std::chrono::milliseconds(2)) {
+            }
+        });
+    });
+    adopt();
+    CHECK(runtime.run(world).passes.front().cpu_ms == 0.0);
+    CHECK(runtime.run(world, Timing::on).passes.front().cpu_ms >= 2.0);
+}
+
+}  // namespace

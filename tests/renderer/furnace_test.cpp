@@ -1,0 +1,105 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr glm::uvec2 size{48, 48};
+
+/// A light of 3 cd at the centre of a sphere of radius 2 m, and a camera within, off the centre.
+///
+/// The facets of 20,480 cost little: their corners are at most 2.2° apart, so that their centres are too near
+/// by 1 - cos 1.3° = 0.03 % and up to 0.06 % brighter. VPLs on neighbouring facets, whose true normals differ
+/// from the pixel's by as much as their distance, are what remains: a share of the flux that falls with their
+/// number.
+Scene furnace_sphere(float albedo) {
+    Scene scene;
+    add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 5, diffuse(glm::vec3(albedo)))});
+    scene.light = add(scene.world, Transform{}, PointLight{.intensity = 3.0F});
+    scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+    return scene;
+}
+
+/// Enough bounces that what is left after them is far below the tolerances: ρ⁶⁴ = 6·10⁻⁷ at 0.8.
+Configuration furnace_configuration(std::uint32_t vpls) {
+    Configuration configuration = linear_configuration();
+    configuration.vpls.count = vpls;
+    configuration.vpls.bounces = 64;
+    configuration.geometry_bound = 1.0F;  // the bound of what a patch can send; lower ones cost energy
+    return configuration;
+}
+
+class Furnace : public RenderFixture {
+ protected:
+    /// Worst pixel of the sphere's picture, against radiance ρ/π · I/R² · 1/(1 - ρ).
+    double sphere_error(const Scene& scene, double albedo, std::uint32_t vpls) {
+        configure(furnace_configuration(vpls));
+        const double radiance = albedo / pi * 3.0 / 4.0 / (1.0 - albedo);
+        const Picture expected{size, std::vector(size.x * size.y, glm::vec3(static_cast<float>(radiance)))};
+        return worst_error(render(scene, size), expected, 1e-6);
+    }
+
+    /// Flux that arrives at the six walls of `furnace_box`, of light as configured.
+    double arriving(Scene& scene, double albedo) {
+        const double pixel_area = 4.0 / (size.x * size.y);
+        double flux = 0.0;
+        for (const glm::vec3 wall : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0),
+                                     glm::vec3(0, -1, 0), glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)}) {
+            const glm::vec3 up(0, wall.y == 0.0F, wall.y != 0.0F);
+            scene.world.set(scene.camera, looking({0, 0, 0}, wall, up));
+            flux += mean(render(scene, size)) * pi / albedo * size.x * size.y * pixel_area;
+        }
+        return flux;
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("furnace") {
+    TEST_CASE_FIXTURE(Furnace, "a sphere lit from its centre is equally bright everywhere") {
+        for (const double albedo : {0.5, 0.8}) {
+            CAPTURE(albedo);
+            const Scene scene = furnace_sphere(static_cast<float>(albedo));
+            renderer.invalidate();
+            const double few = sphere_error(scene, albedo, 128);
+            const double many = sphere_error(scene, albedo, 1024);
+            const double more = sphere_error(scene, albedo, 4096);
+            MESSAGE("worst pixel: ", few, " at 128 VPLs, ", many, " at 1,024, ", more, " at 4,096");
+            CHECK(many < 0.02);
+            CHECK(many < few);
+            CHECK(more < many);
+        }
+    }
+
+    TEST_CASE_FIXTURE(Furnace,
+                      "what arrives at the walls of a closed box is emitted light times 1 / (1 - albedo)") {
+        for (const double albedo : {0.5, 0.8}) {
+            CAPTURE(albedo);
+            Scene scene = furnace_box(static_cast<float>(albedo));
+            scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                                 .half_height = 1.0F,
+                                                 .near_plane = 0.0F,
+                                                 .far_plane = 4.0F});
+            renderer.invalidate();
+            Configuration configuration = furnace_configuration(1024);
+            configuration.show = Show::direct;
+            configure(configuration);
+            const double direct = arriving(scene, albedo);
+            // A light of 1 cd emits 4π lm; sums over pixels integrate its smooth irradiance to a thousandth.
+            CHECK(std::abs(direct / (4.0 * pi) - 1.0) < 1e-3);
+            configuration.show = Show::indirect;
+            configure(configuration);
+            const double indirect = arriving(scene, albedo);
+            MESSAGE("indirect / direct: ", indirect / direct, ", wanted ", albedo / (1.0 - albedo));
+            CHECK(std::abs(indirect / direct / (albedo / (1.0 - albedo)) - 1.0) < 0.03);
+        }
+    }
+}

@@ -1,0 +1,133 @@
+#include "sandbox/light_picking.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include "engine/scene/components.hpp"
+#include "engine/scene/hierarchy.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr glm::vec2 window(640.0F, 480.0F);
+
+// A hundredth of a pixel, and what that is at the distances below, in metres.
+constexpr float tolerance_window = 1e-2F;
+constexpr float tolerance_world = 1e-4F;
+
+/// Looks down -Z from (0, 0, 5); at the origin the window is 10·tan(fov/2) high.
+Entity add_camera(World& world, Camera::Projection projection = Camera::Projection::perspective) {
+    const Entity entity = world.create();
+    world.set(entity, Transform{.translation = {0.0F, 0.0F, 5.0F}});
+    world.set(entity, Camera{.projection = projection, .half_height = 2.0F, .near_plane = 0.1F, .far_plane = 50.0F});
+    return entity;
+}
+
+Entity add_light(World& world, glm::vec3 position, Entity parent = {}) {
+    const Entity entity = world.create();
+    world.set(entity, Transform{.translation = position, .parent = parent});
+    world.set(entity, PointLight{});
+    return entity;
+}
+
+glm::vec3 position_of(const World& world, Entity entity) {
+    return glm::vec3(world_matrix(world, entity)[3]);
+}
+
+}  // namespace
+
+TEST_SUITE("light picking") {
+    TEST_CASE("points appear where a pinhole camera shows them, y down") {
+        World world;
+        const Viewport viewport = make_viewport(world, add_camera(world), window);
+        const float units_per_metre = 240.0F / (5.0F * std::tan(Camera{}.vertical_fov * 0.5F));
+        const auto seen_at = project(viewport, {0.5F, 1.0F, 0.0F});
+        REQUIRE(seen_at);
+        CHECK(std::abs(seen_at->x - (320.0F + 0.5F * units_per_metre)) < tolerance_window);
+        CHECK(std::abs(seen_at->y - (240.0F - units_per_metre)) < tolerance_window);
+        CHECK_FALSE(project(viewport, {0.0F, 0.0F, 6.0F}));
+    }
+
+    TEST_CASE("the ray through where a point is seen meets the point, in both projections") {
+        for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+            World world;
+            const Viewport viewport = make_viewport(world, add_camera(world, projection), window);
+            for (const glm::vec3 point :
+                 {glm::vec3(0.0F), glm::vec3(1.0F, -0.7F, 2.0F), glm::vec3(-2.0F, 1.0F, -9.0F)}) {
+                const Ray ray = ray_through(viewport, project(viewport, point).value());
+                CHECK(std::abs(glm::length(ray.direction) - 1.0F) < tolerance_world);
+                CHECK(glm::length(glm::cross(point - ray.origin, ray.direction)) < tolerance_world);
+                const auto met = intersect_plane(ray, point, viewport.forward);
+                REQUIRE(met);
+                CHECK(glm::distance(*met, point) < tolerance_world);
+            }
+        }
+    }
+
+    TEST_CASE("planes that are parallel or behind are missed") {
+        const Ray ray{glm::vec3(0.0F), glm::vec3(0.0F, 0.0F, -1.0F)};
+        CHECK_FALSE(intersect_plane(ray, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}));
+        CHECK_FALSE(intersect_plane(ray, {0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 1.0F}));
+    }
+
+    TEST_CASE("the nearest marker within the radius is picked") {
+        World world;
+        const Viewport viewport = make_viewport(world, add_camera(world), window);
+        const Entity left = add_light(world, {-0.1F, 0.0F, 0.0F});
+        const Entity right = add_light(world, {0.1F, 0.0F, 0.0F});
+        add_light(world, {0.0F, 0.0F, 9.0F});  // behind the eye
+        const auto markers = light_markers(world);
+        CHECK(markers.size() == 3);
+        CHECK(pick(markers, viewport, {318.0F, 240.0F}, 20.0F) == left);
+        CHECK(pick(markers, viewport, {322.0F, 240.0F}, 20.0F) == right);
+        CHECK_FALSE(pick(markers, viewport, {320.0F, 300.0F}, 20.0F));
+    }
+
+    TEST_CASE("a dragged light stays at its depth and under the pointer, below parents too") {
+        World world;
+        const Entity camera = add_camera(world);
+        const Entity parent = world.create();
+        world.set(parent, Transform{.translation = {1.0F, 2.0F, 3.0F},
+                                    .rotation = glm::angleAxis(0.7F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F))),
+                                    .scale = glm::vec3(2.0F, 0.5F, 1.5F)});
+        const Entity light = add_light(world, glm::vec3(0.0F), parent);
+        move_to(world, light, {0.3F, -0.2F, 1.0F});
+        CHECK(glm::distance(position_of(world, light), {0.3F, -0.2F, 1.0F}) < tolerance_world);
+
+        const Viewport viewport = make_viewport(world, camera, window);
+        const glm::vec2 grip(3.0F, -4.0F);  // grabbed beside its middle
+        const glm::vec2 start = project(viewport, position_of(world, light)).value();
+        const LightDrag drag(world, viewport, light, start + grip);
+        drag.drag(world, viewport, start + grip);
+        CHECK(glm::distance(position_of(world, light), {0.3F, -0.2F, 1.0F}) < tolerance_world);
+
+        drag.drag(world, viewport, glm::vec2(100.0F, 400.0F) + grip);
+        const glm::vec3 moved = position_of(world, light);
+        CHECK(std::abs(moved.z - 1.0F) < tolerance_world);
+        CHECK(glm::distance(project(viewport, moved).value(), {100.0F, 400.0F}) < tolerance_window);
+    }
+
+    TEST_CASE("a light below a flat parent cannot be moved, and stays") {
+        World world;
+        const Entity parent = world.create();
+        world.set(parent, Transform{.scale = glm::vec3(1.0F, 0.0F, 1.0F)});
+        const Entity light = add_light(world, {1.0F, 0.0F, 0.0F}, parent);
+        move_to(world, light, {0.0F, 1.0F, 0.0F});
+        CHECK(position_of(world, light) == glm::vec3(1.0F, 0.0F, 0.0F));
+    }
+
+    TEST_CASE("nudging goes along the picture's axes") {
+        World world;
+        const Viewport viewport = make_viewport(world, add_camera(world), window);
+        const Entity light = add_light(world, glm::vec3(0.0F));
+        nudge(world, light, viewport, {1.0F, 2.0F, 3.0F});
+        CHECK(glm::distance(position_of(world, light), {1.0F, 2.0F, 3.0F}) < tolerance_world);
+    }
+}
+
+}  // namespace candela::sandbox

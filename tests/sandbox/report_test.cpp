@@ -1,0 +1,79 @@
+#include "sandbox/report.hpp"
+
+#include <string>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+namespace candela::sandbox {
+
+namespace {
+
+EnergyAccount balanced() {
+    return {.emitted = {10.0, 20.0, 40.0},
+            .absorbed = {5.0, 10.0, 20.0},
+            .escaped = {2.0, 5.0, 10.0},
+            .truncated = {2.0, 4.0, 9.0},
+            .roulette = {1.0, 1.0, 1.0},
+            .roulette_error = {0.5, 0.25, 0.125}};
+}
+
+RunReport some_run() {
+    RunReport run{"EGL surfaceless", "a/\xFF.gltf", {640, 480}, {}, {}, {}};
+    run.frames.push_back({.index = 3,
+                          .cpu_ms = 1.5,
+                          .gpu_ms = 2.5,
+                          .passes = {{"gbuffer", true, 0.5, 1.0}, {"vpl-trace", false, 0.0, 0.0}}});
+    run.state.gl_renderer = "a driver";
+    run.state.triangles = 36;
+    run.state.vpls = VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced()};
+    run.state.lights = {.count = 3, .with_shadow = 2, .without_shadow = 1};
+    run.state.memory = {.texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .spare_bytes = 0};
+    return run;
+}
+
+}  // namespace
+
+TEST_SUITE("report") {
+    TEST_CASE("report.json has what scripts look for") {
+        const auto json = nlohmann::json::parse(to_json(some_run()));
+        CHECK(json["gl_renderer"] == "a driver");
+        CHECK(json["context"] == "EGL surfaceless");
+        CHECK(json["triangles"] == 36);
+        CHECK(json["size"] == nlohmann::json::array({640, 480}));
+        CHECK(json["config"]["vpls"]["count"] == 256);
+        CHECK(json["frames"][0]["index"] == 3);
+        CHECK(json["frames"][0]["passes"][0]["name"] == "gbuffer");
+        CHECK(json["frames"][0]["passes"][0]["gpu_ms"] == 1.0);
+        CHECK(json["frames"][0]["passes"][1]["ran"] == false);
+        CHECK(json["vpls"]["alive"] == 251);
+        CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
+        CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
+        CHECK(json["lights"]["without_shadow"] == 1);
+        CHECK(json["memory"]["shared_by_aliasing_bytes"] == 9);
+    }
+
+    TEST_CASE("without indirect light there is no account of it") {
+        RunReport run = some_run();
+        run.state.vpls.reset();
+        CHECK(nlohmann::json::parse(to_json(run))["vpls"].is_null());
+        CHECK(to_table(run.frames[0], run.state).find("emitted") == std::string::npos);
+    }
+
+    TEST_CASE("the residual is what the worst channel lacks") {
+        CHECK(relative_residual(balanced()) < 1e-12);
+        EnergyAccount lossy = balanced();
+        lossy.absorbed.g -= 2.0;
+        CHECK(relative_residual(lossy) == doctest::Approx(0.1));
+        CHECK(relative_residual({}) == 0.0);
+    }
+
+    TEST_CASE("the table names every pass and tells which ones ran") {
+        const RunReport run = some_run();
+        const std::string table = to_table(run.frames[0], run.state);
+        for (const char* word : {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "36"})
+            CHECK_MESSAGE(table.find(word) != std::string::npos, word);
+    }
+}
+
+}  // namespace candela::sandbox

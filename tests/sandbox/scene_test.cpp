@@ -1,0 +1,102 @@
+#include "sandbox/scene.hpp"
+
+#include <memory>
+#include <string>
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include "engine/scene/components.hpp"
+#include "engine/scene/scene_error.hpp"
+#include "sandbox/viewport.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+Entity add_camera(World& world, const char* name) {
+    const Entity entity = world.create();
+    world.set(entity, Name{name});
+    world.set(entity, Camera{});
+    return entity;
+}
+
+/// A triangle with corners at the origin, (size, 0, 0) and (0, 2 size, 0), then scaled by 3 along x.
+void add_triangle(World& world, float size) {
+    const auto mesh = std::make_shared<Mesh>();
+    mesh->primitives.emplace_back();
+    for (const glm::vec3 corner : {glm::vec3(0.0F), glm::vec3(size, 0.0F, 0.0F), glm::vec3(0.0F, 2.0F * size, 0.0F)})
+        mesh->primitives[0].vertices.push_back({corner, {0.0F, 0.0F, 1.0F}, {}});
+    const Entity entity = world.create();
+    world.set(entity, Transform{.scale = {3.0F, 1.0F, 1.0F}});
+    world.set(entity, MeshInstance{mesh});
+}
+
+std::string fault_of(World world, const std::string& camera) {
+    try {
+        static_cast<void>(choose_camera(world, camera, 1.0F));
+    } catch (const SceneError& fault) {
+        return fault.what();
+    }
+    return "none";
+}
+
+}  // namespace
+
+TEST_SUITE("scene") {
+    TEST_CASE("the shipped scene is found, and has a camera and a light") {
+        const Scene scene = load_scene(shipped_scene());
+        CHECK(scene.warnings.empty());
+        CHECK(cameras(scene.world).size() == 1);
+        CHECK(scene.world.count<PointLight>() == 1);
+    }
+
+    TEST_CASE("cameras are chosen by name, else by index, else the first") {
+        World world;
+        const Entity first = add_camera(world, "front");
+        const Entity second = add_camera(world, "0");
+        CHECK(choose_camera(world, std::nullopt, 1.0F) == first);
+        CHECK(choose_camera(world, "front", 1.0F) == first);
+        CHECK(choose_camera(world, "1", 1.0F) == second);
+        CHECK(choose_camera(world, "0", 1.0F) == second);  // its name
+        CHECK(world.count<Camera>() == 2);
+    }
+
+    TEST_CASE("a camera that is not there is a fault that lists those that are") {
+        World world;
+        add_camera(world, "front");
+        for (const char* wanted : {"back", "1", "-1", "0x", ""}) {
+            const std::string fault = fault_of(world, wanted);
+            CHECK(fault.find(std::string("'") + wanted + "'") != std::string::npos);
+            CHECK(fault.find("'front'") != std::string::npos);
+        }
+        CHECK(fault_of(World(), "0").find("none") != std::string::npos);
+    }
+
+    TEST_CASE("bounds are those of the placed meshes") {
+        World world;
+        CHECK(bounds(world).radius == 0.0F);
+        add_triangle(world, 1.0F);
+        const Bounds scene = bounds(world);
+        CHECK(scene.centre == glm::vec3(1.5F, 1.0F, 0.0F));
+        CHECK(scene.radius == doctest::Approx(0.5 * std::sqrt(9.0 + 4.0)));
+    }
+
+    TEST_CASE("a scene without cameras is framed: its corners lie within the picture, near its edge") {
+        for (const float aspect : {0.4F, 1.0F, 2.5F}) {
+            World world;
+            add_triangle(world, 100.0F);
+            const Entity camera = choose_camera(world, std::nullopt, aspect);
+            const glm::vec2 size(1000.0F * aspect, 1000.0F);
+            const Viewport viewport = make_viewport(world, camera, size);
+            for (const glm::vec3 corner : {glm::vec3(0.0F), glm::vec3(300.0F, 0.0F, 0.0F), glm::vec3(0.0F, 200.0F, 0.0F)}) {
+                const auto seen_at = project(viewport, corner);
+                REQUIRE(seen_at);
+                CHECK(glm::all(glm::greaterThanEqual(*seen_at, glm::vec2(0.0F))));
+                CHECK(glm::all(glm::lessThanEqual(*seen_at, size)));
+            }
+        }
+    }
+}
+
+}  // namespace candela::sandbox

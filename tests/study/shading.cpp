@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+#include "engine/scene/gltf.hpp"
+#include "renderer/context/headless.hpp"
+#include "tests/study/study.hpp"
+
+namespace candela::study {
+namespace {
+
+constexpr glm::uvec2 size(640, 480);
+constexpr int rounds = 15;
+
+struct Candidate {
+    ShadingPath path;
+    Bench bench;
+    std::vector<double> full;   // ms, all that depends on the view
+    std::vector<double> still;  // ms, nothing changed
+};
+
+/// Pixels at which there is something to shade.
+std::size_t covered(const std::vector<float>& pixels) {
+    std::size_t count = 0;
+    for (std::size_t i = 3; i < pixels.size(); i += 4) {
+        count += pixels[i] > 0.0F ? 1 : 0;
+    }
+    return count;
+}
+
+void print_passes(std::string_view title, const Renderer& renderer) {
+    fmt::print("{}:", title);
+    for (const PassRecord& pass : renderer.last_passes()) {
+        if (pass.ran) {
+            fmt::print(" {}", pass.name);
+        }
+    }
+    fmt::print("\n");
+}
+
+}  // namespace
+
+int shading(const std::filesystem::path& scene) {
+    const auto context = HeadlessContext::create(ContextKind::egl);
+    context->make_current();
+    World world;
+    import_gltf(scene, world);
+    std::array<Candidate, 2> candidates{
+        Candidate{ShadingPath::forward, Bench(context->get_proc(), world, size), {}, {}},
+        Candidate{ShadingPath::deferred, Bench(context->get_proc(), world, size), {}, {}}};
+    for (Candidate& candidate : candidates) {
+        Configuration configuration;
+        configuration.path = candidate.path;
+        candidate.bench.configure(configuration);
+        candidate.bench.frame({});
+    }
+    fmt::print("{}, {}\n", scene.filename().string(), candidates[0].bench.renderer().device().renderer());
+    print_passes("first frame", candidates[1].bench.renderer());
+
+    std::vector<double> ratios;
+    for (int round = 0; round < rounds; ++round) {
+        const glm::vec2 jitter(static_cast<float>(round + 1) / static_cast<float>(2 * rounds), 0.0F);
+        for (Candidate& candidate : candidates) {
+            candidate.full.push_back(candidate.bench.frame(jitter));
+            candidate.still.push_back(candidate.bench.frame(jitter));
+        }
+        ratios.push_back(candidates[1].full.back() / candidates[0].full.back());
+    }
+    print_passes("still frame", candidates[1].bench.renderer());
+
+    const std::size_t pixels = covered(candidates[0].bench.pixels());
+    const VplReport vpls = candidates[0].bench.renderer().report().vpls.value();
+    const double evaluations = static_cast<double>(pixels) * vpls.alive;
+    fmt::print("{} x {}, {} of {} VPLs alive, {} pixels covered, medians of {} interleaved rounds\n", size.x,
+               size.y, vpls.alive, vpls.requested, pixels, rounds);
+    fmt::print("{:<10} {:>12} {:>18} {:>16}\n", "path", "frame ms", "ns / VPL·pixel", "still / frame");
+    for (const Candidate& candidate : candidates) {
+        const double full = median(candidate.full);
+        fmt::print("{:<10} {:>12.2f} {:>17.3f} {:>16.4f}\n", to_string(candidate.path), full,
+                   full * 1e6 / evaluations, median(candidate.still) / full);
+    }
+    fmt::print("deferred / forward: {:.3f}\n", median(ratios));
+    return 0;
+}
+
+}  // namespace candela::study
