@@ -52,7 +52,9 @@ FrameReport sum_up(const std::vector<FrameReport>& frames) {
 
 /// Between the GL's order of rows and that of files.
 void flip_rows(std::vector<glm::vec3>& pixels, glm::uvec2 size) {
-    const auto row = [&](std::uint32_t y) { return pixels.begin() + static_cast<std::ptrdiff_t>(y) * size.x; };
+    const auto row = [&](std::uint32_t y) {
+        return pixels.begin() + static_cast<std::ptrdiff_t>(y) * size.x;
+    };
     for (std::uint32_t y = 0; y < size.y / 2; ++y) std::swap_ranges(row(y), row(y + 1), row(size.y - 1 - y));
 }
 
@@ -81,7 +83,8 @@ Capture::Capture(Renderer& renderer, glm::ivec2 size)
 void Capture::add_frame(const World& world, Entity camera, glm::vec2 jitter, std::vector<glm::vec3>& sum) {
     renderer_->render(world, camera, {linear_.framebuffer.name(), size_}, jitter);
     const std::vector<float> rgba = linear_.colour.read_floats();
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += glm::vec3(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += glm::vec3(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
 }
 
 Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report) {

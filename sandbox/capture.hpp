@@ -9,8 +9,8 @@
 
 namespace candela::sandbox {
 
-/// Sample i of the pixel, in pixels from its centre, within [-0.5, 0.5): the sequence R2 of Roberts, "The Unreasonable
-/// Effectiveness of Quasirandom Sequences" (2018). Sample 0 is the centre.
+/// Sample i of the pixel, in pixels from its centre, within [-0.5, 0.5): the sequence R2 of Roberts, "The
+/// Unreasonable Effectiveness of Quasirandom Sequences" (2018). Sample 0 is the centre.
 [[nodiscard]] glm::vec2 pixel_jitter(int sample);
 
 /// What one picture took: the sums over its samples, and the state after them.
@@ -22,8 +22,8 @@ struct CaptureReport {
 /// Renders pictures that go to files, into a framebuffer of its own.
 class Capture {
  public:
-    /// Refers to the renderer, whose configuration it leaves as it is. Throws gl::GlError if the driver does not
-    /// allow the size (pixels).
+    /// Refers to the renderer, whose configuration it leaves as it is. Throws gl::GlError if the driver does
+    /// not allow the size (pixels).
     Capture(Renderer& renderer, glm::ivec2 size);
 
     /// The mean of so many frames, jittered within the pixel (a box filter), in linear radiance.
@@ -32,8 +32,8 @@ class Capture {
     /// The picture through the renderer's tone map: sRGB-encoded, three bytes a pixel, row 0 at the top.
     [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);
 
-    /// Writes what the file's extension says: .png tone-mapped, .exr and .pfm linear. Throws std::runtime_error that
-    /// names the file and the fault.
+    /// Writes what the file's extension says: .png tone-mapped, .exr and .pfm linear. Throws
+    /// std::runtime_error that names the file and the fault.
     void write(const std::filesystem::path& path, const Picture& picture);
 
  private:

@@ -5,8 +5,8 @@
 
 namespace candela::sandbox {
 
-/// The defaults, overridden by the configuration file, overridden by flags. Throws std::runtime_error whose one line
-/// names the file and all faults.
+/// The defaults, overridden by the configuration file, overridden by flags. Throws std::runtime_error whose
+/// one line names the file and all faults.
 [[nodiscard]] Configuration choose_configuration(const Options& options);
 
 /// The named configurations, a line each, for --list-configs.

@@ -64,10 +64,13 @@ bool Gui::wants(InputEvent::Kind kind) const {
     const ImGuiIO& io = ImGui::GetIO();
     switch (kind) {
         case InputEvent::Kind::press:
-        case InputEvent::Kind::scroll: return io.WantCaptureMouse;
-        case InputEvent::Kind::key: return io.WantCaptureKeyboard;
+        case InputEvent::Kind::scroll:
+            return io.WantCaptureMouse;
+        case InputEvent::Kind::key:
+            return io.WantCaptureKeyboard;
         case InputEvent::Kind::move:
-        case InputEvent::Kind::release: break;
+        case InputEvent::Kind::release:
+            break;
     }
     return false;
 }

@@ -22,6 +22,7 @@ class Gui {
 };
 
 /// Draws a ring and a name where each light is seen, behind the panels.
-void draw_markers(const std::vector<LightMarker>& markers, const Viewport& viewport, std::optional<Entity> selected);
+void draw_markers(const std::vector<LightMarker>& markers, const Viewport& viewport,
+                  std::optional<Entity> selected);
 
 }  // namespace candela::sandbox

@@ -11,12 +11,13 @@
 
 namespace candela::sandbox {
 
-/// Where the headless picture goes: what --out says; else "candela.png" in the working directory, unless a report or
-/// a graph is all that is asked for.
+/// Where the headless picture goes: what --out says; else "candela.png" in the working directory, unless a
+/// report or a graph is all that is asked for.
 [[nodiscard]] std::optional<std::filesystem::path> picture_path(const Options& options);
 
-/// Renders the frames, writes what the options ask for and prints a table of the last frame. `context` is current.
-/// Throws std::runtime_error for outputs that cannot be written, and gl::GlError for impossible sizes.
+/// Renders the frames, writes what the options ask for and prints a table of the last frame. `context` is
+/// current. Throws std::runtime_error for outputs that cannot be written, and gl::GlError for impossible
+/// sizes.
 void run_headless(const HeadlessContext& context, const Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size);
 

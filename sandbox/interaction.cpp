@@ -23,13 +23,20 @@ constexpr float zoom_per_notch = 0.9F;
 /// Directions of the picture by key: +x right, +y up, +z towards the viewer.
 glm::vec3 direction_of(int key) {
     switch (key) {
-        case GLFW_KEY_LEFT: return {-1.0F, 0.0F, 0.0F};
-        case GLFW_KEY_RIGHT: return {1.0F, 0.0F, 0.0F};
-        case GLFW_KEY_DOWN: return {0.0F, -1.0F, 0.0F};
-        case GLFW_KEY_UP: return {0.0F, 1.0F, 0.0F};
-        case GLFW_KEY_PAGE_UP: return {0.0F, 0.0F, -1.0F};
-        case GLFW_KEY_PAGE_DOWN: return {0.0F, 0.0F, 1.0F};
-        default: return glm::vec3(0.0F);
+        case GLFW_KEY_LEFT:
+            return {-1.0F, 0.0F, 0.0F};
+        case GLFW_KEY_RIGHT:
+            return {1.0F, 0.0F, 0.0F};
+        case GLFW_KEY_DOWN:
+            return {0.0F, -1.0F, 0.0F};
+        case GLFW_KEY_UP:
+            return {0.0F, 1.0F, 0.0F};
+        case GLFW_KEY_PAGE_UP:
+            return {0.0F, 0.0F, -1.0F};
+        case GLFW_KEY_PAGE_DOWN:
+            return {0.0F, 0.0F, 1.0F};
+        default:
+            return glm::vec3(0.0F);
     }
 }
 
@@ -60,11 +67,21 @@ void Interaction::place_viewer() {
 void Interaction::handle(const InputEvent& event, glm::vec2 size) {
     const Viewport viewport = make_viewport(*world_, viewer_, size);
     switch (event.kind) {
-        case InputEvent::Kind::press: press(event, viewport); break;
-        case InputEvent::Kind::release: action_ = std::monostate(); break;
-        case InputEvent::Kind::move: move(event.position, viewport); break;
-        case InputEvent::Kind::scroll: scroll(event.scrolled); break;
-        case InputEvent::Kind::key: press_key(event.code, viewport); break;
+        case InputEvent::Kind::press:
+            press(event, viewport);
+            break;
+        case InputEvent::Kind::release:
+            action_ = std::monostate();
+            break;
+        case InputEvent::Kind::move:
+            move(event.position, viewport);
+            break;
+        case InputEvent::Kind::scroll:
+            scroll(event.scrolled);
+            break;
+        case InputEvent::Kind::key:
+            press_key(event.code, viewport);
+            break;
     }
 }
 

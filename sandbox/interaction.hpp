@@ -10,8 +10,8 @@
 
 namespace candela::sandbox {
 
-/// Turns input into changes of the world: a camera of the viewer's own that orbits, pans and zooms, and lights that
-/// are picked, dragged and nudged.
+/// Turns input into changes of the world: a camera of the viewer's own that orbits, pans and zooms, and
+/// lights that are picked, dragged and nudged.
 class Interaction {
  public:
     /// Adds the viewer's camera to the world, which is referred to, and looks from `camera`.

@@ -35,8 +35,8 @@ std::vector<LightMarker> light_markers(const World& world) {
     return markers;
 }
 
-std::optional<Entity> pick(const std::vector<LightMarker>& markers, const Viewport& viewport, glm::vec2 position,
-                           float radius) {
+std::optional<Entity> pick(const std::vector<LightMarker>& markers, const Viewport& viewport,
+                           glm::vec2 position, float radius) {
     std::optional<Entity> nearest;
     for (const LightMarker& marker : markers) {
         const std::optional<glm::vec2> seen_at = project(viewport, marker.position);
@@ -64,7 +64,8 @@ LightDrag::LightDrag(const World& world, const Viewport& viewport, Entity light,
 
 void LightDrag::drag(World& world, const Viewport& viewport, glm::vec2 pointer) const {
     const Ray ray = ray_through(viewport, pointer + offset_);
-    if (const auto point = intersect_plane(ray, grabbed_at_, viewport.forward)) move_to(world, light_, *point);
+    if (const auto point = intersect_plane(ray, grabbed_at_, viewport.forward))
+        move_to(world, light_, *point);
 }
 
 void nudge(World& world, Entity light, const Viewport& viewport, const glm::vec3& metres) {
@@ -72,7 +73,8 @@ void nudge(World& world, Entity light, const Viewport& viewport, const glm::vec3
     const glm::vec3 aside = ray_through(viewport, middle + glm::vec2(1.0F, 0.0F)).origin;
     const glm::vec3 x = glm::normalize(aside - ray_through(viewport, middle).origin);
     const glm::vec3 y = glm::cross(x, viewport.forward);
-    move_to(world, light, position_of(world, light) + metres.x * x + metres.y * y - metres.z * viewport.forward);
+    move_to(world, light,
+            position_of(world, light) + metres.x * x + metres.y * y - metres.z * viewport.forward);
 }
 
 }  // namespace candela::sandbox

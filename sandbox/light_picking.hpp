@@ -13,23 +13,24 @@ namespace candela::sandbox {
 struct LightMarker {
     Entity entity;
     std::string name;
-    glm::vec3 colour{1.0F};   ///< linear
+    glm::vec3 colour{1.0F};    ///< linear
     glm::vec3 position{0.0F};  ///< world space, metres
 };
 
-/// Every light that sits somewhere: point and spot lights, in the order of their creation. Directional lights have no
-/// place.
+/// Every light that sits somewhere: point and spot lights, in the order of their creation. Directional lights
+/// have no place.
 [[nodiscard]] std::vector<LightMarker> light_markers(const World& world);
 
 /// The marker nearest to a position of the window, if it is within `radius` (window coordinates).
 [[nodiscard]] std::optional<Entity> pick(const std::vector<LightMarker>& markers, const Viewport& viewport,
                                          glm::vec2 position, float radius);
 
-/// Puts the entity's origin at a place in world space, whatever its parents are. Nothing happens below a parent that
-/// is flat, where most places cannot be reached.
+/// Puts the entity's origin at a place in world space, whatever its parents are. Nothing happens below a
+/// parent that is flat, where most places cannot be reached.
 void move_to(World& world, Entity entity, const glm::vec3& position);
 
-/// A light being dragged in the plane through it that faces the camera. What was grabbed stays under the pointer.
+/// A light being dragged in the plane through it that faces the camera. What was grabbed stays under the
+/// pointer.
 class LightDrag {
  public:
     LightDrag(const World& world, const Viewport& viewport, Entity light, glm::vec2 pointer);

@@ -120,7 +120,8 @@ void declare(CLI::App& app, Options& options) {
     add_number(app, "--frames", options.frames, 1, "default: 1 headless, no end in a window");
     add_number(app, "--samples", options.samples, 1,
                "average N frames jittered within the pixel; default: 1");
-    app.add_option("--camera", options.camera, "default: the scene's first, else one that sees all of it")->type_name("NAME|INDEX");
+    app.add_option("--camera", options.camera, "default: the scene's first, else one that sees all of it")
+        ->type_name("NAME|INDEX");
     add_choice<std::optional<Show>, Show>(
         app, "--show", options.show,
         {{"total", Show::total}, {"direct", Show::direct}, {"indirect", Show::indirect}},

@@ -26,7 +26,8 @@ float limited_turn(float elevation, float turn) {
 OrbitCamera look_from(const glm::mat4& world_from_camera, const glm::vec3& target, float least_distance) {
     const glm::vec3 z = glm::normalize(glm::vec3(world_from_camera[2]));
     const glm::vec3 x = glm::normalize(glm::cross(glm::vec3(world_from_camera[1]), z));
-    OrbitCamera camera{glm::vec3(world_from_camera[3]), glm::quat_cast(glm::mat3(x, glm::cross(z, x), z)), 1.0F};
+    OrbitCamera camera{glm::vec3(world_from_camera[3]), glm::quat_cast(glm::mat3(x, glm::cross(z, x), z)),
+                       1.0F};
     camera.distance = std::max(glm::dot(target - camera.eye, camera.forward()), least_distance);
     return camera;
 }

@@ -17,13 +17,13 @@ struct OrbitCamera {
     [[nodiscard]] glm::vec3 pivot() const { return eye + distance * forward(); }
 };
 
-/// The viewpoint of a camera's matrix, whose scale is left out, with its pivot at the depth of `target`, or at
-/// `least_distance` if the target is nearer or behind.
+/// The viewpoint of a camera's matrix, whose scale is left out, with its pivot at the depth of `target`, or
+/// at `least_distance` if the target is nearer or behind.
 [[nodiscard]] OrbitCamera look_from(const glm::mat4& world_from_camera, const glm::vec3& target,
                                     float least_distance);
 
-/// Turns around the pivot by angles in radians: `x` around the world's vertical, to the right, `y` up over it. It
-/// stops short of the poles.
+/// Turns around the pivot by angles in radians: `x` around the world's vertical, to the right, `y` up over
+/// it. It stops short of the poles.
 [[nodiscard]] OrbitCamera orbited(const OrbitCamera& camera, glm::vec2 angles);
 
 /// Moves eye and pivot by metres along the picture, +x right, +y up.

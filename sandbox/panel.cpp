@@ -3,7 +3,7 @@
 #include <imgui.h>
 
 #include <array>
-#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -105,7 +105,8 @@ void draw_passes(const FrameReport& frame) {
 void draw_vpls(const VplReport& vpls) {
     text(fmt::format("{} of {} VPLs on {} paths", vpls.alive, vpls.requested, vpls.paths));
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
-        text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g, line.value.b));
+        text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g,
+                         line.value.b));
     }
     text(fmt::format("unaccounted for: {:.1e}", relative_residual(vpls.flux)));
 }
@@ -116,8 +117,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, con
     if (!visible) return;
     const float scale = ImGui::GetIO().FontGlobalScale;
     ImGui::SetNextWindowPos({8.0F, 8.0F}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({300.0F * scale, 0.0F}, ImGuiCond_FirstUseEver);
-    const bool open = ImGui::Begin("Candela (F1)", &visible);
+    const bool open = ImGui::Begin("Candela (F1)", &visible, ImGuiWindowFlags_AlwaysAutoResize);
     if (open) {
         ImGui::PushItemWidth(150.0F * scale);
         draw_configuration(renderer);
@@ -149,7 +149,8 @@ void Panel::draw_configuration(Renderer& renderer) {
     ImGui::PopStyleColor();
 }
 
-/// Reading it back waits for the GPU, so that it is done a few times a second, and only while it is looked at.
+/// Reading it back waits for the GPU, so that it is done a few times a second, and only while it is looked
+/// at.
 void Panel::draw_account(Renderer& renderer) {
     constexpr double refresh = 0.25;  // seconds
     if (!report_ || ImGui::GetTime() - report_time_ > refresh) {
@@ -157,7 +158,8 @@ void Panel::draw_account(Renderer& renderer) {
         report_time_ = ImGui::GetTime();
     }
     text(fmt::format("{} triangles, {} lights", report_->triangles, report_->lights.count));
-    text(fmt::format("shadow maps: {}, no room for {}", report_->lights.with_shadow, report_->lights.without_shadow));
+    text(fmt::format("shadow maps: {}, no room for {}", report_->lights.with_shadow,
+                     report_->lights.without_shadow));
     if (report_->vpls) draw_vpls(*report_->vpls);
 }
 

@@ -47,20 +47,21 @@ Json to_json(const MemoryUse& memory) {
 std::string pass_table(const FrameReport& frame) {
     std::string table = fmt::format("{:<16} {:>4} {:>10} {:>10}\n", "pass", "ran", "CPU ms", "GPU ms");
     for (const PassReport& pass : frame.passes) {
-        table += fmt::format("{:<16} {:>4} {:>10.3f} {:>10.3f}\n", pass.name, pass.ran ? "yes" : "-", pass.cpu_ms,
-                             pass.gpu_ms);
+        table += fmt::format("{:<16} {:>4} {:>10.3f} {:>10.3f}\n", pass.name, pass.ran ? "yes" : "-",
+                             pass.cpu_ms, pass.gpu_ms);
     }
     return table + fmt::format("{:<21} {:>10.3f} {:>10.3f}\n", "frame", frame.cpu_ms, frame.gpu_ms);
 }
 
 std::string vpl_table(const VplReport& vpls) {
-    std::string table =
-        fmt::format("VPLs             {} alive of {} requested, on {} paths\n", vpls.alive, vpls.requested, vpls.paths);
+    std::string table = fmt::format("VPLs             {} alive of {} requested, on {} paths\n", vpls.alive,
+                                    vpls.requested, vpls.paths);
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
-        table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r, line.value.g,
-                             line.value.b);
+        table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r,
+                             line.value.g, line.value.b);
     }
-    return table + fmt::format("  unaccounted for {:.2e} of the emitted flux\n", relative_residual(vpls.flux));
+    return table +
+           fmt::format("  unaccounted for {:.2e} of the emitted flux\n", relative_residual(vpls.flux));
 }
 
 }  // namespace
@@ -86,8 +87,8 @@ std::string to_json(const RunReport& report) {
 std::string to_table(const FrameReport& frame, const Report& state) {
     std::string table = pass_table(frame);
     table += fmt::format("triangles        {}\n", state.triangles);
-    table += fmt::format("lights           {}, {} with a shadow map, {} that found no room for one\n", state.lights.count,
-                         state.lights.with_shadow, state.lights.without_shadow);
+    table += fmt::format("lights           {}, {} with a shadow map, {} that found no room for one\n",
+                         state.lights.count, state.lights.with_shadow, state.lights.without_shadow);
     return state.vpls ? table + vpl_table(*state.vpls) : table;
 }
 

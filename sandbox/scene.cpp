@@ -31,7 +31,8 @@ std::optional<std::size_t> parse_index(const std::string& text) {
 std::string list_cameras(const World& world, const std::vector<Entity>& all) {
     std::vector<std::string> names;
     names.reserve(all.size());
-    for (const Entity camera : all) names.push_back(fmt::format("{} '{}'", names.size(), name_of(world, camera)));
+    for (const Entity camera : all)
+        names.push_back(fmt::format("{} '{}'", names.size(), name_of(world, camera)));
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 

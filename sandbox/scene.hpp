@@ -34,9 +34,9 @@ struct Bounds {
 /// The entities with a Camera, in the order of their creation.
 [[nodiscard]] std::vector<Entity> cameras(const World& world);
 
-/// The camera called `wanted`, or, where none has this name, the one of this number from 0 on; without a wish the
-/// first. A world without cameras gets one that sees everything at this aspect (width / height). Throws SceneError
-/// that lists the cameras if there is no such.
+/// The camera called `wanted`, or, where none has this name, the one of this number from 0 on; without a wish
+/// the first. A world without cameras gets one that sees everything at this aspect (width / height). Throws
+/// SceneError that lists the cameras if there is no such.
 [[nodiscard]] Entity choose_camera(World& world, const std::optional<std::string>& wanted, float aspect);
 
 /// The entity's name, or "entity 3" where it has none.

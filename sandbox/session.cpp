@@ -45,16 +45,20 @@ bool has_display() {
 
 std::vector<ContextKind> headless_kinds(ContextChoice choice) {
     switch (choice) {
-        case ContextChoice::egl: return {ContextKind::egl};
-        case ContextChoice::osmesa: return {ContextKind::osmesa};
+        case ContextChoice::egl:
+            return {ContextKind::egl};
+        case ContextChoice::osmesa:
+            return {ContextKind::osmesa};
         case ContextChoice::automatic:
-        case ContextChoice::window: break;
+        case ContextChoice::window:
+            break;
     }
     return {ContextKind::egl, ContextKind::osmesa};
 }
 
 /// A window, or null where the headless contexts are next. What failed goes into `tried`.
-std::unique_ptr<Window> open_window(const Options& options, glm::ivec2 size, std::vector<std::string>& tried) {
+std::unique_ptr<Window> open_window(const Options& options, glm::ivec2 size,
+                                    std::vector<std::string>& tried) {
     const bool wanted = options.context == ContextChoice::window;
     if (options.headless || (!wanted && !has_display())) return nullptr;
     try {
@@ -86,7 +90,8 @@ float aspect(glm::ivec2 size) {
 void run_session(const Options& options) {
     const Configuration configuration = choose_configuration(options);
     if (options.list_configs || options.print_config) {
-        fmt::print("{}", options.list_configs ? list_configurations() : write_configuration(configuration) + "\n");
+        fmt::print("{}",
+                   options.list_configs ? list_configurations() : write_configuration(configuration) + "\n");
         return;
     }
     Scene scene = load_scene(options.scene.value_or(shipped_scene()));

@@ -57,10 +57,7 @@ Window& Window::of(GLFWwindow* handle) {
 }
 
 void Window::record(InputEvent event) {
-    double x = 0.0;
-    double y = 0.0;
-    glfwGetCursorPos(handle_, &x, &y);
-    event.position = glm::vec2(x, y);
+    event.position = pointer_;
     events_.push_back(event);
 }
 
@@ -73,19 +70,19 @@ void Window::listen() {
                            .modifiers = modifiers});
     });
     glfwSetCursorPosCallback(handle_, [](GLFWwindow* handle, double x, double y) {
-        of(handle).events_.push_back({.kind = Kind::move, .position = glm::vec2(x, y)});
+        of(handle).pointer_ = glm::vec2(x, y);
+        of(handle).record({.kind = Kind::move});
     });
     glfwSetScrollCallback(handle_, [](GLFWwindow* handle, double /*x*/, double y) {
         of(handle).record({.kind = Kind::scroll, .scrolled = static_cast<float>(y)});
     });
     glfwSetKeyCallback(handle_, [](GLFWwindow* handle, int key, int /*scancode*/, int action, int modifiers) {
-        if (action != GLFW_RELEASE) of(handle).record({.kind = Kind::key, .code = key, .modifiers = modifiers});
+        if (action != GLFW_RELEASE)
+            of(handle).record({.kind = Kind::key, .code = key, .modifiers = modifiers});
     });
 }
 
-gl::GetProc Window::get_proc() {
-    return [](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); };
-}
+gl::GetProc Window::get_proc() { return glfwGetProcAddress; }
 
 glm::ivec2 Window::size() const {
     glm::ivec2 size(0);

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <memory>
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,21 +12,22 @@ struct GLFWwindow;
 
 namespace candela::sandbox {
 
-/// What people did, in their order, so that a slow frame loses nothing of it. Positions are in window coordinates:
-/// from the upper left corner, in the units of the desktop, of which a pixel may be a fraction.
+/// What people did, in their order, so that a slow frame loses nothing of it. Positions are in window
+/// coordinates: from the upper left corner, in the units of the desktop, of which a pixel may be a fraction.
 struct InputEvent {
     enum class Kind : std::uint8_t { press, release, move, scroll, key };
     Kind kind = Kind::move;
-    int code = 0;               ///< GLFW_MOUSE_BUTTON_... or GLFW_KEY_...
-    int modifiers = 0;          ///< GLFW_MOD_...
-    glm::vec2 position{0.0F};   ///< of the pointer
-    float scrolled = 0.0F;      ///< notches; positive away from the user
+    int code = 0;              ///< GLFW_MOUSE_BUTTON_... or GLFW_KEY_...
+    int modifiers = 0;         ///< GLFW_MOD_...
+    glm::vec2 position{0.0F};  ///< of the pointer
+    float scrolled = 0.0F;     ///< notches; positive away from the user
 };
 
 /// A window with a current OpenGL 4.5 core context.
 class Window {
  public:
-    /// `size` in window coordinates. Throws ContextError with what GLFW says if there is no display or no driver.
+    /// `size` in window coordinates. Throws ContextError with what GLFW says if there is no display or no
+    /// driver.
     Window(glm::ivec2 size, const std::string& title);
     ~Window();
     Window(const Window&) = delete;
@@ -61,6 +61,8 @@ class Window {
 
     Library library_;
     GLFWwindow* handle_ = nullptr;
+    glm::vec2 pointer_{
+        0.0F};  ///< at the last event: where it is by now does not tell where a button went down
     std::vector<InputEvent> events_;
 };
 

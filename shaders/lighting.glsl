@@ -16,7 +16,7 @@ layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[
 
 uniform uint light_count;
 uniform uint vpl_count;
-uniform float geometry_bound;  // of a VPL's geometry term, 1/m²
+uniform float vpl_radius2;  // of the disc that a VPL stands for, m²
 
 vec3 irradiance_from_light(Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
@@ -26,14 +26,16 @@ vec3 irradiance_from_light(Light light, Surface surface) {
     return incident.irradiance * (cos_surface * visibility);
 }
 
-// Geometry term cos θ cos θ' / r² between the surface and a VPL, bounded: Keller, "Instant Radiosity" (1997), with
-// the singularity at r = 0 cut off. Multiplied by flux/π it is the irradiance.
+// Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997), kept from growing
+// without bound at r = 0: the VPL stands for a disc, whose form factor on its axis is R² / (R² + r²) and not R² / r²
+// (Howell et al., "Thermal Radiation Heat Transfer", configuration factor of a disc). It is never above 1 / R².
+// Multiplied by flux/π it is the irradiance.
 float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float distance2 = max(dot(to_vpl, to_vpl), 1e-12);
     float cos_surface = max(dot(surface.normal, to_vpl), 0.0);
     float cos_vpl = max(-dot(vpl.normal, to_vpl), 0.0);
-    return min(cos_surface * cos_vpl / (distance2 * distance2), geometry_bound);
+    return cos_surface * cos_vpl / (distance2 * (distance2 + vpl_radius2));
 }
 
 // Share of the VPL's light that reaches the surface. VPLs shine through walls as yet.

@@ -8,8 +8,11 @@ uniform bool curve;       // off: radiance goes out as it is, linear, alpha tell
 
 layout(location = 0) out vec4 colour;
 
-// Narkowicz, "ACES Filmic Tone Mapping Curve" (2015).
-vec3 filmic(vec3 x) { return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
+// Narkowicz, "ACES Filmic Tone Mapping Curve" (2015). White long before the bound, which keeps the squares finite.
+vec3 filmic(vec3 light) {
+    vec3 x = min(light, 1e4);
+    return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+}
 
 void main() {
     vec4 linear = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0);

@@ -143,7 +143,8 @@ class GraphRuntime {
     void set(ValueHandle<T> imported, std::type_identity_t<T> value);
 
     /// Gives an imported texture or buffer its object, which the host keeps. Stays until bound again; each
-    /// call counts as new content.
+    /// call counts as new content. Bind before each run what the host fills, passes read and later passes
+    /// write.
     void bind(TextureHandle imported, ObjectId object, const TextureDesc& desc) {
         bind(imported, object, desc, {});
     }

@@ -16,9 +16,9 @@
 
 namespace candela {
 
-// The components of a scene. All are plain values that compare by value; what is heavy (meshes, images) is shared
-// and immutable, so that "did it change?" is a comparison of pointers. Conventions are glTF's: right-handed,
-// +Y up, a camera and a light look along their local -Z, lengths in metres, linear RGB.
+// The components of a scene. All are plain values that compare by value; what is heavy (meshes, images) is
+// shared and immutable, so that "did it change?" is a comparison of pointers. Conventions are glTF's:
+// right-handed, +Y up, a camera and a light look along their local -Z, lengths in metres, linear RGB.
 
 /// What people call the entity; not unique.
 struct Name {
@@ -51,7 +51,7 @@ struct Image {
 /// The back of a single-sided surface is not drawn and reflects nothing, yet it still stops light.
 struct Material {
     std::string name;
-    glm::vec4 base_colour{1.0F};                      ///< linear
+    glm::vec4 base_colour{1.0F};                       ///< linear
     std::shared_ptr<const Image> base_colour_texture;  ///< null: none
     glm::vec3 emissive{0.0F};                          ///< linear; kept for later, not yet emitted
     bool double_sided = false;
@@ -65,8 +65,8 @@ struct Vertex {
     bool operator==(const Vertex&) const = default;
 };
 
-/// Indexed triangles of one material, counter-clockwise from the front. `indices.size()` is a multiple of 3 and
-/// every index is below `vertices.size()`.
+/// Indexed triangles of one material, counter-clockwise from the front. `indices.size()` is a multiple of 3
+/// and every index is below `vertices.size()`.
 struct Primitive {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
@@ -87,17 +87,18 @@ struct MeshInstance {
 
 /// Isotropic point light at the entity's origin. Its intensity does not scale with the transform.
 struct PointLight {
-    glm::vec3 colour{1.0F};   ///< linear, multiplies `intensity`
-    float intensity = 1.0F;   ///< candela
-    float range = std::numeric_limits<float>::infinity();  ///< metres; reaches zero there (KHR_lights_punctual)
+    glm::vec3 colour{1.0F};  ///< linear, multiplies `intensity`
+    float intensity = 1.0F;  ///< candela
+    float range =
+        std::numeric_limits<float>::infinity();  ///< metres; reaches zero there (KHR_lights_punctual)
     bool casts_shadow = true;
     bool operator==(const PointLight&) const = default;
 };
 
 /// Cone of light along the entity's -Z.
 struct SpotLight {
-    glm::vec3 colour{1.0F};   ///< linear, multiplies `intensity`
-    float intensity = 1.0F;   ///< candela, inside the inner cone
+    glm::vec3 colour{1.0F};                                ///< linear, multiplies `intensity`
+    float intensity = 1.0F;                                ///< candela, inside the inner cone
     float range = std::numeric_limits<float>::infinity();  ///< metres
     float inner_cone = 0.0F;                               ///< radians from the axis, < outer_cone
     float outer_cone = 0.785398163F;                       ///< radians from the axis, <= pi/2

@@ -39,7 +39,7 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("count", c.vpls.count, {0, 1 << 20});
         visitor.member("bounces", c.vpls.bounces, {0, 64});
         visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
-        visitor.member("geometry_bound", c.geometry_bound, {0, infinity});
+        visitor.member("geometry_bound", c.geometry_bound, {1e-6, infinity});
     });
     visitor.group("shadows", [&] {
         visitor.member("enabled", c.shadows.enabled);

@@ -24,7 +24,7 @@ struct Configuration {
     Show show = Show::total;
     bool indirect = true;
     VplSettings vpls;
-    float geometry_bound = 0.1F;  ///< factor on the bound of a VPL's geometry term: see bound_geometry_term
+    float geometry_bound = 1.0F;  ///< factor on the bound of a VPL's geometry term: see vpl_radius2
     ShadowSettings shadows;
     ToneMapSettings tone_map;
     bool operator==(const Configuration&) const = default;

@@ -131,7 +131,7 @@ class EglContext final : public HeadlessContext {
             fail("the context cannot be made current");
     }
     [[nodiscard]] gl::GetProc get_proc() const override {
-        return [get = egl_.get_proc](const char* name) { return reinterpret_cast<void*>(get(name)); };
+        return egl_.get_proc;
     }
     [[nodiscard]] std::string description() const override { return "EGL " + name_; }
 

@@ -59,7 +59,7 @@ class OsMesaContext final : public HeadlessContext {
         }
     }
     [[nodiscard]] gl::GetProc get_proc() const override {
-        return [get = api_.get_proc](const char* name) { return reinterpret_cast<void*>(get(name)); };
+        return api_.get_proc;
     }
     [[nodiscard]] std::string description() const override { return "OSMesa"; }
 

@@ -238,8 +238,8 @@
 namespace candela::gl {
 
 /// How a host looks up a GL function ("glDrawArrays"); null if there is none. Called with the context
-/// current.
-using GetProc = std::function<void*(const char* name)>;
+/// current. glfwGetProcAddress, eglGetProcAddress and OSMesaGetProcAddress are of this form.
+using GetProc = std::function<void (*(const char* name))()>;
 
 /// Entry points of one context. `functions.DrawArrays(...)` is glDrawArrays.
 struct Functions {

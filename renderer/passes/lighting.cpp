@@ -1,6 +1,5 @@
 #include "renderer/passes/lighting.hpp"
 
-#include <limits>
 #include <numbers>
 
 #include "engine/graph/execute.hpp"
@@ -33,12 +32,8 @@ LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<Lig
     });
 }
 
-float bound_geometry_term(float factor, std::uint32_t vpl_count, float area) {
-    if (area <= 0.0F) {
-        return std::numeric_limits<float>::max();
-    }
-    const float bound = factor * std::numbers::pi_v<float> * static_cast<float>(vpl_count) / area;
-    return std::min(bound, std::numeric_limits<float>::max());
+float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
+    return area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
 }
 
 void read_lighting(Pass& pass, const Lighting& lighting) {
@@ -73,8 +68,7 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
         return;
     }
     gpu.bind_storage(BINDING_VPLS, run.object(lighting.vpls->vpls));
-    program.set("geometry_bound",
-                bound_geometry_term(lighting.geometry_bound, vpls, run.value(lighting.metrics).area));
+    program.set("vpl_radius2", vpl_radius2(lighting.geometry_bound, vpls, run.value(lighting.metrics).area));
 }
 
 }  // namespace candela

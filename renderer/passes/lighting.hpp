@@ -32,14 +32,14 @@ struct Lighting {
     ShadowMaps shadows;
     std::optional<Vpls> vpls;  ///< none: no indirect light
     Show show = Show::total;
-    float geometry_bound = 0.1F;  ///< see `bound_geometry_term`
+    float geometry_bound = 1.0F;  ///< see `vpl_radius2`
 };
 
-/// Bound on a VPL's geometry term cos θ cos θ' / r², in 1/m². N VPLs stand for patches of A/N each, A being
-/// the area of the scene's surfaces. Seen from anywhere, such a patch has a form factor of at most 1, and a
-/// VPL stands for it with G/π · A/N; so G above π N / A is an artefact of the point. `factor` scales that
-/// bound: 1 is the bound itself, infinity none. It rises with N, and the energy that it costs vanishes.
-[[nodiscard]] float bound_geometry_term(float factor, std::uint32_t vpl_count, float area);
+/// Squared radius, in m², of the disc that a VPL stands for. N VPLs share the area A of the scene's surfaces, so each
+/// is a disc of A/N: R² = A / (π N), and its geometry term is at most 1/R², where a form factor of 1 would be. `bound`
+/// scales that bound: at infinity the VPL is a point. The radius shrinks as N grows, and the energy that it costs
+/// vanishes.
+[[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
 
 /// For a pass that shades: declares its reads, and binds them and sets its uniforms when it runs.
 void read_lighting(Pass& pass, const Lighting& lighting);

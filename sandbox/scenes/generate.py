@@ -154,8 +154,9 @@ def cornell():
     )
 
     # Far enough below the ceiling that its spot there is a glow rather than a glare, above the tall block by enough
-    # that its shadow reaches the walls. 8 cd at 1.6 m make pi lux on the floor, which then shows a radiance of 0.7.
-    light = scene.point_light("ceiling light", [1.0, 0.92, 0.8], 8.0)
+    # that its shadow reaches the walls. 4 cd at 1.6 m make pi / 2 lux on the floor, which then shows a radiance of 0.36:
+    # middle grey once the box's own light is added and the picture tone-mapped.
+    light = scene.point_light("ceiling light", [1.0, 0.92, 0.8], 4.0)
     scene.node("ceiling light", translation=[0.0, 1.6, 0.0], extensions=light)
     # The opening, 2.9 m away, fills a square picture but for a thin margin.
     scene.node("camera", camera=scene.camera("camera", 39.3, 0.01), translation=[0.0, 1.0, 3.9])

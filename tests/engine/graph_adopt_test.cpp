@@ -6,29 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/compile.hpp"
-#include "engine/graph/execute.hpp"
-#include "tests/engine/recording_backend.hpp"
+#include "tests/engine/graph_fixture.hpp"
 
 namespace {
 
 using namespace candela;
 
-const TextureDesc colour{{64, 32}, Format::rgba16f};
-
 struct Light {
     int power = 0;
 };
-
-std::string ran(const FrameRecord& record) {
-    std::string names;
-    for (const PassRecord& pass : record.passes) {
-        if (pass.ran) {
-            names += (names.empty() ? "" : " ") + std::string(pass.name);
-        }
-    }
-    return names;
-}
 
 /// A configuration of the graph below: a light's shadow map is drawn by way of a transient, and kept; the
 /// picture is shaded by one of two paths.
@@ -181,7 +167,7 @@ TEST_CASE_FIXTURE(Fixture, "graph adoption: what does not compile leaves the run
 TEST_CASE_FIXTURE(Fixture, "graph adoption: a back end that fails leaves the running graph as it is") {
     start();
     const std::size_t objects = backend.objects.size();
-    for (const std::size_t creations : {0, 1, 2}) {
+    for (std::size_t creations = 0; creations < 3; ++creations) {
         backend.creations_left = creations;
         Declared declared = declare({.map_size = 32, .deferred = true, .target_size = {128, 128}});
         CHECK_THROWS_WITH_AS(runtime.adopt(compile(std::move(declared.graph)).take()), "out of memory",

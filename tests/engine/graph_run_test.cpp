@@ -1,4 +1,4 @@
-// Which passes run, frame by frame, and what they may touch.
+// Which passes run, frame by frame.
 
 #include <doctest/doctest.h>
 
@@ -7,15 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/compile.hpp"
-#include "engine/graph/execute.hpp"
-#include "tests/engine/recording_backend.hpp"
+#include "tests/engine/graph_fixture.hpp"
 
 namespace {
 
 using namespace candela;
-
-const TextureDesc colour{{64, 32}, Format::rgba16f};
 
 struct Light {
     int power = 0;
@@ -25,40 +21,7 @@ struct Name {
     std::string text;
 };
 
-/// Names of the passes that ran, joined by spaces.
-std::string ran(const FrameRecord& record) {
-    std::string names;
-    for (const PassRecord& pass : record.passes) {
-        if (pass.ran) {
-            names += (names.empty() ? "" : " ") + std::string(pass.name);
-        }
-    }
-    return names;
-}
-
-struct Fixture {
-    RecordingBackend backend;
-    GraphRuntime runtime{backend};
-    World world;
-    FrameGraph graph;
-
-    void adopt() { runtime.adopt(compile(std::move(graph)).take()); }
-    std::string run() { return ran(runtime.run(world)); }
-
-    TextureHandle draw(std::string_view name, std::vector<TextureHandle> sources, TextureHandle target) {
-        return graph.add(name, [&](Pass& pass) {
-            for (const TextureHandle source : sources) {
-                pass.read(source, Usage::sampled);
-            }
-            return pass.write(target, Usage::colour_target);
-        });
-    }
-    TextureHandle texture(std::string_view name, Lifetime lifetime = Lifetime::transient) {
-        return graph.texture(name, colour, lifetime);
-    }
-};
-
-TEST_CASE_FIXTURE(Fixture, "graph run: a component pool that changes dirties its readers and theirs") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: a component pool that changes dirties its readers and theirs") {
     const Entity entity = world.create();
     world.set(entity, Light{1});
     const auto power = graph.add("gather", [&](Pass& pass) {
@@ -99,7 +62,7 @@ TEST_CASE_FIXTURE(Fixture, "graph run: a component pool that changes dirties its
     }
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph run: what only culled passes read the host need not provide") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: what only culled passes read the host need not provide") {
     const auto exposure = graph.import_value<float>("exposure");
     const TextureHandle sky = texture("sky", Lifetime::imported);
     graph.add("unseen", [&](Pass& pass) {
@@ -115,7 +78,7 @@ TEST_CASE_FIXTURE(Fixture, "graph run: what only culled passes read the host nee
     CHECK(run() == "print");
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph run: an imported value is needed once, an imported object too") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: an imported value is needed once, an imported object too") {
     const auto exposure = graph.import_value<float>("exposure");
     const TextureHandle target = texture("target", Lifetime::imported);
     const TextureHandle mapped = graph.add("tone-map", [&](Pass& pass) {
@@ -143,7 +106,7 @@ TEST_CASE_FIXTURE(Fixture, "graph run: an imported value is needed once, an impo
                          "a handle is not of the adopted frame graph", GraphError);
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph run: a bind is new content to the readers") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: a bind is new content to the readers") {
     const TextureHandle sky = texture("sky", Lifetime::imported);
     const TextureHandle blurred = draw("blur", {sky}, texture("blurred"));
     graph.add("show", [&](Pass& pass) {
@@ -158,7 +121,8 @@ TEST_CASE_FIXTURE(Fixture, "graph run: a bind is new content to the readers") {
     CHECK(run() == "blur show");
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph run: what shares an object is made again for a reader, and only for that") {
+TEST_CASE_FIXTURE(GraphFixture,
+                  "graph run: what shares an object is made again for a reader, and only for that") {
     // "a" and "c" share an object: after a frame it holds "c".
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle a = draw("draw a", {}, texture("a"));
@@ -193,7 +157,7 @@ TEST_CASE_FIXTURE(Fixture, "graph run: what shares an object is made again for a
 }
 
 TEST_CASE_FIXTURE(
-    Fixture,
+    GraphFixture,
     "graph run: whoever changes what is there has its maker run first, and keeps later readers clean") {
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle lit = draw("opaque", {}, texture("lit"));
@@ -214,7 +178,7 @@ TEST_CASE_FIXTURE(
     CHECK(run() == "opaque transparent tone-map show");
 }
 
-TEST_CASE_FIXTURE(Fixture,
+TEST_CASE_FIXTURE(GraphFixture,
                   "graph run: a pass that only brings back a result leaves the other readers clean") {
     // "peek" reads the first version of "lit", which "transparent" has overwritten.
     const auto knob = graph.import_value<int>("knob");
@@ -240,7 +204,7 @@ TEST_CASE_FIXTURE(Fixture,
     CHECK(run() == "show");
 }
 
-TEST_CASE_FIXTURE(Fixture,
+TEST_CASE_FIXTURE(GraphFixture,
                   "graph run: history is what the last frame left, and invalid until there is some") {
     std::vector<std::uint64_t> seen;
     const auto knob = graph.import_value<int>("knob");
@@ -281,114 +245,7 @@ TEST_CASE_FIXTURE(Fixture,
     CHECK(seen == std::vector<std::uint64_t>{0, 1, 2, 0, 4});
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph run: reserving makes room, keeps it, and loses history") {
-    const auto wanted = graph.import_value<std::uint64_t>("wanted");
-    const auto blank = graph.buffer<float>("vpls", 100, Lifetime::persistent);
-    const TextureHandle map = texture("map");
-    const TextureHandle past = graph.history(map);
-    std::vector<bool> valid;
-    std::uint64_t room = 0;
-    graph.add("trace", [&](Pass& pass) {
-        pass.read(wanted);
-        pass.read(past, Usage::sampled);
-        const auto vpls = pass.write(blank, Usage::storage);
-        const auto drawn = pass.write(map, Usage::layer_target);
-        pass.side_effect();
-        pass.run([&, wanted, vpls, drawn, past](Execution& run) {
-            const std::uint64_t count = run.value(wanted);
-            run.reserve(vpls, count);
-            const TextureDesc desc{{static_cast<std::uint32_t>(count), 1}};
-            run.reserve(drawn, desc);
-            CHECK(run.desc(drawn) == desc);
-            CHECK(backend.objects.at(run.object(drawn)).texture_desc == desc);
-            CHECK(backend.objects.at(run.object(vpls)).buffer_desc ==
-                  BufferDesc{run.count(vpls), sizeof(float)});
-            room = run.count(vpls);
-            valid.push_back(run.history_valid(past));
-        });
-    });
-    adopt();
-    const auto room_for = [&](std::uint64_t count) {
-        runtime.set(wanted, count);
-        (void)run();
-        return room;
-    };
-    CHECK(room_for(10) == 100);
-    CHECK(room_for(101) == 150);  // grows by half at least
-    CHECK(room_for(101) == 150);
-    CHECK(room_for(1000) == 1000);
-    CHECK(room_for(1) == 1000);  // never shrinks
-    CHECK(valid == std::vector<bool>{false, false, true, false, false});
-    CHECK(backend.objects.size() == 3);
-    CHECK(backend.misuse.empty());
-}
-
-TEST_CASE_FIXTURE(Fixture, "graph run: what a pass did not declare it may not touch") {
-    const TextureHandle a = draw("draw", {}, texture("a"));
-    const TextureHandle blank = texture("b");
-    const auto number = graph.import_value<int>("number");
-    std::vector<std::string> errors;
-    const auto attempt = [&](auto act) {
-        try {
-            act();
-        } catch (const GraphError& error) {
-            errors.emplace_back(error.what());
-        }
-    };
-    FrameGraph other;
-    const TextureHandle foreign = other.texture("foreign", colour);
-    graph.add("use", [&](Pass& pass) {
-        pass.read(a, Usage::sampled);
-        pass.side_effect();
-        const auto unset = pass.write(graph.value<int>("unset"));
-        pass.run([&, a, blank, number, foreign, unset](Execution& run) {
-            attempt([&] { (void)run.object(blank); });
-            attempt([&] { (void)run.value(number); });
-            attempt([&] { run.set(number, 1); });
-            attempt([&] { (void)run.object(foreign); });
-            attempt([&] { (void)run.value(unset); });
-            attempt([&] { run.reserve(a, colour); });
-            attempt([&] { (void)run.history_valid(a); });
-        });
-    });
-    adopt();
-    (void)run();
-    CHECK(errors == std::vector<std::string>{"pass 'use' uses texture 'b' without having declared it",
-                                             "pass 'use' uses value 'number' without having declared it",
-                                             "pass 'use' writes value 'number' without having declared it",
-                                             "a handle is not of the adopted frame graph",
-                                             "value 'unset' has not been set",
-                                             "pass 'use' writes texture 'a' without having declared it",
-                                             "texture 'a' is not a history"});
-}
-
-TEST_CASE_FIXTURE(Fixture, "graph run: only what is persistent may be reserved, and not what is attached") {
-    int refused = 0;
-    const auto attempt = [&](Execution& run, auto resource, auto extent) {
-        try {
-            run.reserve(resource, extent);
-        } catch (const GraphError&) {
-            ++refused;
-        }
-    };
-    const auto kept = graph.buffer<int>("kept", 4, Lifetime::persistent);
-    graph.add("write", [&](Pass& pass) {
-        const TextureHandle drawn = pass.write(texture("target", Lifetime::persistent), Usage::colour_target);
-        const auto transient = pass.write(graph.buffer<int>("transient", 4), Usage::storage);
-        const auto written = pass.write(pass.write(kept, Usage::copy), Usage::storage);
-        pass.side_effect();
-        pass.run([=](Execution& run) {
-            attempt(run, drawn, TextureDesc{{8, 8}});
-            attempt(run, transient, 8);
-            run.reserve(written, 8);  // from version 0, in two steps
-        });
-    });
-    adopt();
-    (void)run();
-    CHECK(refused == 2);
-}
-
-TEST_CASE_FIXTURE(Fixture, "graph run: what a pass throws leaves a runtime that goes on") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: what a pass throws leaves a runtime that goes on") {
     bool fail = false;
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle a = draw("draw", {}, texture("a", Lifetime::persistent));
@@ -421,7 +278,7 @@ TEST_CASE_FIXTURE(Fixture, "graph run: what a pass throws leaves a runtime that 
     CHECK(runtime.run(world).frame == 3);  // frames that came through
 }
 
-TEST_CASE_FIXTURE(Fixture,
+TEST_CASE_FIXTURE(GraphFixture,
                   "graph run: the back end hears passes, their targets, and the barriers of passes skipped") {
     const auto knob = graph.import_value<int>("knob");
     const auto traced = graph.add("trace", [&](Pass& pass) {
@@ -454,7 +311,7 @@ TEST_CASE_FIXTURE(Fixture,
     CHECK(backend.log == std::vector<std::string>{"barrier storage", "begin show", "end"});
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph run: time is taken where asked for") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: time is taken where asked for") {
     graph.add("work", [&](Pass& pass) {
         pass.side_effect();
         pass.run([](Execution&) {

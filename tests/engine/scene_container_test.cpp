@@ -97,8 +97,8 @@ TEST_SUITE("Cornell box") {
             CHECK(at.x == 0.0F);
             CHECK(at.z == 0.0F);
             CHECK(at.y < 2.0F);
-            // Straight below, the floor gets about pi lux.
-            CHECK(light.intensity / (at.y * at.y) == doctest::Approx(3.14).epsilon(0.02));
+            // Straight below, the floor gets about pi / 2 lux.
+            CHECK(light.intensity / (at.y * at.y) == doctest::Approx(1.57).epsilon(0.02));
         }
     }
 

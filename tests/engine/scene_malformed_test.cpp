@@ -1,86 +1,18 @@
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cstring>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "tests/engine/gltf_builder.hpp"
+#include "tests/engine/malformed_gltf.hpp"
 
 using namespace candela;
 using namespace candela::test;
 
 namespace {
-
-const std::filesystem::path cornell =
-    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "sandbox" / "scenes" / "cornell.gltf";
-
-Bytes read(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// What the import has to say about the file; "imported" if nothing. Checks that a failure leaves the world
-/// alone and that its message is one line that starts with the file's name.
-std::string fault_of(const Bytes& file) {
-    World world;
-    const Entity before = world.create();
-    world.set(before, Name{"before"});
-    const auto names = world.revision<Name>();
-    try {
-        (void)import_gltf(file, {}, "broken.gltf", world);
-    } catch (const SceneError& error) {
-        const std::string message = error.what();
-        CHECK(world.size() == 1);
-        CHECK(world.revision<Name>() == names);
-        CHECK(world.revision<Transform>() == 0);
-        CHECK(message.find('\n') == std::string::npos);
-        CHECK(message.size() < 400);
-        REQUIRE(message.starts_with("broken.gltf: "));
-        return message.substr(13);
-    }
-    return "imported";
-}
-
-std::string fault_of(const GltfBuilder& file) {
-    return fault_of(file.gltf());
-}
-
-/// A file in which everything that the import reads occurs.
-GltfBuilder complete_scene() {
-    GltfBuilder file;
-    file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0});                                           // accessor 0
-    file.primitive()["indices"] = file.add_indices({0, 1, 2});                                 // accessor 1
-    file.primitive()["attributes"]["NORMAL"] = file.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, 1});  // accessor 2
-    file.primitive()["attributes"]["TEXCOORD_0"] =
-        file.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, 5126, "VEC2", 2);  // accessor 3
-    file.primitive()["material"] = 0;
-    const std::size_t indices = file.add_view(std::vector<std::uint32_t>{1});
-    const std::size_t values = file.add_view(std::vector<float>{2, 0, 0});
-    file.document["accessors"][0]["sparse"] = {
-        {"count", 1},
-        {"indices", {{"bufferView", indices}, {"componentType", 5125}}},
-        {"values", {{"bufferView", values}}}};
-    file.document.update(Json::parse(R"({
-        "materials": [{"emissiveFactor": [0, 0, 0], "doubleSided": true, "normalTexture": {"index": 0},
-                       "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}}],
-        "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 10497, "wrapT": 10497}],
-        "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1, "zfar": 2}},
-                    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 1, "zfar": 2}}],
-        "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
-            {"type": "spot", "color": [1, 1, 1], "intensity": 1, "range": 1,
-             "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}}]}},
-        "scene": 0, "scenes": [{"nodes": [0]}],
-        "nodes": [{"name": "a", "mesh": 0, "camera": 0, "children": [1, 2], "translation": [0, 0, 0],
-                   "rotation": [0, 0, 0, 1], "scale": [1, 1, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}},
-                  {"camera": 1}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]})"));
-    file.add("images", {{"uri", sixteen_bit_png}});
-    return file;
-}
 
 /// One change to the document of the complete scene and what must be said about it.
 struct Defect {
@@ -103,44 +35,6 @@ void check(const std::vector<Defect>& defects) {
         }
         CHECK(fault_of(file) == defect.fault);
     }
-}
-
-// Random edits of a sound file either import or say what is wrong; anything else is a crash, and the
-// sanitizers'.
-void mutate(const Bytes& sound, unsigned int seed, int rounds) {
-    std::mt19937 random(seed);
-    const auto below = [&](std::size_t n) {
-        return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
-    };
-    int refused = 0;
-    for (int round = 0; round < rounds; ++round) {
-        Bytes file = sound;
-        for (std::size_t edits = 1 + below(3); edits > 0 && !file.empty(); --edits) {
-            const auto at = file.begin() + static_cast<std::ptrdiff_t>(below(file.size()));
-            switch (below(5)) {
-                case 0:
-                    *at = static_cast<unsigned char>(*at ^ 1U << below(8));
-                    break;
-                case 1:
-                    *at = static_cast<unsigned char>(below(256));
-                    break;
-                case 2:
-                    *at = static_cast<unsigned char>('0' + below(10));
-                    break;
-                case 3:
-                    file.erase(at,
-                               at + std::min<std::ptrdiff_t>(file.end() - at, 1 + std::ptrdiff_t(below(8))));
-                    break;
-                default:
-                    file.erase(at, file.end());
-                    break;
-            }
-        }
-        refused += fault_of(file) != "imported" ? 1 : 0;
-    }
-    // Most edits hit something, but one in a number's last digit or in a name is harmless.
-    CHECK(refused > rounds / 4);
-    CHECK(refused < rounds);
 }
 
 }  // namespace
@@ -479,17 +373,5 @@ TEST_SUITE("malformed glTF") {
         GltfBuilder file = complete_scene();
         file.document["extensionsRequired"] = {"EXT_\n\r\x7F" + std::string(10'000, 'x')};
         CHECK(fault_of(file).starts_with("it requires the extension EXT_"));
-    }
-}
-
-TEST_SUITE("mutated glTF") {
-    TEST_CASE("the Cornell box") {
-        mutate(read(cornell), 1, 1500);
-    }
-    TEST_CASE("everything at once, as text") {
-        mutate(complete_scene().gltf(), 2, 1500);
-    }
-    TEST_CASE("everything at once, as binary") {
-        mutate(complete_scene().glb(), 3, 3000);
     }
 }

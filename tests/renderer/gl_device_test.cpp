@@ -40,17 +40,19 @@ const GLubyte* old_string(GLenum name) {
 void old_integer(GLenum name, GLint* value) {
     *value = name == GL_MAJOR_VERSION || name == GL_MINOR_VERSION ? 3 : 0;
 }
-void* old_proc(const char* name) {
-    if (std::strcmp(name, "glGetString") == 0) return reinterpret_cast<void*>(&old_string);
-    if (std::strcmp(name, "glGetIntegerv") == 0) return reinterpret_cast<void*>(&old_integer);
+using Proc = void (*)();
+
+Proc old_proc(const char* name) {
+    if (std::strcmp(name, "glGetString") == 0) return reinterpret_cast<Proc>(&old_string);
+    if (std::strcmp(name, "glGetIntegerv") == 0) return reinterpret_cast<Proc>(&old_integer);
     return nullptr;
 }
 
 const GLubyte* no_string(GLenum) {
     return nullptr;
 }
-void* proc_without_context(const char* name) {
-    return std::strcmp(name, "glGetString") == 0 ? reinterpret_cast<void*>(&no_string) : old_proc(name);
+Proc proc_without_context(const char* name) {
+    return std::strcmp(name, "glGetString") == 0 ? reinterpret_cast<Proc>(&no_string) : old_proc(name);
 }
 
 /// A host's own listener.

@@ -60,12 +60,12 @@ TEST_SUITE("gl timer") {
         // A driver whose results never arrive, and which would wait for ever if it were asked for one.
         static bool asked;
         asked = false;
-        const auto slow = [proc = context->get_proc()](const char* name) -> void* {
+        const auto slow = [proc = context->get_proc()](const char* name) -> void (*)() {
             const std::string_view wanted = name;
             const PFNGLGETQUERYOBJECTIVPROC not_yet = [](GLuint, GLenum, GLint* value) { *value = GL_FALSE; };
             const PFNGLGETQUERYOBJECTUI64VPROC wait = [](GLuint, GLenum, GLuint64*) { asked = true; };
-            if (wanted == "glGetQueryObjectiv") return reinterpret_cast<void*>(not_yet);
-            if (wanted == "glGetQueryObjectui64v") return reinterpret_cast<void*>(wait);
+            if (wanted == "glGetQueryObjectiv") return reinterpret_cast<void (*)()>(not_yet);
+            if (wanted == "glGetQueryObjectui64v") return reinterpret_cast<void (*)()>(wait);
             return proc(name);
         };
         Device slow_device(slow);

@@ -1,17 +1,17 @@
 #include "sandbox/capture.hpp"
 
 #include <algorithm>
-#include <set>
-#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
+#include <glm/geometric.hpp>
 
 namespace candela::sandbox {
 
 TEST_SUITE("capture") {
     TEST_CASE("one sample is taken at the pixel's centre, many fill the pixel evenly") {
         CHECK(pixel_jitter(0) == glm::vec2(0.0F));
-        // Of 64 points of a low-discrepancy sequence every cell of an 4×4 grid gets 4, give or take 2.
+        // Of 64 points of a low-discrepancy sequence every cell of a 4×4 grid gets 4, give or take 2.
         std::vector<int> cells(16);
         glm::vec2 sum(0.0F);
         for (int sample = 0; sample < 64; ++sample) {
@@ -23,8 +23,9 @@ TEST_SUITE("capture") {
         }
         CHECK(*std::min_element(cells.begin(), cells.end()) >= 2);
         CHECK(*std::max_element(cells.begin(), cells.end()) <= 6);
-        // Their mean is the centre: otherwise the picture would be shifted.
-        CHECK(glm::length(sum / 64.0F) < 0.02F);
+        // The picture is not shifted: their mean lies nearer to the centre than that of random points would,
+        // whose standard error is 1 / sqrt(12 · 64).
+        CHECK(glm::length(sum / 64.0F) < 0.036F);
     }
 }
 

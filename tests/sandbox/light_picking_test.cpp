@@ -24,7 +24,8 @@ constexpr float tolerance_world = 1e-4F;
 Entity add_camera(World& world, Camera::Projection projection = Camera::Projection::perspective) {
     const Entity entity = world.create();
     world.set(entity, Transform{.translation = {0.0F, 0.0F, 5.0F}});
-    world.set(entity, Camera{.projection = projection, .half_height = 2.0F, .near_plane = 0.1F, .far_plane = 50.0F});
+    world.set(entity,
+              Camera{.projection = projection, .half_height = 2.0F, .near_plane = 0.1F, .far_plane = 50.0F});
     return entity;
 }
 
@@ -92,9 +93,10 @@ TEST_SUITE("light picking") {
         World world;
         const Entity camera = add_camera(world);
         const Entity parent = world.create();
-        world.set(parent, Transform{.translation = {1.0F, 2.0F, 3.0F},
-                                    .rotation = glm::angleAxis(0.7F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F))),
-                                    .scale = glm::vec3(2.0F, 0.5F, 1.5F)});
+        world.set(parent,
+                  Transform{.translation = {1.0F, 2.0F, 3.0F},
+                            .rotation = glm::angleAxis(0.7F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F))),
+                            .scale = glm::vec3(2.0F, 0.5F, 1.5F)});
         const Entity light = add_light(world, glm::vec3(0.0F), parent);
         move_to(world, light, {0.3F, -0.2F, 1.0F});
         CHECK(glm::distance(position_of(world, light), {0.3F, -0.2F, 1.0F}) < tolerance_world);

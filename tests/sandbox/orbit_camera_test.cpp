@@ -41,7 +41,8 @@ TEST_SUITE("orbit camera") {
         scaled[0] *= 2.0F;
         scaled[1] *= 3.0F;
         scaled[2] *= 4.0F;
-        CHECK(distance(look_from(scaled, {0.0F, 0.0F, -2.0F}, 0.1F).forward(), {0.0F, 0.0F, -1.0F}) < rounding);
+        CHECK(distance(look_from(scaled, {0.0F, 0.0F, -2.0F}, 0.1F).forward(), {0.0F, 0.0F, -1.0F}) <
+              rounding);
     }
 
     TEST_CASE("a target behind the eye still leaves a pivot ahead") {

@@ -1,7 +1,5 @@
 #include "sandbox/picture.hpp"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -16,33 +14,13 @@
 #include <stb/stb_image.h>
 
 #include "sandbox/output_file.hpp"
+#include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// An empty folder that goes with the test.
-class TemporaryFolder {
- public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "candela-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path_ = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() { fs::remove_all(path_); }
-
-    [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
-    [[nodiscard]] std::ptrdiff_t file_count() const {
-        return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-    }
-
- private:
-    fs::path path_;
-};
 
 std::string read(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -59,7 +37,7 @@ Picture gradient(glm::ivec2 size) {
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
             picture.pixels.emplace_back(static_cast<float>(x), static_cast<float>(y) * 0.1F,
-                                      static_cast<float>(x + y * size.x) * 1e-6F);
+                                        static_cast<float>(x + y * size.x) * 1e-6F);
         }
     }
     return picture;
@@ -105,10 +83,10 @@ TEST_SUITE("picture") {
         const TemporaryFolder folder;
         using Limits = std::numeric_limits<float>;
         const Picture picture{{2, 2},
-                          {{Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()},
-                           {Limits::max(), Limits::denorm_min(), -0.0F},
-                           {-1.0F, 1e-20F, 1e20F},
-                           {0.0F, 65505.0F, 1.0F / 3.0F}}};
+                              {{Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()},
+                               {Limits::max(), Limits::denorm_min(), -0.0F},
+                               {-1.0F, 1e-20F, 1e20F},
+                               {0.0F, 65505.0F, 1.0F / 3.0F}}};
         write_exr(folder / "a.exr", picture);
         CHECK(same_bits(read_exr(folder / "a.exr"), picture));
         write_pfm(folder / "a.pfm", picture);

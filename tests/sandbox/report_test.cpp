@@ -28,7 +28,8 @@ RunReport some_run() {
     run.state.triangles = 36;
     run.state.vpls = VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced()};
     run.state.lights = {.count = 3, .with_shadow = 2, .without_shadow = 1};
-    run.state.memory = {.texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .spare_bytes = 0};
+    run.state.memory = {
+        .texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .spare_bytes = 0};
     return run;
 }
 

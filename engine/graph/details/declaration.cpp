@@ -18,14 +18,6 @@ std::uint32_t make_identity(const void* address) {
     return static_cast<std::uint32_t>(bits >> 32U) | 1U;
 }
 
-template <class T>
-std::span<const T> part(const std::vector<T>& all, const std::vector<PassNode>& passes, std::uint32_t pass,
-                        std::uint32_t PassNode::*first) {
-    const std::size_t begin = passes[pass].*first;
-    const std::size_t end = pass + 1 < passes.size() ? passes[pass + 1].*first : all.size();
-    return std::span(all).subspan(begin, end - begin);
-}
-
 /// Whether some texture or buffer may be used so.
 bool allowed(ResourceKind kind, Usage usage, bool write) {
     const bool texture = kind == ResourceKind::texture;
@@ -61,19 +53,6 @@ Declaration::Declaration() : arena_(std::make_unique<Arena>()) {
     passes.reserve(16);
     accesses.reserve(64);
     resources.reserve(32);
-}
-
-std::span<const Access> Declaration::accesses_of(std::uint32_t pass) const {
-    return part(accesses, passes, pass, &PassNode::first_access);
-}
-std::span<const ComponentRead> Declaration::components_of(std::uint32_t pass) const {
-    return part(components, passes, pass, &PassNode::first_component);
-}
-std::span<const Parameter> Declaration::parameters_of(std::uint32_t pass) const {
-    return part(parameters, passes, pass, &PassNode::first_parameter);
-}
-std::span<const std::string_view> Declaration::afters_of(std::uint32_t pass) const {
-    return part(afters, passes, pass, &PassNode::first_after);
 }
 
 ResourceHandle Declaration::add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,

@@ -134,10 +134,18 @@ class Declaration {
     }
 
     [[nodiscard]] std::uint32_t pass_count() const { return static_cast<std::uint32_t>(passes.size()); }
-    [[nodiscard]] std::span<const Access> accesses_of(std::uint32_t pass) const;
-    [[nodiscard]] std::span<const ComponentRead> components_of(std::uint32_t pass) const;
-    [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const;
-    [[nodiscard]] std::span<const std::string_view> afters_of(std::uint32_t pass) const;
+    [[nodiscard]] std::span<const Access> accesses_of(std::uint32_t pass) const {
+        return part(accesses, pass, &PassNode::first_access);
+    }
+    [[nodiscard]] std::span<const ComponentRead> components_of(std::uint32_t pass) const {
+        return part(components, pass, &PassNode::first_component);
+    }
+    [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const {
+        return part(parameters, pass, &PassNode::first_parameter);
+    }
+    [[nodiscard]] std::span<const std::string_view> afters_of(std::uint32_t pass) const {
+        return part(afters, pass, &PassNode::first_after);
+    }
     [[nodiscard]] const TextureDesc& texture(const Resource& resource) const {
         return textures[resource.desc];
     }
@@ -156,6 +164,13 @@ class Declaration {
     std::vector<Fault> faults;  // found while declaring
 
  private:
+    template <class T>
+    [[nodiscard]] std::span<const T> part(const std::vector<T>& all, std::uint32_t pass,
+                                          std::uint32_t PassNode::*first) const {
+        const std::size_t begin = passes[pass].*first;
+        const std::size_t end = pass + 1 < passes.size() ? passes[pass + 1].*first : all.size();
+        return std::span(all).subspan(begin, end - begin);
+    }
     ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
                                 std::size_t desc);
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;

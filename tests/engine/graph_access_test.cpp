@@ -1,0 +1,123 @@
+// What a running pass may touch and reserve.
+
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/engine/graph_fixture.hpp"
+
+namespace {
+
+using namespace candela;
+
+TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, and loses history") {
+    const auto wanted = graph.import_value<std::uint64_t>("wanted");
+    const auto blank = graph.buffer<float>("vpls", 100, Lifetime::persistent);
+    const TextureHandle map = texture("map");
+    const TextureHandle past = graph.history(map);
+    std::vector<bool> valid;
+    std::uint64_t room = 0;
+    graph.add("trace", [&](Pass& pass) {
+        pass.read(wanted);
+        pass.read(past, Usage::sampled);
+        const auto vpls = pass.write(blank, Usage::storage);
+        const auto drawn = pass.write(map, Usage::layer_target);
+        pass.side_effect();
+        pass.run([&, wanted, vpls, drawn, past](Execution& run) {
+            const std::uint64_t count = run.value(wanted);
+            run.reserve(vpls, count);
+            const TextureDesc desc{{static_cast<std::uint32_t>(count), 1}};
+            run.reserve(drawn, desc);
+            CHECK(run.desc(drawn) == desc);
+            CHECK(backend.objects.at(run.object(drawn)).texture_desc == desc);
+            CHECK(backend.objects.at(run.object(vpls)).buffer_desc ==
+                  BufferDesc{run.count(vpls), sizeof(float)});
+            room = run.count(vpls);
+            valid.push_back(run.history_valid(past));
+        });
+    });
+    adopt();
+    const auto room_for = [&](std::uint64_t count) {
+        runtime.set(wanted, count);
+        (void)run();
+        return room;
+    };
+    CHECK(room_for(10) == 100);
+    CHECK(room_for(101) == 150);  // grows by half at least
+    CHECK(room_for(101) == 150);
+    CHECK(room_for(1000) == 1000);
+    CHECK(room_for(1) == 1000);  // never shrinks
+    CHECK(valid == std::vector<bool>{false, false, true, false, false});
+    CHECK(backend.objects.size() == 3);
+    CHECK(backend.misuse.empty());
+}
+
+TEST_CASE_FIXTURE(GraphFixture, "graph access: what a pass did not declare it may not touch") {
+    const TextureHandle a = draw("draw", {}, texture("a"));
+    const TextureHandle blank = texture("b");
+    const auto number = graph.import_value<int>("number");
+    std::vector<std::string> errors;
+    const auto attempt = [&](auto act) {
+        try {
+            act();
+        } catch (const GraphError& error) {
+            errors.emplace_back(error.what());
+        }
+    };
+    FrameGraph other;
+    const TextureHandle foreign = other.texture("foreign", colour);
+    graph.add("use", [&](Pass& pass) {
+        pass.read(a, Usage::sampled);
+        pass.side_effect();
+        const auto unset = pass.write(graph.value<int>("unset"));
+        pass.run([&, a, blank, number, foreign, unset](Execution& run) {
+            attempt([&] { (void)run.object(blank); });
+            attempt([&] { (void)run.value(number); });
+            attempt([&] { run.set(number, 1); });
+            attempt([&] { (void)run.object(foreign); });
+            attempt([&] { (void)run.value(unset); });
+            attempt([&] { run.reserve(a, colour); });
+            attempt([&] { (void)run.history_valid(a); });
+        });
+    });
+    adopt();
+    (void)run();
+    CHECK(errors == std::vector<std::string>{"pass 'use' uses texture 'b' without having declared it",
+                                             "pass 'use' uses value 'number' without having declared it",
+                                             "pass 'use' writes value 'number' without having declared it",
+                                             "a handle is not of the adopted frame graph",
+                                             "value 'unset' has not been set",
+                                             "pass 'use' writes texture 'a' without having declared it",
+                                             "texture 'a' is not a history"});
+}
+
+TEST_CASE_FIXTURE(GraphFixture,
+                  "graph access: only what is persistent may be reserved, and not what is attached") {
+    int refused = 0;
+    const auto attempt = [&](Execution& run, auto resource, auto extent) {
+        try {
+            run.reserve(resource, extent);
+        } catch (const GraphError&) {
+            ++refused;
+        }
+    };
+    const auto kept = graph.buffer<int>("kept", 4, Lifetime::persistent);
+    graph.add("write", [&](Pass& pass) {
+        const TextureHandle drawn = pass.write(texture("target", Lifetime::persistent), Usage::colour_target);
+        const auto transient = pass.write(graph.buffer<int>("transient", 4), Usage::storage);
+        const auto written = pass.write(pass.write(kept, Usage::copy), Usage::storage);
+        pass.side_effect();
+        pass.run([=](Execution& run) {
+            attempt(run, drawn, TextureDesc{{8, 8}});
+            attempt(run, transient, std::uint64_t{8});
+            run.reserve(written, 8);  // from version 0, in two steps
+        });
+    });
+    adopt();
+    (void)run();
+    CHECK(refused == 2);
+}
+
+}  // namespace

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/engine/gltf_builder.hpp"
+
+namespace candela::test {
+
+/// What the import has to say about the file; "imported" if nothing. Checks that a failure leaves the world
+/// alone and that its message is one line that starts with the file's name.
+inline std::string fault_of(const Bytes& file) {
+    World world;
+    const Entity before = world.create();
+    world.set(before, Name{"before"});
+    const auto names = world.revision<Name>();
+    try {
+        (void)import_gltf(file, {}, "broken.gltf", world);
+    } catch (const SceneError& error) {
+        const std::string message = error.what();
+        CHECK(world.size() == 1);
+        CHECK(world.revision<Name>() == names);
+        CHECK(world.revision<Transform>() == 0);
+        CHECK(message.find('\n') == std::string::npos);
+        CHECK(message.size() < 400);
+        REQUIRE(message.starts_with("broken.gltf: "));
+        return message.substr(13);
+    }
+    return "imported";
+}
+
+inline std::string fault_of(const GltfBuilder& file) {
+    return fault_of(file.gltf());
+}
+
+/// A file in which everything that the import reads occurs.
+inline GltfBuilder complete_scene() {
+    GltfBuilder file;
+    file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0});                                           // accessor 0
+    file.primitive()["indices"] = file.add_indices({0, 1, 2});                                 // accessor 1
+    file.primitive()["attributes"]["NORMAL"] = file.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, 1});  // accessor 2
+    file.primitive()["attributes"]["TEXCOORD_0"] =
+        file.add_accessor(std::vector<float>{0, 0, 1, 0, 0, 1}, 5126, "VEC2", 2);  // accessor 3
+    file.primitive()["material"] = 0;
+    const std::size_t indices = file.add_view(std::vector<std::uint32_t>{1});
+    const std::size_t values = file.add_view(std::vector<float>{2, 0, 0});
+    file.document["accessors"][0]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", indices}, {"componentType", 5125}}},
+        {"values", {{"bufferView", values}}}};
+    file.document.update(Json::parse(R"({
+        "materials": [{"emissiveFactor": [0, 0, 0], "doubleSided": true, "normalTexture": {"index": 0},
+                       "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}}],
+        "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 10497, "wrapT": 10497}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1, "zfar": 2}},
+                    {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 1, "zfar": 2}}],
+        "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "spot", "color": [1, 1, 1], "intensity": 1, "range": 1,
+             "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.2}}]}},
+        "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "a", "mesh": 0, "camera": 0, "children": [1, 2], "translation": [0, 0, 0],
+                   "rotation": [0, 0, 0, 1], "scale": [1, 1, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+                  {"camera": 1}, {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]})"));
+    file.add("images", {{"uri", sixteen_bit_png}});
+    return file;
+}
+
+}  // namespace candela::test

@@ -1,0 +1,79 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <random>
+
+#include "tests/engine/malformed_gltf.hpp"
+
+using namespace candela;
+using namespace candela::test;
+
+namespace {
+
+const std::filesystem::path cornell =
+    std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "sandbox" / "scenes" / "cornell.gltf";
+
+Bytes read(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// A whole number below n, alike on every machine.
+std::size_t below(std::size_t n, std::mt19937& random) {
+    return random() % n;
+}
+
+/// Changes, removes or cuts off bytes at one place.
+void edit(Bytes& file, std::mt19937& random) {
+    const auto at = file.begin() + static_cast<std::ptrdiff_t>(below(file.size(), random));
+    const auto some = static_cast<std::ptrdiff_t>(1 + below(8, random));
+    switch (below(5, random)) {
+        case 0:
+            *at = static_cast<unsigned char>(*at ^ 1U << below(8, random));
+            break;
+        case 1:
+            *at = static_cast<unsigned char>(below(256, random));
+            break;
+        case 2:
+            *at = static_cast<unsigned char>('0' + below(10, random));
+            break;
+        case 3:
+            file.erase(at, at + std::min(file.end() - at, some));
+            break;
+        default:
+            file.erase(at, file.end());
+            break;
+    }
+}
+
+// Files that are sound but for a few edits either import or say what is wrong; a crash is for the sanitizers
+// to see.
+void check_edited(const Bytes& sound, unsigned int seed, int rounds) {
+    std::mt19937 random(seed);
+    int refused = 0;
+    for (int round = 0; round < rounds; ++round) {
+        Bytes file = sound;
+        for (std::size_t edits = 1 + below(3, random); edits > 0 && !file.empty(); --edits) {
+            edit(file, random);
+        }
+        refused += fault_of(file) != "imported" ? 1 : 0;
+    }
+    // Most edits hit something, but one in a number's last digit or in a name is harmless.
+    CHECK(refused > rounds / 4);
+    CHECK(refused < rounds);
+}
+
+}  // namespace
+
+TEST_SUITE("mutated glTF") {
+    TEST_CASE("the Cornell box") {
+        check_edited(read(cornell), 1, 1500);
+    }
+    TEST_CASE("everything at once, as text") {
+        check_edited(complete_scene().gltf(), 2, 1500);
+    }
+    TEST_CASE("everything at once, as binary") {
+        check_edited(complete_scene().glb(), 3, 3000);
+    }
+}

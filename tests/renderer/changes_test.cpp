@@ -1,0 +1,247 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{80, 60};
+
+Entity named(const World& world, std::string_view name) {
+    for (const auto& [entity, found] : world.view<Name>()) {
+        if (found.value == name) return entity;
+    }
+    FAIL("no such entity");
+    return {};
+}
+
+void move(World& world, Entity entity, glm::vec3 by) {
+    world.edit<Transform>(entity, [&](Transform& transform) { transform.translation += by; });
+}
+
+class Changes : public RenderFixture {
+ protected:
+    std::vector<std::string> passes_that_ran() const {
+        std::vector<std::string> names;
+        for (const PassRecord& pass : renderer.last_passes()) {
+            if (pass.ran) names.emplace_back(pass.name);
+        }
+        return names;
+    }
+
+    /// What a renderer that has seen nothing else makes of the scene.
+    Picture fresh_picture(const Scene& scene) {
+        Renderer fresh(context->get_proc());
+        REQUIRE(fresh.configure(renderer.configuration()).empty());
+        const RenderTarget target(device, size);
+        fresh.render(scene.world, scene.camera, target.target());
+        return target.read();
+    }
+};
+
+/// The picture of the Cornell box in a context of that kind, and the driver's name; nothing without such a
+/// context.
+struct ContextPicture {
+    Picture picture;
+    std::string driver;
+};
+std::optional<ContextPicture> picture_in(ContextKind kind) {
+    std::unique_ptr<HeadlessContext> context;
+    try {
+        context = HeadlessContext::create(kind);
+    } catch (const ContextError&) {
+        return std::nullopt;
+    }
+    context->make_current();
+    Renderer renderer(context->get_proc());
+    REQUIRE(renderer.configure(linear_configuration()).empty());
+    const Scene scene = cornell_box();
+    const RenderTarget target(renderer.device(), size);
+    renderer.render(scene.world, scene.camera, target.target());
+    return ContextPicture{target.read(), renderer.device().renderer()};
+}
+
+}  // namespace
+
+TEST_SUITE("changes") {
+    TEST_CASE_FIXTURE(Changes, "every change shows in the same frame, as in a renderer that starts with it") {
+        configure(linear_configuration());
+        Scene scene = cornell_box();
+        add(scene.world, looking({0.5F, 1.5F, 1.0F}, {0, 0, 0}), SpotLight{.intensity = 3.0F});
+        World& world = scene.world;
+        const Entity block = named(world, "tall block");
+        const Entity floor = named(world, "floor");
+        Entity extra{};
+        const std::vector<std::pair<std::string, std::function<void()>>> edits = {
+            {"light moves",
+             [&] {
+                 move(world, scene.light, {0.3F, -0.2F, 0.4F});
+             }},
+            {"light brightens",
+             [&] { world.edit<PointLight>(scene.light, [](auto& l) { l.intensity *= 2.0F; }); }},
+            {"light's shadow goes",
+             [&] { world.edit<PointLight>(scene.light, [](auto& l) { l.casts_shadow = false; }); }},
+            {"light appears",
+             [&] {
+                 extra = add(world, looking({0, 1, 2}, {0, 0, 0}), DirectionalLight{.illuminance = 0.5F});
+             }},
+            {"light goes", [&] { world.destroy(extra); }},
+            {"mesh moves",
+             [&] {
+                 move(world, block, {0.2F, 0.1F, 0.1F});
+             }},
+            {"mesh turns inside out",
+             [&] { world.edit<Transform>(block, [](auto& t) { t.scale.x = -1.0F; }); }},
+            {"mesh appears",
+             [&] {
+                 extra =
+                     add(world, at({0, 0.5F, 0.5F}), MeshInstance{square(0.3F, diffuse({1, 1, 0}, true))});
+             }},
+            {"mesh becomes another",
+             [&] {
+                 world.set(extra, MeshInstance{square(0.2F, diffuse({0, 1, 1}, true))});
+             }},
+            {"mesh goes", [&] { world.remove<MeshInstance>(extra); }},
+            {"mesh hangs on another, which moves",
+             [&] {
+                 world.edit<Transform>(block, [&](auto& t) { t.parent = floor; });
+                 move(world, floor, {0, 0.05F, 0});
+             }},
+            {"camera moves",
+             [&] {
+                 move(world, scene.camera, {0.1F, 0.1F, -0.2F});
+             }},
+            {"camera zooms",
+             [&] { world.edit<Camera>(scene.camera, [](auto& c) { c.vertical_fov = 0.5F; }); }},
+        };
+        Picture before = render(scene, size);
+        for (const auto& [name, edit] : edits) {
+            CAPTURE(name);
+            edit();
+            const Picture after = render(scene, size);
+            CHECK(after != before);
+            CHECK(after == fresh_picture(scene));
+            before = after;
+        }
+    }
+
+    TEST_CASE_FIXTURE(Changes, "a light's move traces its VPLs and renders its shadow, but touches no mesh") {
+        Scene scene = cornell_box();
+        static_cast<void>(render(scene, size));
+        move(scene.world, scene.light, {0.1F, 0, 0});
+        static_cast<void>(render(scene, size));
+        for (const char* pass :
+             {"lights", "shadow-maps", "light-upload", "vpl-trace", "deferred", "tone-map"}) {
+            CAPTURE(pass);
+            CHECK(ran(pass));
+        }
+        // The passes that read transforms look again, and find theirs where they were.
+        for (const char* pass : {"scene-upload", "instance-upload", "bvh", "gbuffer"}) {
+            CAPTURE(pass);
+            CHECK_FALSE(ran(pass));
+        }
+    }
+
+    TEST_CASE_FIXTURE(Changes, "a frame without changes only presents the last one") {
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            configure(linear_configuration(path));
+            const Scene scene = cornell_box();
+            const Picture first = render(scene, size);
+            CHECK(render(scene, size) == first);
+            CHECK(passes_that_ran() == std::vector<std::string>{"tone-map"});
+        }
+    }
+
+    TEST_CASE_FIXTURE(Changes, "a camera that moves costs no work on lights, shadows or geometry") {
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            configure(linear_configuration(path));
+            Scene scene = cornell_box();
+            static_cast<void>(render(scene, size));
+            move(scene.world, scene.camera, {0.1F, 0, 0});
+            static_cast<void>(render(scene, size));
+            CHECK(ran("tone-map"));
+            for (const char* pass : {"scene-upload", "instance-upload", "bvh", "shadow-plan", "shadow-maps",
+                                     "light-upload", "vpl-paths", "vpl-trace"}) {
+                CAPTURE(pass);
+                CHECK_FALSE(ran(pass));
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(Changes, "another path or tone curve keeps VPLs and shadow maps") {
+        const Scene scene = cornell_box();
+        static_cast<void>(render(scene, size));
+        Configuration configuration;
+        configuration.path = ShadingPath::forward;
+        configuration.tone_map.exposure_ev = 1.0F;
+        configure(configuration);
+        static_cast<void>(render(scene, size));
+        CHECK(ran("forward"));
+        for (const char* pass : {"scene-upload", "bvh", "shadow-maps", "vpl-trace"}) {
+            CAPTURE(pass);
+            CHECK_FALSE(ran(pass));
+        }
+    }
+
+    TEST_CASE_FIXTURE(Changes, "the seed chooses other VPLs; the same seed the same ones") {
+        const Scene scene = cornell_box();
+        Configuration configuration = linear_configuration();
+        configure(configuration);
+        const Picture first = render(scene, size);
+        configuration.vpls.seed = 1;
+        configure(configuration);
+        CHECK(render(scene, size) != first);
+        configuration.vpls.seed = 0;
+        configure(configuration);
+        CHECK(render(scene, size) == first);
+        CHECK(fresh_picture(scene) == first);
+    }
+
+    TEST_CASE_FIXTURE(Changes, "contexts of one driver give the same picture, bit for bit") {
+        const auto egl = picture_in(ContextKind::egl);
+        const auto osmesa = picture_in(ContextKind::osmesa);
+        context->make_current();
+        REQUIRE((egl || osmesa));
+        if (!egl || !osmesa || egl->driver != osmesa->driver) {
+            MESSAGE("nothing to compare: there are not two contexts of one driver here");
+            return;
+        }
+        CHECK(egl->picture == osmesa->picture);
+    }
+
+    TEST_CASE("VPLs keep their places while lights move and change a little") {
+        LightTable lights;
+        for (std::uint32_t i = 0; i < 5; ++i) {
+            lights.entries.push_back(
+                {.entity = {i, 1}, .light = {}, .flux = glm::vec3(1.0F + static_cast<float>(i))});
+        }
+        const VplSettings settings{.count = 1000, .bounces = 4};
+        const VplPaths before = plan_paths(lights, 0.6F, settings);
+        lights.entries[2].light.position = {1, 2, 3};
+        CHECK(plan_paths(lights, 0.6F, settings) == before);
+
+        // A light 1 % brighter takes a path or two from the others; the points of their sequences stay.
+        lights.entries[2].flux *= 1.01F;
+        const auto points_of = [](const VplPaths& plan) {
+            std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> points;
+            for (const gpu::Path& path : plan.paths) points.insert({path.light, path.index, path.seed});
+            return points;
+        };
+        const auto old_points = points_of(before);
+        const auto new_points = points_of(plan_paths(lights, 0.6F, settings));
+        std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> common;
+        std::ranges::set_intersection(old_points, new_points, std::back_inserter(common));
+        CHECK(common.size() * 100 >= old_points.size() * 98);
+    }
+}

@@ -1,0 +1,155 @@
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "renderer/gl/program.hpp"
+#include "renderer/gpu_types.hpp"
+#include "tests/renderer/context_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+struct Member {
+    std::string name;
+    std::size_t offset;
+};
+
+/// A struct of shaders/types.glsl as C++ lays its twin out.
+struct Layout {
+    std::string name;
+    std::size_t stride;
+    std::vector<Member> members;
+};
+
+#define MEMBER(type, name)               \
+    Member {                             \
+#name, offsetof(gpu::type, name) \
+    }
+
+const std::vector<Layout>& layouts() {
+    static const std::vector<Layout> all = {
+        {"Instance",
+         sizeof(gpu::Instance),
+         {{"world[0]", offsetof(gpu::Instance, world)},
+          MEMBER(Instance, material),
+          MEMBER(Instance, pad0),
+          MEMBER(Instance, pad1),
+          MEMBER(Instance, pad2)}},
+        {"Material",
+         sizeof(gpu::Material),
+         {MEMBER(Material, base_colour), MEMBER(Material, first_texel), MEMBER(Material, texel_width),
+          MEMBER(Material, texel_height), MEMBER(Material, flags)}},
+        {"Light",
+         sizeof(gpu::Light),
+         {MEMBER(Light, position), MEMBER(Light, kind), MEMBER(Light, direction), MEMBER(Light, range),
+          MEMBER(Light, intensity), MEMBER(Light, shadow), MEMBER(Light, shape), MEMBER(Light, cos_inner),
+          MEMBER(Light, cos_outer)}},
+        {"Shadow",
+         sizeof(gpu::Shadow),
+         {MEMBER(Shadow, from_world), MEMBER(Shadow, axis), MEMBER(Shadow, texel), MEMBER(Shadow, near_plane),
+          MEMBER(Shadow, layer), MEMBER(Shadow, kind), MEMBER(Shadow, pad0)}},
+        {"Vpl",
+         sizeof(gpu::Vpl),
+         {MEMBER(Vpl, position), MEMBER(Vpl, path), MEMBER(Vpl, normal), MEMBER(Vpl, bounce),
+          MEMBER(Vpl, flux), MEMBER(Vpl, pad0)}},
+        {"BvhNode",
+         sizeof(gpu::BvhNode),
+         {MEMBER(BvhNode, lower), MEMBER(BvhNode, first), MEMBER(BvhNode, upper), MEMBER(BvhNode, count)}},
+        {"TraceTriangle",
+         sizeof(gpu::TraceTriangle),
+         {MEMBER(TraceTriangle, a), MEMBER(TraceTriangle, material), MEMBER(TraceTriangle, edge_ab),
+          MEMBER(TraceTriangle, id), MEMBER(TraceTriangle, edge_ac), MEMBER(TraceTriangle, pad0),
+          MEMBER(TraceTriangle, uv_a), MEMBER(TraceTriangle, uv_b), MEMBER(TraceTriangle, uv_c),
+          MEMBER(TraceTriangle, pad1)}},
+        {"Path",
+         sizeof(gpu::Path),
+         {MEMBER(Path, flux), MEMBER(Path, light), MEMBER(Path, index), MEMBER(Path, seed),
+          MEMBER(Path, first_vpl), MEMBER(Path, vpl_count)}},
+        {"FluxAccount",
+         sizeof(gpu::FluxAccount),
+         {MEMBER(FluxAccount, emitted), MEMBER(FluxAccount, pad0), MEMBER(FluxAccount, absorbed),
+          MEMBER(FluxAccount, pad1), MEMBER(FluxAccount, escaped), MEMBER(FluxAccount, pad2),
+          MEMBER(FluxAccount, truncated), MEMBER(FluxAccount, pad3), MEMBER(FluxAccount, roulette),
+          MEMBER(FluxAccount, pad4)}}};
+    return all;
+}
+
+/// A shader that copies one element over another, so that nothing of it can be left out.
+std::string copying_shader(const std::string& type) {
+    return fmt::format(
+        "#include \"types.glsl\"\n"
+        "layout(local_size_x = 1) in;\n"
+        "layout(std430, binding = 0) buffer Block {{ {} element[]; }};\n"
+        "void main() {{ element[0] = element[1]; }}\n",
+        type);
+}
+
+/// What the driver says about variables of a program's buffers.
+class BufferVariables {
+ public:
+    BufferVariables(const gl::Functions& gl, GLuint program) : gl_(gl), program_(program) {}
+
+    [[nodiscard]] GLint count() const {
+        GLint count = 0;
+        gl_.GetProgramInterfaceiv(program_, GL_BUFFER_VARIABLE, GL_ACTIVE_RESOURCES, &count);
+        return count;
+    }
+    /// -1 if there is no such variable.
+    [[nodiscard]] GLint get(const std::string& variable, GLenum property) const {
+        const GLuint index = gl_.GetProgramResourceIndex(program_, GL_BUFFER_VARIABLE, variable.c_str());
+        GLint value = -1;
+        if (index == GL_INVALID_INDEX) return value;
+        gl_.GetProgramResourceiv(program_, GL_BUFFER_VARIABLE, index, 1, &property, 1, nullptr, &value);
+        return value;
+    }
+
+ private:
+    const gl::Functions& gl_;
+    GLuint program_;
+};
+
+}  // namespace
+
+TEST_SUITE("gpu types") {
+    TEST_CASE_FIXTURE(GlFixture, "every struct lies in buffers as the driver says") {
+        for (const Layout& layout : layouts()) {
+            CAPTURE(layout.name);
+            const std::string source = copying_shader(layout.name);
+            const auto shipped = gl::embedded_shaders();
+            std::vector<gl::EmbeddedShader> files(shipped.begin(), shipped.end());
+            files.push_back({"copy.comp", source});
+            const gl::Program program = gl::compile(device, gl::ShaderLibrary(files), {"copy.comp"});
+            const BufferVariables variables(device.gl(), program.name());
+            CHECK(variables.count() == static_cast<GLint>(layout.members.size()));
+            for (const Member& member : layout.members) {
+                CAPTURE(member.name);
+                const std::string name = "element[0]." + member.name;
+                CHECK(variables.get(name, GL_OFFSET) == static_cast<GLint>(member.offset));
+                CHECK(variables.get(name, GL_TOP_LEVEL_ARRAY_STRIDE) == static_cast<GLint>(layout.stride));
+            }
+            if (layout.name == "Instance") {
+                CHECK(variables.get("element[0].world[0]", GL_ARRAY_STRIDE) ==
+                      sizeof(gpu::Instance::world[0]));
+            }
+            if (layout.name == "Shadow") {
+                CHECK(variables.get("element[0].from_world", GL_MATRIX_STRIDE) == sizeof(glm::vec4));
+                CHECK(variables.get("element[0].from_world", GL_IS_ROW_MAJOR) == GL_FALSE);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is among those compared") {
+        const std::string types = gl::ShaderLibrary(gl::embedded_shaders()).load("types.glsl");
+        std::size_t structs = 0;
+        for (std::size_t at = types.find("\nstruct "); at != std::string::npos;
+             at = types.find("\nstruct ", at + 1)) {
+            ++structs;
+        }
+        CHECK(structs == layouts().size());
+    }
+}

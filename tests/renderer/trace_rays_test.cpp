@@ -1,0 +1,200 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <limits>
+#include <random>
+
+#include "engine/graph/compile.hpp"
+#include "renderer/passes/bvh.hpp"
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+struct TestRay {
+    glm::vec3 origin;
+    float t_max;
+    glm::vec3 direction;
+    float pad0 = 0.0F;
+};
+
+/// A hit on the GPU: distance, and the triangle in world space; infinity for none.
+struct GpuHit {
+    float t = std::numeric_limits<float>::infinity();
+    Triangle triangle{};
+};
+
+std::string trace_rays_source() {
+    std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "trace_rays.comp");
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The shipped shaders and trace_rays.comp.
+class Shaders {
+ public:
+    [[nodiscard]] gl::ShaderLibrary library() const { return gl::ShaderLibrary(files_); }
+
+ private:
+    std::string source_ = trace_rays_source();
+    std::vector<gl::EmbeddedShader> files_ = [this] {
+        const auto shipped = gl::embedded_shaders();
+        std::vector<gl::EmbeddedShader> files(shipped.begin(), shipped.end());
+        files.push_back({"trace_rays.comp", source_});
+        return files;
+    }();
+};
+
+/// From points within `reach` of the origin, in all directions, of all lengths; some end early.
+std::vector<TestRay> random_rays(std::size_t count, glm::vec3 centre, float reach) {
+    std::mt19937 engine(7);
+    const auto number = [&](float limit) {
+        return std::uniform_real_distribution<float>(-limit, limit)(engine);
+    };
+    const auto vector = [&](float limit) {
+        const float x = number(limit), y = number(limit);
+        return glm::vec3(x, y, number(limit));
+    };
+    std::vector<TestRay> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec3 origin = centre + vector(reach);
+        const float t_max = i % 8 == 0 ? 0.5F : std::numeric_limits<float>::infinity();
+        rays.push_back({origin, t_max, vector(1.0F)});
+    }
+    // Directions with zeros in them, of either sign.
+    for (const glm::vec3 axis :
+         {glm::vec3(0, -1, 0), glm::vec3(-0.0F, 1, -0.0F), glm::vec3(0, 0, -2), glm::vec3(1, 0, -0.0F)}) {
+        rays.push_back({centre + vector(0.3F * reach), std::numeric_limits<float>::infinity(), axis});
+    }
+    return rays;
+}
+
+class TraceRays : public GlFixture {
+ protected:
+    /// What the compute tracer hits in the world, as the renderer's own nodes upload it.
+    std::vector<GpuHit> trace(const World& world, const std::vector<TestRay>& rays) {
+        const Shaders shaders;
+        Gpu gpu(context->get_proc(), shaders.library());
+        gl::GraphBackend backend(gpu.device());
+        GraphRuntime runtime(backend);
+        const gl::Program& program = gpu.program({"trace_rays.comp"});
+        const gl::Buffer ray_buffer(gpu.device(), "rays", rays);
+        const gl::Buffer hit_buffer(gpu.device(), "hits", rays.size() * sizeof(glm::vec2));
+
+        FrameGraph graph;
+        const SceneData scene = add_scene_upload(graph, gpu);
+        const Tracing tracing = add_bvh(graph, gpu, scene);
+        std::vector<gpu::TraceTriangle> triangles;
+        graph.add("trace-rays", [&](Pass& pass) {
+            read_tracing(pass, tracing);
+            pass.side_effect();
+            pass.run([&](Execution& run) {
+                bind_tracing(gpu, run, program, tracing);
+                gpu.bind_storage(BINDING_LAST + 1, ray_buffer.name());
+                gpu.bind_storage(BINDING_LAST + 2, hit_buffer.name());
+                program.set("ray_count", static_cast<std::uint32_t>(rays.size()));
+                program.use();
+                gpu.gl().DispatchCompute(static_cast<GLuint>(rays.size() + 31) / 32, 1, 1);
+                gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+                triangles = backend.buffer(run.object(tracing.triangles)).download<gpu::TraceTriangle>();
+            });
+        });
+        runtime.adopt(compile(std::move(graph)).take());
+        runtime.run(world);
+
+        std::vector<GpuHit> hits;
+        for (const glm::vec2 hit : hit_buffer.download<glm::vec2>()) {
+            const auto index = std::bit_cast<std::uint32_t>(hit.y);
+            if (index == 0xffffffffU) {
+                hits.emplace_back();
+                continue;
+            }
+            const gpu::TraceTriangle& t = triangles.at(index);
+            hits.push_back({hit.x, {t.a, t.a + t.edge_ab, t.a + t.edge_ac}});
+        }
+        return hits;
+    }
+
+    /// Against the hierarchy on the CPU, built from the world itself.
+    void check(const World& world, const std::vector<TestRay>& rays, double least_hit_share) {
+        const std::vector<Triangle> triangles = world_triangles(world);
+        const Bvh bvh = build_bvh(triangles);
+        const std::vector<GpuHit> hits = trace(world, rays);
+        std::size_t hit_count = 0;
+        std::size_t ties = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            CAPTURE(i);
+            const auto wanted = closest_hit(
+                bvh, triangles,
+                {.origin = rays[i].origin, .direction = rays[i].direction, .t_max = rays[i].t_max});
+            REQUIRE(wanted.has_value() == std::isfinite(hits[i].t));
+            if (!wanted) continue;
+            ++hit_count;
+            // The triangle's corners went through the difference of its edges.
+            const auto near = [](glm::vec3 a, glm::vec3 b) { return glm::length(a - b) < 1e-5F; };
+            const Triangle& t = triangles[wanted->triangle];
+            const bool same = near(t.a, hits[i].triangle.a) && near(t.b, hits[i].triangle.b) &&
+                              near(t.c, hits[i].triangle.c);
+            if (!same) ++ties;
+            // The same, or another as far away, to a hundred roundings: across an edge, or the floor under a
+            // block.
+            REQUIRE(std::abs(hits[i].t - wanted->t) <= 1e-5F * std::max(wanted->t, 1.0F));
+        }
+        CHECK(static_cast<double>(hit_count) > least_hit_share * static_cast<double>(rays.size()));
+        CHECK(ties * 100 < rays.size());
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("compute tracer") {
+    TEST_CASE_FIXTURE(TraceRays, "hits in the Cornell box are the CPU's") {
+        check(cornell_box().world, random_rays(20'000, {0, 1, 0}, 0.95F), 0.7);
+    }
+
+    TEST_CASE_FIXTURE(TraceRays, "hits among 100,000 triangles are the CPU's") {
+        World world;
+        add(world, Transform{}, MeshInstance{soup(100'000, 3)});
+        check(world, random_rays(10'000, {0, 0, 0}, 1.2F), 0.5);
+    }
+
+    TEST_CASE_FIXTURE(TraceRays, "one triangle, and none") {
+        World world;
+        check(world, random_rays(100, {0, 0, 0}, 1.0F), -1.0);
+        add(world, Transform{}, MeshInstance{soup(1, 3)});
+        check(world, random_rays(1000, {0, 0, 0}, 1.0F), -1.0);
+    }
+
+    TEST_CASE_FIXTURE(TraceRays, "mirrored and sheared instances are hit where they are") {
+        World world;
+        const Entity parent = add(world, Transform{.scale = {-0.7F, 1.3F, 1.0F}});
+        add(world, Transform{.rotation = glm::angleAxis(0.7F, glm::vec3(0, 0, 1)), .parent = parent},
+            MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
+        const auto rays = random_rays(2000, {0, 0, 0}, 0.3F);
+        const auto hits = trace(world, rays);
+        const auto triangles = world_triangles(world);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            // Brute force over the world's own triangles, two-sided: mirrored ones have their corners in
+            // another order.
+            float nearest = rays[i].t_max;
+            for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+                const auto hit =
+                    intersect(triangles[t], t,
+                              {.origin = rays[i].origin, .direction = rays[i].direction, .t_max = nearest});
+                if (hit) nearest = hit->t;
+            }
+            REQUIRE((nearest < rays[i].t_max) == std::isfinite(hits[i].t));
+            if (!std::isfinite(hits[i].t)) continue;
+            REQUIRE(std::abs(hits[i].t - nearest) <= 1e-5F * std::max(nearest, 1.0F));
+            // Counter-clockwise from the front, which looks inwards.
+            const Triangle& t = hits[i].triangle;
+            CHECK(glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a) < 0.0F);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+#include "sandbox/session.hpp"
+
+#include <fstream>
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "sandbox/picture.hpp"
+#include "tests/sandbox/temporary_folder.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+Options small_headless() {
+    Options options;
+    options.headless = true;
+    options.size = glm::ivec2(33, 21);
+    options.vpls = 8;
+    return options;
+}
+
+}  // namespace
+
+TEST_SUITE("session") {
+    TEST_CASE("a headless run leaves the picture, the report and the graph") {
+        const TemporaryFolder folder;
+        Options options = small_headless();
+        options.samples = 2;
+        options.out = folder / "a.pfm";
+        options.report = folder / "a.json";
+        options.describe_graph = folder / "a.dot";
+        REQUIRE(run(options) == 0);
+        CHECK(folder.file_count() == 3);
+
+        const Picture picture = read_pfm(*options.out);
+        CHECK(picture.size == glm::ivec2(33, 21));
+        // The middle of the picture is the box, which is lit.
+        CHECK(glm::length(picture.pixels[10 * 33 + 16]) > 0.0F);
+        const auto report = nlohmann::json::parse(std::ifstream(*options.report));
+        CHECK(report["size"] == nlohmann::json::array({33, 21}));
+        CHECK(report["vpls"]["requested"] == 8);
+        CHECK(report["frames"].size() == 1);
+        // Samples after the first move the view alone: what lights the scene stands.
+        CHECK(report["lights"]["count"] == 1);
+    }
+
+    TEST_CASE("the same command gives the same bits") {
+        const TemporaryFolder folder;
+        Options options = small_headless();
+        options.frames = 2;
+        options.out = folder / "%d.pfm";
+        REQUIRE(run(options) == 0);
+        const Picture first = read_pfm(folder / "0.pfm");
+        CHECK(first.pixels == read_pfm(folder / "1.pfm").pixels);
+        options.frames = 1;
+        options.out = folder / "again.pfm";
+        REQUIRE(run(options) == 0);
+        CHECK(first.pixels == read_pfm(*options.out).pixels);
+    }
+
+    TEST_CASE("faults end with status 2 and leave nothing behind") {
+        const TemporaryFolder folder;
+        const TemporaryFolder inputs;
+        std::ofstream(inputs / "broken.json") << R"({"path": "sideways"})";
+        std::ofstream(inputs / "broken.gltf") << "{";
+        Options sound = small_headless();
+        sound.out = folder / "a.png";
+        sound.report = folder / "a.json";
+
+        Options options = sound;
+        SUBCASE("no scene") {
+            options.scene = inputs / "none.gltf";
+        }
+        SUBCASE("a malformed scene") {
+            options.scene = inputs / "broken.gltf";
+        }
+        SUBCASE("no such camera") {
+            options.camera = "none";
+        }
+        SUBCASE("a faulty configuration") {
+            options.config = inputs / "broken.json";
+        }
+        SUBCASE("a flag out of range") {
+            options.vpls = 1U << 31U;
+        }
+        SUBCASE("a picture that the driver cannot hold") {
+            options.size = glm::ivec2(1 << 24, 1);
+        }
+        CHECK(run(options) == 2);
+        CHECK(folder.file_count() == 0);
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,313 @@
+// Opens the app's window, drags a light with the pointer as a person would, and looks at what the display
+// shows.
+
+// Before the macros of X11.
+#include <doctest/doctest.h>
+
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/extensions/XTest.h>
+#include <X11/keysym.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr int width = 480;
+constexpr int height = 360;
+
+// The shipped Cornell box, as its file has it: a camera at (0, 1, 3.9) with this field of view looks along -Z
+// at a back wall at z = -1, and a light hangs at (0, 1.6, 0).
+constexpr double vertical_fov = 0.685914;
+
+/// Pixels that a metre spans at this depth before the camera.
+double pixels_per_metre(double depth) {
+    return height / (2.0 * depth * std::tan(vertical_fov / 2.0));
+}
+
+bool wait_until(const std::function<bool()>& condition) {
+    // Long enough for a software driver that shares two cores with a build.
+    const auto deadline = std::chrono::steady_clock::now() + 60s;
+    while (std::chrono::steady_clock::now() < deadline) {
+        if (condition()) return true;
+        std::this_thread::sleep_for(100ms);
+    }
+    return false;
+}
+
+struct CloseDisplay {
+    void operator()(Display* display) const { XCloseDisplay(display); }
+};
+
+/// What the window shows: brightness of each pixel, the sum of its channels of 0 to 255.
+struct Shot {
+    std::vector<int> pixels;
+    [[nodiscard]] int at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
+    bool operator==(const Shot&) const = default;
+};
+
+double mean(const Shot& shot, int left, int right) {
+    double sum = 0.0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = left; x < right; ++x) sum += shot.at(x, y);
+    }
+    return sum / (height * (right - left));
+}
+
+/// The app in a window. Its panel hides the picture in part, and is hidden itself at once.
+class App {
+ public:
+    explicit App(std::vector<std::string> flags) : display_(XOpenDisplay(nullptr)) {
+        REQUIRE_MESSAGE(display_, "no display: run under xvfb-run");
+        flags.insert(flags.begin(), {CANDELA_APP, "--context", "window", "--size", "480x360"});
+        std::vector<char*> arguments;
+        for (std::string& flag : flags) arguments.push_back(flag.data());
+        arguments.push_back(nullptr);
+        REQUIRE(posix_spawn(&process_, CANDELA_APP, nullptr, nullptr, arguments.data(), environ) == 0);
+        REQUIRE_MESSAGE(wait_until([&] { return find_window(DefaultRootWindow(display_.get())); }),
+                        "no window");
+        REQUIRE_MESSAGE(wait_until([&] { return mean(shoot(), 0, width) > 1.0; }), "nothing but black");
+        move_pointer(width / 2, height - 10);
+        press_key(XK_F1);
+    }
+    App(const App&) = delete;
+    App& operator=(const App&) = delete;
+    ~App() {
+        if (process_ == 0) return;
+        kill(process_, SIGKILL);
+        waitpid(process_, nullptr, 0);
+    }
+
+    /// The picture as soon as it is at rest.
+    [[nodiscard]] Shot settled() {
+        Shot last = shoot();
+        int equal = 0;
+        const bool rested = wait_until([&] {
+            std::this_thread::sleep_for(200ms);
+            Shot now = shoot();
+            equal = now == last ? equal + 1 : 0;
+            last = std::move(now);
+            return equal >= 3;
+        });
+        REQUIRE_MESSAGE(rested, "the picture never comes to rest");
+        return last;
+    }
+
+    void drag(double from_x, double from_y, double to_x, double to_y) {
+        move_pointer(from_x, from_y);
+        button(true);
+        constexpr int steps = 8;
+        for (int step = 1; step <= steps; ++step) {
+            const double part = static_cast<double>(step) / steps;
+            move_pointer(from_x + part * (to_x - from_x), from_y + part * (to_y - from_y));
+        }
+        button(false);
+    }
+
+    /// Closes it by keyboard; the exit status.
+    int quit() {
+        press_key(XK_Escape);
+        int status = -1;
+        const bool ended = wait_until([&] { return waitpid(process_, &status, WNOHANG) == process_; });
+        REQUIRE_MESSAGE(ended, "Escape does not end the app");
+        process_ = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+ private:
+    bool find_window(Window parent) {
+        Window root = 0;
+        Window ignored = 0;
+        Window* children = nullptr;
+        unsigned count = 0;
+        if (XQueryTree(display_.get(), parent, &root, &ignored, &children, &count) == 0) return false;
+        const std::unique_ptr<Window, decltype(&XFree)> owner(children, &XFree);
+        return std::any_of(children, children + count, [&](Window child) { return is_app(child); });
+    }
+
+    bool is_app(Window candidate) {
+        XWindowAttributes attributes{};
+        char* name = nullptr;
+        if (XFetchName(display_.get(), candidate, &name) == 0) return false;
+        const std::unique_ptr<char, decltype(&XFree)> owner(name, &XFree);
+        XGetWindowAttributes(display_.get(), candidate, &attributes);
+        const bool found = std::string(name) == "Candela" && attributes.map_state == IsViewable;
+        if (found) window_ = candidate;
+        return found;
+    }
+
+    [[nodiscard]] Shot shoot() {
+        XImage* image = XGetImage(display_.get(), window_, 0, 0, width, height, AllPlanes, ZPixmap);
+        REQUIRE(image != nullptr);
+        Shot shot;
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                const unsigned long rgb = XGetPixel(image, x, y);
+                shot.pixels.push_back(
+                    static_cast<int>((rgb & 0xFFU) + ((rgb >> 8U) & 0xFFU) + ((rgb >> 16U) & 0xFFU)));
+            }
+        }
+        XDestroyImage(image);
+        return shot;
+    }
+
+    void move_pointer(double x, double y) {
+        int left = 0;
+        int top = 0;
+        Window child = 0;
+        XTranslateCoordinates(display_.get(), window_, DefaultRootWindow(display_.get()), 0, 0, &left, &top,
+                              &child);
+        XTestFakeMotionEvent(display_.get(), -1, left + static_cast<int>(std::lround(x)),
+                             top + static_cast<int>(std::lround(y)), CurrentTime);
+        pause();
+    }
+
+    void button(bool down) {
+        XTestFakeButtonEvent(display_.get(), 1, down ? True : False, CurrentTime);
+        pause();
+    }
+
+    void press_key(KeySym key) {
+        const KeyCode code = XKeysymToKeycode(display_.get(), key);
+        XTestFakeKeyEvent(display_.get(), code, True, CurrentTime);
+        XTestFakeKeyEvent(display_.get(), code, False, CurrentTime);
+        pause();
+    }
+
+    /// People are slow too.
+    void pause() {
+        XSync(display_.get(), False);
+        std::this_thread::sleep_for(30ms);
+    }
+
+    std::unique_ptr<Display, CloseDisplay> display_;
+    Window window_ = 0;
+    pid_t process_ = 0;
+};
+
+/// Exposed so that nothing comes near white, where differences vanish.
+class DarkConfiguration {
+ public:
+    DarkConfiguration() {
+        std::string name = (fs::temp_directory_path() / "candela-XXXXXX").string();
+        REQUIRE(mkdtemp(name.data()) != nullptr);
+        folder_ = name;
+        std::ofstream(path()) << R"({"tone_map": {"exposure_ev": -3}})";
+    }
+    DarkConfiguration(const DarkConfiguration&) = delete;
+    DarkConfiguration& operator=(const DarkConfiguration&) = delete;
+    ~DarkConfiguration() { fs::remove_all(folder_); }
+    [[nodiscard]] std::string path() const { return (folder_ / "dark.json").string(); }
+
+ private:
+    fs::path folder_;
+};
+
+/// The middle of the brightest stretch of the back wall, on a row above the blocks and below the light's
+/// marker.
+double brightest_column(const Shot& shot) {
+    const int row = static_cast<int>(std::lround(height / 2.0 - 0.4 * pixels_per_metre(4.9)));
+    const int left = static_cast<int>(width / 2.0 - 0.95 * pixels_per_metre(4.9));
+    int most = 0;
+    for (int x = left; x < width - left; ++x) most = std::max(most, shot.at(x, row));
+    double sum = 0.0;
+    int count = 0;
+    for (int x = left; x < width - left; ++x) {
+        if (shot.at(x, row) < most - 3) continue;  // a step of rounding in each channel
+        sum += x + 0.5;
+        ++count;
+    }
+    return sum / count;
+}
+
+constexpr double light_depth = 3.9;
+constexpr double moved_by = 0.4;  // metres, to the right
+
+double light_x() {
+    return width / 2.0;
+}
+double light_y() {
+    return height / 2.0 - 0.6 * pixels_per_metre(light_depth);
+}
+
+void drag_light(App& app) {
+    app.drag(light_x(), light_y(), light_x() + moved_by * pixels_per_metre(light_depth), light_y());
+}
+
+/// Left and right of the box nothing is ever lit.
+void check_same_beside_the_box(const Shot& before, const Shot& after) {
+    const int edge = static_cast<int>(width / 2.0 - 1.02 * pixels_per_metre(2.9));
+    REQUIRE(edge > 10);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < edge; ++x) {
+            REQUIRE(before.at(x, y) == after.at(x, y));
+            REQUIRE(before.at(width - 1 - x, y) == after.at(width - 1 - x, y));
+        }
+    }
+}
+
+}  // namespace
+
+TEST_SUITE("window") {
+    TEST_CASE("a wall is brightest right behind the light, before it is dragged and after") {
+        const DarkConfiguration dark;
+        App app({"--indirect", "off", "--config", dark.path()});
+        // Irradiance I·d/r³ on the wall is largest at the foot of the perpendicular. The stretch that rounds
+        // to the same brightness is some 20 pixels wide; its middle is good for a few.
+        constexpr double tolerance = 4.0;
+        const Shot before = app.settled();
+        CHECK(std::abs(brightest_column(before) - width / 2.0) < tolerance);
+        drag_light(app);
+        const Shot after = app.settled();
+        CHECK(std::abs(brightest_column(after) - (width / 2.0 + moved_by * pixels_per_metre(4.9))) <
+              tolerance);
+        check_same_beside_the_box(before, after);
+        CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("indirect light moves with the light") {
+        const DarkConfiguration dark;
+        App app({"--show", "indirect", "--vpls", "32", "--bounces", "1", "--config", dark.path()});
+        const Shot before = app.settled();
+        drag_light(app);
+        const Shot after = app.settled();
+        // VPLs gather where the light has come nearer to, and leave the wall that it went away from.
+        CHECK(mean(after, width / 2, width) > mean(before, width / 2, width));
+        CHECK(mean(after, 0, width / 2) < mean(before, 0, width / 2));
+        check_same_beside_the_box(before, after);
+        CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("a drag on empty space turns the view and leaves the light") {
+        const DarkConfiguration dark;
+        App app({"--indirect", "off", "--config", dark.path()});
+        const Shot before = app.settled();
+        app.drag(240.0, 300.0, 200.0, 290.0);
+        const Shot turned = app.settled();
+        CHECK_FALSE(before == turned);
+        app.drag(200.0, 290.0, 240.0, 300.0);
+        const Shot back = app.settled();
+        // Up to where roundings of the pose move an edge across a pixel.
+        int changed = 0;
+        for (std::size_t i = 0; i < before.pixels.size(); ++i)
+            changed += std::abs(before.pixels[i] - back.pixels[i]) > 6 ? 1 : 0;
+        CHECK(changed < 50);
+        CHECK(app.quit() == 0);
+    }
+}
