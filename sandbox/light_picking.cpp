@@ -49,7 +49,7 @@ std::optional<Entity> pick(const std::vector<LightMarker>& markers, const Viewpo
 
 void move_to(World& world, Entity entity, const glm::vec3& position) {
     Transform transform;
-    if (const Transform* present = world.find<Transform>(entity)) transform = *present;
+    if (const auto* present = world.find<Transform>(entity)) transform = *present;
     const glm::mat4 parent = transform.parent ? world_matrix(world, transform.parent) : glm::mat4(1.0F);
     const glm::vec3 local(glm::inverse(parent) * glm::vec4(position, 1.0F));
     if (!std::isfinite(local.x + local.y + local.z)) return;

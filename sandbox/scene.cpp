@@ -105,7 +105,7 @@ Entity choose_camera(World& world, const std::optional<std::string>& wanted, flo
 }
 
 std::string name_of(const World& world, Entity entity) {
-    const Name* name = world.find<Name>(entity);
+    const auto* name = world.find<Name>(entity);
     return name != nullptr && !name->value.empty() ? name->value : fmt::format("entity {}", entity.index);
 }
 

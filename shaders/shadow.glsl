@@ -6,12 +6,14 @@ layout(std430, binding = BINDING_SHADOWS) readonly restrict buffer Shadows { Sha
 layout(binding = UNIT_SHADOW_CUBES) uniform samplerCubeArrayShadow shadow_cubes;
 layout(binding = UNIT_SHADOW_MAPS) uniform sampler2DArrayShadow shadow_maps;
 
-// How far to lift the receiver along its normal so that its own plane, as any texel under the bilinear footprint
-// stores it, is never nearer to the light. Over a step e in tangent units across the map, the plane's depth z changes
-// by at most z·e·sin(normal, axis)·|z'/z|, and lifting by l along the normal gains l in the same measure; e is at most
-// √2 texels for bilinear filtering, and a tenth of a texel pays for rounding.
+// How far to lift the receiver along its normal so that its own plane, as any texel under the bilinear footprint stores
+// it, never shades it. From the sample to a texel's centre it is at most a texel in x and one in y, over which the
+// plane's depth changes by texel·(|nx| + |ny|), n being the normal in the map's axes. Rendering has pushed the plane away
+// by the larger of the two (a slope-scaled offset of one texel, which also keeps the neighbouring surface of a concave
+// edge from shading this one); the smaller is at most sin(normal, axis)/√2, and lifting by l gains l in the same
+// measure. A tenth of a texel pays for rounding.
 float normal_offset(float texel, float cos_axis) {
-    return texel * (1.4143 * sqrt(max(0.0, 1.0 - cos_axis * cos_axis)) + 0.1);
+    return texel * (0.7072 * sqrt(max(0.0, 1.0 - cos_axis * cos_axis)) + 0.1);
 }
 
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }

@@ -34,6 +34,8 @@ HostState::HostState(const Functions& gl)
     gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode_.data());
     gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour_.data());
     gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
+    gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &polygon_offset_factor_);
+    gl.GetFloatv(GL_POLYGON_OFFSET_UNITS, &polygon_offset_units_);
     for (const GLenum capability : capabilities) {
         enabled_.push_back(gl.IsEnabled(capability) == GL_TRUE);
         gl.Disable(capability);
@@ -79,6 +81,7 @@ HostState::~HostState() {
     gl.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
     gl.ClearColor(clear_colour_[0], clear_colour_[1], clear_colour_[2], clear_colour_[3]);
     gl.ClearDepthf(clear_depth_);
+    gl.PolygonOffset(polygon_offset_factor_, polygon_offset_units_);
 }
 
 GLint HostState::get(GLenum what) const {

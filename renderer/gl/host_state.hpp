@@ -38,6 +38,8 @@ class HostState {
     std::array<GLboolean, 4> colour_mask_{};
     std::array<GLfloat, 4> clear_colour_{};
     GLfloat clear_depth_ = 0.0F;
+    GLfloat polygon_offset_factor_ = 0.0F;
+    GLfloat polygon_offset_units_ = 0.0F;
     std::vector<bool> enabled_;
 };
 

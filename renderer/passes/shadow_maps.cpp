@@ -14,6 +14,7 @@ namespace candela {
 namespace {
 
 constexpr std::uint32_t cube_faces = 6;
+constexpr float slope_offset = 1.0F;  // texels: shaders/shadow.glsl counts on it
 constexpr std::uint64_t bytes_per_depth = 4;
 // Beyond this half angle a flat map wastes most of its texels on the rim.
 constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
@@ -131,6 +132,8 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
     program.use();
     gl.Enable(GL_DEPTH_TEST);
     gl.Enable(GL_DEPTH_CLAMP);
+    gl.Enable(GL_POLYGON_OFFSET_FILL);
+    gl.PolygonOffset(-slope_offset, 0.0F);  // away from the light, as depth is reversed
     gl.Disable(GL_CULL_FACE);
     gl::Framebuffer& target = gpu.layer_target();
     for (const ShadowPlan::View& view : plan.views) {
@@ -146,6 +149,7 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
     }
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     target.attach_depth(0);
+    gl.Disable(GL_POLYGON_OFFSET_FILL);
     gl.Disable(GL_DEPTH_CLAMP);
 }
 

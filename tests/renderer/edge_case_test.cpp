@@ -119,6 +119,8 @@ TEST_SUITE("edge cases") {
                       "a light outside of a closed box leaves it dark, direct light and VPLs alike") {
         Scene scene = furnace_box(0.5F);
         scene.world.set(scene.light, at({0.3F, 1.5F, 0.2F}));
+        // Shadow maps leak within a texel of a silhouette: no pixel's centre is on the very edges of the box.
+        scene.world.set(scene.camera, looking({0.05F, 0.02F, 0.9F}, {0.03F, -0.04F, 0}));
         Configuration configuration = linear_configuration();
         configuration.show = Show::direct;
         CHECK(is_black(render_both(scene, configuration)));
@@ -135,14 +137,17 @@ TEST_SUITE("edge cases") {
     }
 
     TEST_CASE_FIXTURE(EdgeCases, "targets of one pixel and of one row") {
-        const Scene scene = cornell_box();
+        Scene scene = cornell_box();
         for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
             configure(linear_configuration(path));
             for (const glm::uvec2 odd :
                  {glm::uvec2(1, 1), glm::uvec2(4096, 1), glm::uvec2(1, 300), glm::uvec2(7, 5)}) {
+                // The whole width shows the box.
+                const float aspect = static_cast<float>(odd.x) / static_cast<float>(odd.y);
+                scene.world.set(scene.camera, Camera{.vertical_fov = 0.6F / std::max(aspect, 1.0F)});
                 const Picture picture = render(scene, odd);
                 CHECK(is_sane(picture));
-                CHECK(mean(picture) > 0.001);
+                CHECK(mean(picture) > 0.01);
             }
             // One pixel is the middle one of three by three, whose centre it shares.
             CHECK(worst_error({{1, 1}, {render(scene, {3, 3}).at(1, 1)}}, render(scene, {1, 1}), 1e-4) <
@@ -212,7 +217,7 @@ TEST_SUITE("edge cases") {
             if (factor < 1.0F) continue;
             configure({});
             // All that is lit is white: not black or random, as where the curve divides infinity by itself.
-            CHECK(render(scene, size) == lit);
+            CHECK(worst_error(render(scene, size), lit, 1.0) < 1e-5);
         }
     }
 

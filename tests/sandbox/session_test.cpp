@@ -42,7 +42,6 @@ TEST_SUITE("session") {
         CHECK(report["size"] == nlohmann::json::array({33, 21}));
         CHECK(report["vpls"]["requested"] == 8);
         CHECK(report["frames"].size() == 1);
-        // Samples after the first move the view alone: what lights the scene stands.
         CHECK(report["lights"]["count"] == 1);
     }
 

@@ -1,0 +1,130 @@
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{16, 12};
+
+/// Bytes of this process in memory.
+std::uint64_t resident_bytes() {
+    std::uint64_t total = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> total >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+/// One of 48 configurations.
+Configuration numbered_configuration(std::uint32_t i) {
+    Configuration configuration;
+    configuration.path = static_cast<ShadingPath>(i % 2);
+    configuration.show = static_cast<Show>(i / 2 % 3);
+    configuration.vpls = {.count = 16U << (i / 6 % 2), .bounces = 1 + i / 6 % 2};
+    configuration.shadows.cube_resolution = 16U << (i / 12 % 2);
+    configuration.shadows.map_resolution = 32;
+    configuration.tone_map.enabled = i / 24 % 2 == 0;
+    configuration.indirect = i % 5 != 0;
+    return configuration;
+}
+
+}  // namespace
+
+TEST_SUITE("lifetime") {
+    TEST_CASE_FIXTURE(RenderFixture, "a thousand configurations and two hundred sizes leave nothing behind") {
+        const Scene scene = cornell_box();
+        const RenderTarget target(device, size);
+        const auto round = [&](std::uint32_t switches, std::uint32_t resizes) {
+            for (std::uint32_t i = 0; i < switches; ++i) {
+                configure(numbered_configuration(i));
+                renderer.render(scene.world, scene.camera, target.target());
+            }
+            for (std::uint32_t i = 0; i < resizes; ++i) {
+                renderer.render(scene.world, scene.camera,
+                                {target.target().framebuffer, {1 + i % 16, 1 + i % 12}});
+            }
+            configure({});
+            renderer.render(scene.world, scene.camera, target.target());
+            renderer.render(scene.world, scene.camera, target.target());
+            static_cast<void>(renderer.take_frames(true));
+        };
+        round(240, 48);  // every configuration and every size once: pools and the driver's caches fill
+        const gl::ObjectCounts before = renderer.device().live();
+        const std::uint64_t memory_before = resident_bytes();
+        round(1000, 200);
+        CHECK(renderer.device().live() == before);
+        // What an allocator may scatter; a leak of one small object a switch would be lost in it, and is
+        // counted above.
+        CHECK(resident_bytes() < memory_before + (8U << 20U));
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "meshes, images and lights that go free what they took") {
+        Scene scene = cornell_box();
+        configure(linear_configuration());
+        const Picture before = render(scene, size);
+        static_cast<void>(renderer.take_frames(true));
+        const gl::ObjectCounts objects = renderer.device().live();
+        for (int i = 0; i < 20; ++i) {
+            Material material;
+            material.base_colour_texture = std::make_shared<const Image>(
+                Image{.width = 64, .height = 64, .texels = std::vector(64 * 64, glm::u8vec4(200))});
+            const auto mesh = square(0.5F, std::make_shared<const Material>(material));
+            const Entity extra = add(scene.world, at({0, 0.5F, 0.5F}), MeshInstance{mesh});
+            static_cast<void>(render(scene, size));
+            CHECK(renderer.device().live()[gl::ObjectKind::texture] == objects[gl::ObjectKind::texture] + 1);
+            scene.world.destroy(extra);
+            CHECK(render(scene, size) == before);
+            static_cast<void>(renderer.take_frames(true));
+        }
+        CHECK(renderer.device().live().objects == objects.objects);
+        CHECK(renderer.device().live().texture_bytes == objects.texture_bytes);
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture,
+                      "two renderers share a context and a target without a trace of each other") {
+        configure(linear_configuration());
+        Renderer other(context->get_proc());
+        REQUIRE(other.configure(linear_configuration(ShadingPath::forward)).empty());
+        Scene scene = cornell_box();
+        Scene box = furnace_box(0.5F);
+        const Picture alone = render(scene, size);
+        const RenderTarget target(device, size);
+        Picture box_alone;
+        for (int i = 0; i < 3; ++i) {
+            other.render(box.world, box.camera, target.target());
+            const Picture picture = target.read();
+            if (i > 0) CHECK(picture == box_alone);
+            box_alone = picture;
+            CHECK(mean(picture) > 0.01);
+            CHECK(render(scene, size) == alone);
+        }
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "renderers in two contexts take turns") {
+        const Scene scene = cornell_box();
+        configure(linear_configuration());
+        const Picture alone = render(scene, size);
+        const auto second = make_current_context();
+        {
+            Renderer other(second->get_proc());
+            REQUIRE(other.configure(linear_configuration()).empty());
+            for (int i = 0; i < 3; ++i) {
+                second->make_current();
+                const RenderTarget target(other.device(), size);
+                other.render(scene.world, scene.camera, target.target());
+                CHECK(target.read() == alone);
+                context->make_current();
+                renderer.invalidate();
+                CHECK(render(scene, size) == alone);
+                second->make_current();
+            }
+        }
+        context->make_current();
+    }
+}

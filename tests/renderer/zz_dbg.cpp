@@ -1,0 +1,297 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vector_relational.hpp>
+#include <limits>
+#include <vector>
+
+#include "engine/scene/scene_error.hpp"
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{40, 30};
+
+bool is_black(const Picture& picture) {
+    return std::ranges::all_of(picture.pixels,
+                               [](const glm::vec3& pixel) { return pixel == glm::vec3(0.0F); });
+}
+
+/// The same light, surfaces and view, `factor` times as large; with intensities by its square, just as
+/// bright.
+Scene scaled_cornell_box(float factor) {
+    Scene scene = cornell_box();
+    std::vector<Entity> all;
+    for (const auto& [entity, transform] : scene.world.view<Transform>()) all.push_back(entity);
+    for (const Entity entity : all) {
+        scene.world.edit<Transform>(entity, [&](Transform& transform) {
+            transform.translation *= factor;
+            transform.scale *= factor;
+        });
+    }
+    scene.world.edit<PointLight>(scene.light, [&](PointLight& light) { light.intensity *= factor * factor; });
+    scene.world.edit<Camera>(scene.camera, [&](Camera& camera) { camera.near_plane *= factor; });
+    return scene;
+}
+
+class EdgeCases : public RenderFixture {
+ protected:
+    /// In both paths, which must agree.
+    Picture render_both(const Scene& scene, Configuration configuration = linear_configuration()) {
+        configuration.path = ShadingPath::forward;
+        configure(configuration);
+        renderer.invalidate();
+        const Picture forward = render(scene, size);
+        configuration.path = ShadingPath::deferred;
+        configure(configuration);
+        renderer.invalidate();
+        Picture deferred = render(scene, size);
+        CHECK(is_sane(deferred));
+        CHECK(worst_error(forward, deferred, 1e-6) < 1e-3);
+        return deferred;
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("edge cases") {
+    TEST_CASE_FIXTURE(EdgeCases, "an empty world, then things come and go") {
+        Scene scene;
+        scene.camera = add(scene.world, Transform{}, Camera{});
+        CHECK(is_black(render_both(scene)));
+        CHECK(renderer.report().triangles == 0);
+
+        SUBCASE("lights of every kind and no surface") {
+            add(scene.world, Transform{}, PointLight{});
+            add(scene.world, Transform{}, SpotLight{});
+            add(scene.world, Transform{}, DirectionalLight{});
+            CHECK(is_black(render_both(scene)));
+            CHECK(renderer.report().lights.count == 3);
+        }
+        SUBCASE("surfaces and no light") {
+            add(scene.world, Transform{}, MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
+            CHECK(is_black(render_both(scene)));
+            CHECK(renderer.report().lights.count == 0);
+            CHECK(renderer.report().vpls->alive == 0);
+        }
+        SUBCASE("meshes without triangles") {
+            const Primitive nothing{.vertices = {}, .indices = {}, .material = diffuse(glm::vec3(0.5F))};
+            add(scene.world, Transform{}, MeshInstance{std::make_shared<const Mesh>(Mesh{"", {nothing}})});
+            add(scene.world, Transform{}, MeshInstance{std::make_shared<const Mesh>(Mesh{"", {}})});
+            add(scene.world, Transform{}, PointLight{});
+            CHECK(is_black(render_both(scene)));
+        }
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "no VPLs and no bounces are the direct light") {
+        const Scene scene = cornell_box();
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::direct;
+        const Picture direct = render_both(scene, configuration);
+        configuration.show = Show::total;
+        configuration.vpls.count = 0;
+        CHECK(render_both(scene, configuration) == direct);
+        configuration.vpls = {.count = 256, .bounces = 0};
+        CHECK(render_both(scene, configuration) == direct);
+        CHECK(renderer.report().vpls->alive == 0);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "a light exactly on a surface, an edge and a corner") {
+        Scene scene = furnace_box(0.5F);
+        for (const glm::vec3 position :
+             {glm::vec3(1, 0.2F, 0.1F), glm::vec3(1, 1, 0.1F), glm::vec3(1, 1, 1), glm::vec3(0, 0, 0.9F)}) {
+            CAPTURE(position.x);
+            scene.world.set(scene.light, at(position));
+            const Picture picture = render_both(scene);
+            CHECK(mean(picture) > 1e-3);
+            // All the light is accounted for, wherever it went.
+            const EnergyAccount flux = renderer.report().vpls->flux;
+            const glm::dvec3 sum = flux.absorbed + flux.escaped + flux.truncated + flux.roulette;
+            CHECK(std::abs(sum.r / flux.emitted.r - 1.0) < 1e-3);
+        }
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases,
+                      "a light outside of a closed box leaves it dark, direct light and VPLs alike") {
+        Scene scene = furnace_box(0.5F);
+        scene.world.set(scene.light, at({0.3F, 1.5F, 0.2F}));
+        // Shadow maps leak within a texel of a silhouette: no pixel's centre is on the very edges of the box.
+        scene.world.set(scene.camera, looking({0.05F, 0.02F, 0.9F}, {0.03F, -0.04F, 0}));
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::direct;
+{Picture p=render_both(scene,configuration); auto&cam=scene.world.get<Camera>(scene.camera); auto&pose=scene.world.get<Transform>(scene.camera); for(unsigned y=0;y<size.y;++y) for(unsigned x=0;x<size.x;++x) if(p.at(x,y).r>0) {auto r=pixel_ray(cam,pose,size,x,y); double t=1e9; for(int k=0;k<3;++k){ double d=r.direction[k]; double tt=((d>0?1:-1)-r.origin[k])/d; t=std::min(t,tt);} auto q=r.origin+t*r.direction; printf("%u %u %g at %.4f %.4f %.4f\n",x,y,double(p.at(x,y).r),q.x,q.y,q.z); }puts("");}
+        // The walls' backs, which it shines on, reflect nothing.
+        configuration.show = Show::total;
+        CHECK(is_black(render_both(scene, configuration)));
+        scene.world.remove<PointLight>(scene.light);
+        scene.world.set(scene.light, looking({0.3F, 1.5F, 0.2F}, {0, 0, 0}));
+        scene.world.set(scene.light, DirectionalLight{.illuminance = 5.0F});
+        CHECK(is_black(render_both(scene, configuration)));
+        scene.world.remove<DirectionalLight>(scene.light);
+        scene.world.set(scene.light, SpotLight{.intensity = 5.0F});
+        CHECK(is_black(render_both(scene, configuration)));
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "targets of one pixel and of one row") {
+        Scene scene = cornell_box();
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            configure(linear_configuration(path));
+            for (const glm::uvec2 odd :
+                 {glm::uvec2(1, 1), glm::uvec2(4096, 1), glm::uvec2(1, 300), glm::uvec2(7, 5)}) {
+                // The whole width shows the box.
+                const float aspect = static_cast<float>(odd.x) / static_cast<float>(odd.y);
+                scene.world.set(scene.camera, Camera{.vertical_fov = 0.6F / std::max(aspect, 1.0F)});
+                const Picture picture = render(scene, odd);
+                CHECK(is_sane(picture));
+                CHECK(mean(picture) > 0.01);
+            }
+            // One pixel is the middle one of three by three, whose centre it shares.
+            CHECK(worst_error({{1, 1}, {render(scene, {3, 3}).at(1, 1)}}, render(scene, {1, 1}), 1e-4) <
+                  1e-3);
+        }
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "impossible targets are refused, and the next frame is as ever") {
+        const Scene scene = cornell_box();
+        configure(linear_configuration());
+        const Picture before = render(scene, size);
+        const std::uint32_t too_many = device.limits().texture_size + 1;
+        for (const glm::uvec2 bad : {glm::uvec2(0, 5), glm::uvec2(5, 0), glm::uvec2(too_many, 5)}) {
+            CHECK_THROWS_AS(renderer.render(scene.world, scene.camera, {0, bad}), gl::GlError);
+        }
+        CHECK(render(scene, size) == before);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "lights that emit nothing are as good as none") {
+        Scene scene = cornell_box();
+        const Picture one = render_both(scene);
+        add(scene.world, Transform{}, PointLight{.intensity = 0.0F});
+        add(scene.world, Transform{}, SpotLight{.colour = glm::vec3(0.0F)});
+        add(scene.world, Transform{}, DirectionalLight{.illuminance = 0.0F});
+        CHECK(render_both(scene) == one);
+        CHECK(renderer.report().lights.count == 1);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "a light without a Transform shines from the origin") {
+        Scene scene = furnace_box(0.5F);
+        scene.world.set(scene.light, Transform{});
+        const Picture with = render_both(scene);
+        scene.world.remove<Transform>(scene.light);
+        CHECK(render_both(scene) == with);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "tiny and huge scenes look like any other") {
+        const Picture usual = render_both(scaled_cornell_box(1.0F));
+        for (const float factor : {0.01F, 1000.0F}) {
+            CAPTURE(factor);
+            const Picture picture = render_both(scaled_cornell_box(factor));
+            CHECK(std::abs(mean(picture) / mean(usual) - 1.0) < 2e-3);
+            // Pixels on edges fall to either side by rounding, and texels of shadow maps: fewer than one in a
+            // hundred.
+            std::size_t off = 0;
+            for (std::size_t i = 0; i < usual.pixels.size(); ++i) {
+                const glm::vec3 d = glm::abs(picture.pixels[i] - usual.pixels[i]);
+                if (d.r + d.g + d.b > 0.01F * (usual.pixels[i].r + usual.pixels[i].g + usual.pixels[i].b))
+                    ++off;
+            }
+            CHECK(off * 100 < usual.pixels.size());
+        }
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "brightness is linear up to huge intensities, and tone-maps to white") {
+        Scene scene = cornell_box();
+        const Picture usual = render_both(scene);
+        Picture lit = usual;
+        for (glm::vec3& pixel : lit.pixels) pixel = glm::vec3(glm::greaterThan(pixel, glm::vec3(0.0F)));
+        for (const float factor : {1e-12F, 1e20F, 1e30F}) {
+            CAPTURE(factor);
+            scene = cornell_box();
+            scene.world.edit<PointLight>(scene.light, [&](PointLight& light) { light.intensity *= factor; });
+            Picture picture = render_both(scene);
+            for (glm::vec3& pixel : picture.pixels) pixel /= factor;
+            CHECK(worst_error(picture, usual, 1e-6) < 1e-3);
+            if (factor < 1.0F) continue;
+            configure({});
+            // All that is lit is white: not black or random, as where the curve divides infinity by itself.
+            CHECK(worst_error(render(scene, size), lit, 1.0) < 1e-5);
+        }
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "a camera that is none is an EntityError, and the renderer goes on") {
+        Scene scene = cornell_box();
+        configure(linear_configuration());
+        const Picture before = render(scene, size);
+        const Entity doomed = add(scene.world, Transform{}, Camera{});
+        scene.world.destroy(doomed);
+        const RenderTarget target(device, size);
+        CHECK_THROWS_AS(renderer.render(scene.world, doomed, target.target()), EntityError);
+        CHECK_THROWS_AS(renderer.render(scene.world, scene.light, target.target()), EntityError);
+        CHECK_THROWS_AS(renderer.render(scene.world, Entity{}, target.target()), EntityError);
+        CHECK(render(scene, size) == before);
+        CHECK(renderer.take_frames(true).size() == 2);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "a hierarchy that is none is a SceneError, and the renderer goes on") {
+        Scene scene = cornell_box();
+        configure(linear_configuration());
+        const Picture before = render(scene, size);
+        const Transform pose = scene.world.get<Transform>(scene.light);
+        scene.world.edit<Transform>(scene.light,
+                                    [&](Transform& transform) { transform.parent = scene.light; });
+        const RenderTarget target(device, size);
+        CHECK_THROWS_AS(renderer.render(scene.world, scene.camera, target.target()), SceneError);
+        scene.world.set(scene.light, pose);
+        CHECK(render(scene, size) == before);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases,
+                      "the strongest lights get the shadows that fit the budget; the rest are counted") {
+        Scene scene = cornell_box();
+        add(scene.world, looking({0, 1.5F, 1}, {0, 0, 0}), SpotLight{.intensity = 0.5F});
+        add(scene.world, looking({0, 1.5F, 1}, {0, 0, 0}),
+            SpotLight{.intensity = 0.6F, .casts_shadow = false});
+        Configuration configuration = linear_configuration();
+        // A cube of 512² texels takes 6 MiB, a map of 1024² takes 4.
+        struct Case {
+            std::uint32_t budget, with, without;
+        };
+        for (const Case& c : {Case{0, 0, 2}, Case{3, 0, 2}, Case{4, 1, 1}, Case{6, 1, 1}, Case{10, 2, 0}}) {
+            CAPTURE(c.budget);
+            configuration.shadows.budget_mib = c.budget;
+            configure(configuration);
+            CHECK(mean(render(scene, size)) > 0.01);
+            const LightReport lights = renderer.report().lights;
+            CHECK(lights.count == 3);
+            CHECK(lights.with_shadow == c.with);
+            CHECK(lights.without_shadow == c.without);
+        }
+        configuration.shadows.enabled = false;
+        configure(configuration);
+        static_cast<void>(render(scene, size));
+        CHECK(renderer.report().lights.with_shadow == 0);
+        CHECK(renderer.report().lights.without_shadow == 0);
+    }
+
+    TEST_CASE_FIXTURE(EdgeCases, "hundreds of lights: none is dropped") {
+        Scene scene = ground();
+        scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));
+        scene.world.set(scene.light, PointLight{.intensity = 1.0F});
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configuration.shadows = {.cube_resolution = 16, .budget_mib = 1};
+        const Picture one = render_both(scene, configuration);
+        for (int i = 0; i < 299; ++i) {
+            add(scene.world, at({0.4F, 1.0F, -0.2F}), PointLight{.intensity = 1.0F});
+        }
+        Picture many = render_both(scene, configuration);
+        for (glm::vec3& pixel : many.pixels) pixel /= 300.0F;
+        // A sum of 300 floats. A cube of 16² takes 6 KiB: 170 of them fill the budget.
+        CHECK(worst_error(many, one, 1e-6) < 1e-4);
+        CHECK(renderer.report().lights.with_shadow == 170);
+        CHECK(renderer.report().lights.without_shadow == 130);
+    }
+}
