@@ -82,7 +82,9 @@ void Window::listen() {
     });
 }
 
-gl::GetProc Window::get_proc() { return glfwGetProcAddress; }
+gl::GetProc Window::get_proc() {
+    return glfwGetProcAddress;
+}
 
 glm::ivec2 Window::size() const {
     glm::ivec2 size(0);

@@ -21,6 +21,21 @@ bool is_black(const Picture& picture) {
                                [](const glm::vec3& pixel) { return pixel == glm::vec3(0.0F); });
 }
 
+/// Whether no light gets into a box from -1 to 1. Shadow maps leak within a texel or two of a silhouette: the
+/// seams of the walls are left out, to a hundredth.
+bool is_dark_inside(const Scene& scene, const Picture& picture) {
+    for (std::uint32_t i = 0; i < picture.pixels.size(); ++i) {
+        const PixelRay ray =
+            pixel_ray(scene.world.get<Camera>(scene.camera), scene.world.get<Transform>(scene.camera),
+                      picture.size, i % picture.size.x, i / picture.size.x);
+        const glm::dvec3 t = (glm::sign(ray.direction) - ray.origin) / ray.direction;
+        const glm::dvec3 hit = glm::abs(ray.origin + std::min({t.x, t.y, t.z}) * ray.direction);
+        const double second = hit.x + hit.y + hit.z - 1.0 - std::min({hit.x, hit.y, hit.z});
+        if (second < 0.99 && picture.pixels[i] != glm::vec3(0.0F)) return false;
+    }
+    return true;
+}
+
 /// The same light, surfaces and view, `factor` times as large; with intensities by its square, just as
 /// bright.
 Scene scaled_cornell_box(float factor) {
@@ -119,21 +134,19 @@ TEST_SUITE("edge cases") {
                       "a light outside of a closed box leaves it dark, direct light and VPLs alike") {
         Scene scene = furnace_box(0.5F);
         scene.world.set(scene.light, at({0.3F, 1.5F, 0.2F}));
-        // Shadow maps leak within a texel of a silhouette: no pixel's centre is on the very edges of the box.
-        scene.world.set(scene.camera, looking({0.05F, 0.02F, 0.9F}, {0.03F, -0.04F, 0}));
         Configuration configuration = linear_configuration();
         configuration.show = Show::direct;
-        CHECK(is_black(render_both(scene, configuration)));
+        CHECK(is_dark_inside(scene, render_both(scene, configuration)));
         // The walls' backs, which it shines on, reflect nothing.
         configuration.show = Show::total;
-        CHECK(is_black(render_both(scene, configuration)));
+        CHECK(is_dark_inside(scene, render_both(scene, configuration)));
         scene.world.remove<PointLight>(scene.light);
         scene.world.set(scene.light, looking({0.3F, 1.5F, 0.2F}, {0, 0, 0}));
         scene.world.set(scene.light, DirectionalLight{.illuminance = 5.0F});
-        CHECK(is_black(render_both(scene, configuration)));
+        CHECK(is_dark_inside(scene, render_both(scene, configuration)));
         scene.world.remove<DirectionalLight>(scene.light);
         scene.world.set(scene.light, SpotLight{.intensity = 5.0F});
-        CHECK(is_black(render_both(scene, configuration)));
+        CHECK(is_dark_inside(scene, render_both(scene, configuration)));
     }
 
     TEST_CASE_FIXTURE(EdgeCases, "targets of one pixel and of one row") {

@@ -58,7 +58,9 @@ struct CloseDisplay {
 /// What the window shows: brightness of each pixel, the sum of its channels of 0 to 255.
 struct Shot {
     std::vector<int> pixels;
-    [[nodiscard]] int at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
+    [[nodiscard]] int at(int x, int y) const {
+        return pixels[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)];
+    }
     bool operator==(const Shot&) const = default;
 };
 
@@ -77,13 +79,14 @@ class App {
         REQUIRE_MESSAGE(display_, "no display: run under xvfb-run");
         flags.insert(flags.begin(), {CANDELA_APP, "--context", "window", "--size", "480x360"});
         std::vector<char*> arguments;
+        arguments.reserve(flags.size() + 1);
         for (std::string& flag : flags) arguments.push_back(flag.data());
         arguments.push_back(nullptr);
         REQUIRE(posix_spawn(&process_, CANDELA_APP, nullptr, nullptr, arguments.data(), environ) == 0);
         REQUIRE_MESSAGE(wait_until([&] { return find_window(DefaultRootWindow(display_.get())); }),
                         "no window");
         REQUIRE_MESSAGE(wait_until([&] { return mean(shoot(), 0, width) > 1.0; }), "nothing but black");
-        move_pointer(width / 2, height - 10);
+        move_pointer(width / 2.0, height - 10.0);
         press_key(XK_F1);
     }
     App(const App&) = delete;
