@@ -101,7 +101,7 @@ TEST_SUITE("gl device") {
     TEST_CASE("a driver that is too old, or no context, is refused by name") {
         CHECK(message_of(old_proc) == "OpenGL 4.5 is needed; Old Faithful offers 3.3 Geyser");
         CHECK(message_of(proc_without_context) == "no OpenGL context is current");
-        CHECK(message_of([](const char*) -> void* { return nullptr; }) ==
+        CHECK(message_of([](const char*) -> Proc { return nullptr; }) ==
               "the host's function look-up knows no glGetString or glGetIntegerv");
     }
 

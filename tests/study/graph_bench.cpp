@@ -11,6 +11,7 @@
 #include "engine/graph/compile.hpp"
 #include "engine/graph/execute.hpp"
 #include "engine/graph/frame_graph.hpp"
+#include "tests/study/study.hpp"
 
 namespace {
 
@@ -152,4 +153,10 @@ BENCHMARK_CAPTURE(run_idle_passes, diamonds, diamonds)->Apply(sizes);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int candela::study::graph(int count, char** arguments) {
+    benchmark::Initialize(&count, arguments);
+    if (benchmark::ReportUnrecognizedArguments(count, arguments)) { return 2; }
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
+}

@@ -1,0 +1,223 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{160, 120};
+
+/// A square occluder, parallel to the ground.
+struct Occluder {
+    glm::dvec3 centre{0.0, 0.5, 0.0};
+    double half = 0.4;
+};
+
+/// Where the line of light through a point of the ground passes, as the light sees it.
+struct LightRay {
+    glm::dvec3 from;
+    glm::dvec3 direction;  ///< to the point on the ground at parameter 1
+};
+
+bool blocked(const Occluder& occluder, const LightRay& ray) {
+    const double t = (occluder.centre.y - ray.from.y) / ray.direction.y;
+    const glm::dvec3 off = glm::abs(ray.from + t * ray.direction - occluder.centre);
+    return t > 0.0 && t < 1.0 && std::max(off.x, off.z) < occluder.half;
+}
+
+class ShadowMapTests : public RenderFixture {
+ protected:
+    ShadowMapTests() {
+        add(occluded_.world, at(glm::vec3(occluder_.centre)),
+            MeshInstance{square(static_cast<float>(occluder_.half), diffuse(glm::vec3(0.5F), true))});
+    }
+
+    template <class Light>
+    void light_up(const Transform& pose, const Light& light) {
+        for (Scene* scene : {&scene_, &occluded_}) {
+            scene->world.remove<PointLight>(scene->light);
+            scene->world.remove<SpotLight>(scene->light);
+            scene->world.remove<DirectionalLight>(scene->light);
+            scene->world.set(scene->light, pose);
+            scene->world.set(scene->light, light);
+        }
+    }
+
+    void shadows(bool enabled, std::uint32_t resolution) {
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configuration.shadows = {
+            .enabled = enabled, .cube_resolution = resolution, .map_resolution = resolution};
+        configure(configuration);
+    }
+
+    Picture picture(const Scene& scene) {
+        renderer.invalidate();
+        return render(scene, size);
+    }
+
+    /// Compares the shadow with the analytic one: inside nothing, outside all the light, the edge within
+    /// `margin` of the line, where `margin(ray)` gives how far a ray may go astray, as vectors added to its
+    /// direction or origin.
+    template <class Ray, class Astray>
+    void check_shadow(std::uint32_t resolution, const Ray& ray_to, const Astray& astray) {
+        shadows(false, resolution);
+        const Picture lit = picture(occluded_);
+        shadows(true, resolution);
+        const Picture shadowed = picture(occluded_);
+        std::size_t dark = 0, bright = 0, edge = 0, wrong = 0;
+        const auto& camera = occluded_.world.get<Camera>(occluded_.camera);
+        const auto& pose = occluded_.world.get<Transform>(occluded_.camera);
+        for (std::uint32_t i = 0; i < size.x * size.y; ++i) {
+            const PixelRay view = pixel_ray(camera, pose, size, i % size.x, i / size.x);
+            const glm::dvec3 point = view.origin - view.origin.y / view.direction.y * view.direction;
+            // The camera sees the occluder there, or its rim.
+            const glm::dvec3 off = glm::abs(
+                view.origin + (occluder_.centre.y - view.origin.y) / view.direction.y * view.direction -
+                occluder_.centre);
+            if (std::max(off.x, off.z) < occluder_.half + 0.05) continue;
+
+            const LightRay ray = ray_to(point);
+            std::size_t hits = 0;
+            constexpr int around = 16;
+            for (int k = 0; k < around; ++k) {
+                const double angle = 2.0 * std::numbers::pi * k / around;
+                hits += blocked(occluder_, astray(ray, std::cos(angle), std::sin(angle))) ? 1 : 0;
+            }
+            const float visible = lit.pixels[i].r > 0.0F ? shadowed.pixels[i].r / lit.pixels[i].r : 1.0F;
+            if (hits == around) {
+                ++dark;
+                wrong += visible == 0.0F ? 0 : 1;
+            } else if (hits == 0) {
+                ++bright;
+                wrong += visible == 1.0F ? 0 : 1;
+            } else {
+                ++edge;
+            }
+        }
+        CAPTURE(resolution);
+        CHECK(dark > 200);
+        CHECK(bright > 2000);
+        CHECK(edge > 20);
+        CHECK(wrong == 0);
+    }
+
+    Occluder occluder_;
+    Scene scene_ = ground();
+    Scene occluded_ = ground();
+};
+
+/// Two texels, and what a hundredth of the bias of a tenth adds.
+constexpr double texels = 2.05;
+
+}  // namespace
+
+TEST_SUITE("shadow maps") {
+    TEST_CASE_FIXTURE(ShadowMapTests, "a point light's shadow, also across the edges of the cube") {
+        // From the first, the shadow is on the face below; from the second, on two faces beside it and their
+        // edge.
+        for (const glm::dvec3 light : {glm::dvec3(0.2, 2.0, 0.1), glm::dvec3(0.9, 1.2, 0.8)}) {
+            light_up(at(glm::vec3(light)), PointLight{});
+            for (const std::uint32_t resolution : {128U, 512U}) {
+                check_shadow(
+                    resolution,
+                    [&](glm::dvec3 p) {
+                        return LightRay{light, p - light};
+                    },
+                    [&](LightRay ray, double u, double v) {
+                        // Texels of a face are squares of 2 / resolution at distance 1 along its axis.
+                        const glm::dvec3 a = glm::abs(ray.direction);
+                        const int axis = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
+                        const double step = texels * 2.0 / resolution * a[axis];
+                        ray.direction[(axis + 1) % 3] += step * std::numbers::sqrt2 * u;
+                        ray.direction[(axis + 2) % 3] += step * std::numbers::sqrt2 * v;
+                        return ray;
+                    });
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(ShadowMapTests, "a spot light's shadow") {
+        const glm::dvec3 light(0.8, 2.0, 0.3);
+        const Transform pose = looking(glm::vec3(light), {0.0F, 0.0F, -0.1F});
+        light_up(pose, SpotLight{.intensity = 2.0F, .inner_cone = 0.7F, .outer_cone = 0.8F});
+        for (const std::uint32_t resolution : {128U, 512U}) {
+            check_shadow(
+                resolution,
+                [&](glm::dvec3 p) {
+                    return LightRay{light, p - light};
+                },
+                [&](LightRay ray, double u, double v) {
+                    const glm::dquat turn(pose.rotation);
+                    const double depth = glm::dot(ray.direction, turn * glm::dvec3(0, 0, -1));
+                    // The map covers the cone and two texels more on each side.
+                    const double texel = 2.0 * std::tan(0.8) * (1.0 + 4.0 / resolution) / resolution;
+                    ray.direction +=
+                        texels * std::numbers::sqrt2 * texel * depth * (turn * glm::dvec3(u, v, 0));
+                    return ray;
+                });
+        }
+    }
+
+    TEST_CASE_FIXTURE(ShadowMapTests, "a directional light's shadow") {
+        const glm::dvec3 direction = glm::normalize(glm::dvec3(-0.5, -1.0, -0.3));
+        light_up(looking({0, 0, 0}, glm::vec3(direction)), DirectionalLight{});
+        for (const std::uint32_t resolution : {256U, 1024U}) {
+            check_shadow(
+                resolution,
+                [&](glm::dvec3 p) {
+                    return LightRay{p - 4.0 * direction, 4.0 * direction};
+                },
+                [&](LightRay ray, double u, double v) {
+                    // The map covers a ground of 8 m × 8 m, seen from any side: 8·√2 m at most.
+                    const double texel = 8.0 * std::numbers::sqrt2 / resolution;
+                    const glm::dvec3 right = glm::normalize(glm::cross(direction, glm::dvec3(0, 0, 1)));
+                    const glm::dvec3 up = glm::cross(right, direction);
+                    ray.from += texels * texel * (u * right + v * up);
+                    return ray;
+                });
+        }
+    }
+
+    TEST_CASE_FIXTURE(ShadowMapTests, "a plane alone shades no pixel of itself, however it is lit") {
+        struct Slant {
+            float height, distance;
+        };
+        for (const auto& [height, distance] :
+             {Slant{2.0F, 0.5F}, Slant{0.5F, 1.5F}, Slant{0.1F, 3.0F}, Slant{0.02F, 3.5F}}) {
+            for (const int kind : {0, 1, 2}) {
+                const Transform pose = looking({distance, height, 0.4F * distance}, {0, 0, 0});
+                if (kind == 0) light_up(pose, PointLight{});
+                if (kind == 1) light_up(pose, SpotLight{.outer_cone = 1.0F});
+                if (kind == 2) light_up(pose, DirectionalLight{});
+                for (const std::uint32_t resolution : {16U, 100U, 1024U}) {
+                    CAPTURE(height);
+                    CAPTURE(kind);
+                    CAPTURE(resolution);
+                    shadows(false, resolution);
+                    const Picture lit = picture(scene_);
+                    shadows(true, resolution);
+                    CHECK(mean(lit) > 0.0);
+                    CHECK(picture(scene_) == lit);
+                }
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(ShadowMapTests, "a light that casts no shadow shines through") {
+        light_up(at({0.2F, 2.0F, 0.1F}), PointLight{.casts_shadow = false});
+        shadows(true, 128);
+        const Picture with = picture(occluded_);
+        shadows(false, 128);
+        CHECK(picture(occluded_) == with);
+        light_up(at({0.2F, 2.0F, 0.1F}), PointLight{});
+        shadows(true, 128);
+        CHECK(picture(occluded_) != with);
+    }
+}
