@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "renderer/gl/device.hpp"
@@ -22,8 +23,10 @@ class Gpu {
     [[nodiscard]] const gl::Device& device() const { return device_; }
     [[nodiscard]] const gl::Functions& gl() const { return device_.gl(); }
 
-    /// The program of these stage files, compiled when first asked for and kept. Throws gl::ProgramError.
-    [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages);
+    /// The program of these stage files with these words defined, compiled when first asked for and kept. Throws
+    /// gl::ProgramError.
+    [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,
+                                             const std::vector<std::string>& defined = {});
 
     /// A vertex array for candela::Vertex and instance indices: see draw_scene.hpp.
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }
@@ -42,7 +45,8 @@ class Gpu {
  private:
     gl::Device device_;
     gl::ShaderLibrary shaders_;
-    std::map<std::vector<std::string>, gl::Program> programs_;
+    using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;
+    std::map<ProgramKey, gl::Program> programs_;
     gl::VertexArray mesh_vertices_;
     gl::VertexArray no_vertices_;
     gl::Texture white_;

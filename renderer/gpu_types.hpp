@@ -21,7 +21,7 @@ struct Instance {
     std::uint32_t pad2 = 0;
 };
 
-enum MaterialFlags : std::uint32_t { double_sided = 1, wrap_u_shift = 1, wrap_v_shift = 3 };
+enum MaterialFlags : std::uint32_t { double_sided = 1, wrap_u_shift = 1, wrap_v_shift = 3, blended = 32 };
 
 struct Material {
     glm::vec4 base_colour;
@@ -29,6 +29,10 @@ struct Material {
     std::uint32_t texel_width = 0;
     std::uint32_t texel_height = 0;
     std::uint32_t flags = 0;
+    float alpha_cutoff = 0.0F;
+    float pad0 = 0.0F;
+    float pad1 = 0.0F;
+    float pad2 = 0.0F;
 };
 
 enum class LightKind : std::uint32_t { point, spot, directional };
@@ -76,7 +80,7 @@ struct TraceTriangle {
     glm::vec3 edge_ab;
     std::uint32_t id;
     glm::vec3 edge_ac;
-    std::uint32_t pad0 = 0;
+    std::uint32_t masked = 0;
     glm::vec2 uv_a;
     glm::vec2 uv_b;
     glm::vec2 uv_c;

@@ -126,9 +126,10 @@ void declare(CLI::App& app, Options& options) {
         app, "--show", options.show,
         {{"total", Show::total}, {"direct", Show::direct}, {"indirect", Show::indirect}},
         "what goes into the picture");
-    add_choice<std::optional<ShadingPath>, ShadingPath>(
-        app, "--path", options.path, {{"forward", ShadingPath::forward}, {"deferred", ShadingPath::deferred}},
-        "how visible surfaces meet their lights");
+    std::vector<std::pair<std::string, ShadingPath>> paths;
+    for (const ShadingPath path : all_shading_paths) paths.emplace_back(to_string(path), path);
+    add_choice<std::optional<ShadingPath>, ShadingPath>(app, "--path", options.path, paths,
+                                                        "how visible surfaces meet their lights");
     add_choice<std::optional<bool>, bool>(app, "--indirect", options.indirect, {{"on", true}, {"off", false}},
                                           "light by way of surfaces");
     add_number(app, "--vpls", options.vpls, 0U, "virtual point lights");

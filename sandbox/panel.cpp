@@ -133,7 +133,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, con
 
 void Panel::draw_configuration(Renderer& renderer) {
     Configuration wanted = renderer.configuration();
-    combo("path", wanted.path, std::array{ShadingPath::forward, ShadingPath::deferred});
+    combo("path", wanted.path, all_shading_paths);
     combo("show", wanted.show, std::array{Show::total, Show::direct, Show::indirect});
     ImGui::Checkbox("indirect light", &wanted.indirect);
     drag("VPLs", wanted.vpls.count, 1.0F);

@@ -1,5 +1,7 @@
-// Traversal of the bounding-volume hierarchy; the twin of engine/bvh, formula for formula.
+// Traversal of the bounding-volume hierarchy; the twin of engine/bvh, formula for formula, but for the holes of masks,
+// which rays pass through.
 #include "bindings.glsl"
+#include "materials.glsl"
 #include "types.glsl"
 
 layout(std430, binding = BINDING_BVH_NODES) readonly restrict buffer BvhNodes { BvhNode bvh_nodes[]; };
@@ -50,7 +52,7 @@ void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, in
     if (u < 0.0 || v < 0.0 || u + v > 1.0 || t <= t_min) return;
     bool nearer = t < hit.t;
     bool tie = t == hit.t && hit.triangle != NO_TRIANGLE && triangle.id < triangles[hit.triangle].id;
-    if (nearer || tie) hit = Hit(t, vec2(u, v), index);
+    if ((nearer || tie) && !is_hole(triangle, vec2(u, v))) hit = Hit(t, vec2(u, v), index);
 }
 
 // Nearest triangle with t in (t_min, t_max), whichever side it shows; `triangle` is NO_TRIANGLE if there is none.

@@ -1,7 +1,6 @@
 // Shades the G-buffer. An invocation takes four pixels of a tile of 16 × 16, 8 apart, and fetches each light once for
 // all four.
 #include "bindings.glsl"
-#include "light_list_all.glsl"
 
 #define SURFACES 4
 #include "lighting.glsl"
@@ -24,9 +23,11 @@ ivec2 pixel(int s) {
 void main() {
     float depth[SURFACES];
     Surface surfaces[SURFACES];
+    uvec2 pixels[SURFACES];
     float nearest = 0.0;
     for (int s = 0; s < SURFACES; ++s) {
         ivec2 at = min(pixel(s), ivec2(target_size) - 1);
+        pixels[s] = uvec2(at);
         depth[s] = texelFetch(gbuffer_depth, at, 0).r;
         nearest = max(nearest, depth[s]);
         PackedSurface stored = PackedSurface(texelFetch(gbuffer_albedo, at, 0).rgb, texelFetch(gbuffer_normal, at, 0).rg);
@@ -34,7 +35,7 @@ void main() {
     }
     vec3 reflected[SURFACES];
     for (int s = 0; s < SURFACES; ++s) reflected[s] = vec3(0.0);
-    if (nearest > 0.0) reflect_radiance(surfaces, reflected);
+    if (nearest > 0.0) reflect_radiance(surfaces, pixels, reflected);
     // Stores beyond the target are discarded by the GL.
     for (int s = 0; s < SURFACES; ++s) imageStore(radiance, pixel(s), depth[s] > 0.0 ? vec4(reflected[s], 1.0) : vec4(0.0));
 }

@@ -1,16 +1,21 @@
 #include "mesh_surface.glsl"
-#include "light_list_all.glsl"
 #include "lighting.glsl"
 
 uniform mat4 world_from_clip;
 uniform vec2 target_size;
 
-layout(location = 0) out vec4 radiance;
+// Blending, where it is on, leaves radiance + (1 - cover) · what is behind, and alpha telling where a surface is.
+layout(location = 0, index = 0) out vec4 radiance;
+layout(location = 0, index = 1) out vec4 cover;
 
 void main() {
+    vec4 colour = fragment_colour();
     Surface surfaces[SURFACES];
+    uvec2 pixels[SURFACES];
     vec3 reflected[SURFACES];
-    surfaces[0] = unpack_surface(fragment_surface(), gl_FragCoord.xyz, target_size, world_from_clip);
-    reflect_radiance(surfaces, reflected);
-    radiance = vec4(reflected[0], 1.0);
+    pixels[0] = uvec2(gl_FragCoord.xy);
+    surfaces[0] = unpack_surface(fragment_surface(colour.rgb), gl_FragCoord.xyz, target_size, world_from_clip);
+    reflect_radiance(surfaces, pixels, reflected);
+    cover = vec4(fragment_cover(colour));
+    radiance = vec4(cover.rgb * reflected[0], 1.0);
 }

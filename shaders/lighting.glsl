@@ -1,7 +1,8 @@
 // The one evaluator of light: real lights with their shadows, and virtual point lights. A shading path finds the
-// surfaces and, by including a light list before this file, says which lights to visit. An invocation shades SURFACES
-// of them, which share the list.
+// surfaces; light_list.glsl says which lights each of them visits. An invocation shades SURFACES of them, which have one
+// list together unless LIGHT_LIST_PER_SURFACE says otherwise.
 #include "bindings.glsl"
+#include "light_list.glsl"
 #include "lights.glsl"
 #include "shadow.glsl"
 #include "surface.glsl"
@@ -14,7 +15,6 @@
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
 
-uniform uint light_count;
 uniform uint vpl_count;
 uniform float vpl_radius2;  // of the disc that a VPL stands for, m²
 
@@ -41,23 +41,40 @@ float geometry_term(Vpl vpl, Surface surface) {
 // Share of the VPL's light that reaches the surface. VPLs shine through walls as yet.
 float vpl_visibility(uint index, Surface surface) { return 1.0; }
 
-// Radiance that surfaces reflect: ρ/π times their irradiance. Light for light, all surfaces of the invocation at once,
-// so that what a light or a VPL is gets fetched once for all of them.
-void reflect_radiance(Surface surfaces[SURFACES], out vec3 radiance[SURFACES]) {
+// Irradiance from the lights that the surfaces visit, light by light, so that each is fetched once for all of them.
+void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
+#ifdef LIGHT_LIST_PER_SURFACE
+    for (int s = 0; s < SURFACES; ++s) {
+        LightListRange list = light_list_at(pixels[s], surfaces[s].position);
+        for (uint i = 0u; i < list.size; ++i) {
+            irradiance[s] += irradiance_from_light(lights[light_list_entry(list, i)], surfaces[s]);
+        }
+    }
+#else
+    LightListRange list = light_list_at(pixels[0], surfaces[0].position);
+    for (uint i = 0u; i < list.size; ++i) {
+        Light light = lights[light_list_entry(list, i)];
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_light(light, surfaces[s]);
+    }
+#endif
+}
+
+// π times the irradiance from the VPLs. All surfaces visit all of them: a VPL reaches everything in front of it.
+void gather_vpls(Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+    for (uint i = 0u; i < vpl_count; ++i) {
+        Vpl vpl = vpls[i];
+        for (int s = 0; s < SURFACES; ++s) {
+            irradiance[s] += vpl.flux * (geometry_term(vpl, surfaces[s]) * vpl_visibility(i, surfaces[s]));
+        }
+    }
+}
+
+// Radiance that surfaces reflect: ρ/π times their irradiance. `pixels` are theirs, from the target's lower left.
+void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
     vec3 direct[SURFACES];
     vec3 indirect[SURFACES];
     for (int s = 0; s < SURFACES; ++s) direct[s] = indirect[s] = vec3(0.0);
-
-    for (uint i = 0u; i < light_list_size(light_count); ++i) {
-        Light light = lights[light_list_entry(i)];
-        for (int s = 0; s < SURFACES; ++s) direct[s] += irradiance_from_light(light, surfaces[s]);
-    }
-    for (uint i = 0u; i < vpl_list_size(vpl_count); ++i) {
-        uint index = vpl_list_entry(i);
-        Vpl vpl = vpls[index];
-        for (int s = 0; s < SURFACES; ++s) {
-            indirect[s] += vpl.flux * (geometry_term(vpl, surfaces[s]) * vpl_visibility(index, surfaces[s]));
-        }
-    }
+    gather_lights(surfaces, pixels, direct);
+    gather_vpls(surfaces, indirect);
     for (int s = 0; s < SURFACES; ++s) radiance[s] = surfaces[s].albedo / PI * (direct[s] + indirect[s] / PI);
 }

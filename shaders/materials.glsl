@@ -1,7 +1,6 @@
-// Reflectance where a traced ray hits: the base colour with its image, read from the texel buffer, since a compute
-// shader cannot choose among textures. The images there are reduced; a diffuse bounce needs no more.
+// Base colour where a traced ray hits, with its image, read from the texel buffer, since a compute shader cannot choose
+// among textures. The images there are reduced; a diffuse bounce needs no more.
 #include "bindings.glsl"
-#include "bvh.glsl"
 #include "maths.glsl"
 #include "types.glsl"
 
@@ -22,25 +21,32 @@ int wrap(int x, int size, uint mode) {
     return clamp(x, 0, size - 1);
 }
 
-vec3 texel(Material material, ivec2 at) {
+// Linear, alpha included.
+vec4 texel(Material material, ivec2 at) {
     int x = wrap(at.x, int(material.texel_width), (material.flags >> MATERIAL_WRAP_U_SHIFT) & MATERIAL_WRAP_MASK);
     int y = wrap(at.y, int(material.texel_height), (material.flags >> MATERIAL_WRAP_V_SHIFT) & MATERIAL_WRAP_MASK);
-    return srgb_decode(unpackUnorm4x8(texels[material.first_texel + uint(y) * material.texel_width + uint(x)]).rgb);
+    vec4 stored = unpackUnorm4x8(texels[material.first_texel + uint(y) * material.texel_width + uint(x)]);
+    return vec4(srgb_decode(stored.rgb), stored.a);
 }
 
-vec3 bilinear_texel(Material material, vec2 uv) {
+vec4 bilinear_texel(Material material, vec2 uv) {
     vec2 at = uv * vec2(material.texel_width, material.texel_height) - 0.5;
     ivec2 corner = ivec2(floor(at));
     vec2 f = at - vec2(corner);
-    vec3 top = mix(texel(material, corner), texel(material, corner + ivec2(1, 0)), f.x);
-    vec3 bottom = mix(texel(material, corner + ivec2(0, 1)), texel(material, corner + ivec2(1, 1)), f.x);
+    vec4 top = mix(texel(material, corner), texel(material, corner + ivec2(1, 0)), f.x);
+    vec4 bottom = mix(texel(material, corner + ivec2(0, 1)), texel(material, corner + ivec2(1, 1)), f.x);
     return mix(top, bottom, f.y);
 }
 
-vec3 hit_albedo(TraceTriangle triangle, vec2 barycentric) {
+vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {
     Material material = materials[triangle.material];
-    vec3 albedo = material.base_colour.rgb;
-    if (material.texel_width == 0u) return albedo;
+    if (material.texel_width == 0u) return material.base_colour;
     vec2 uv = triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
-    return albedo * bilinear_texel(material, uv);
+    return material.base_colour * bilinear_texel(material, uv);
+}
+
+// Whether a ray passes through a hole of the triangle's mask there.
+bool is_hole(TraceTriangle triangle, vec2 barycentric) {
+    if (triangle.masked == 0u) return false;
+    return hit_colour(triangle, barycentric).a < materials[triangle.material].alpha_cutoff;
 }

@@ -2,6 +2,8 @@
 
 uniform mat4 clip_from_world;
 
+invariant gl_Position;  // a depth pre-pass and what is tested against it must agree to the bit
+
 out vec3 normal;
 out vec2 uv;
 flat out uint material_index;

@@ -15,12 +15,17 @@ struct Material {
     uint texel_width;     // 0: no texture
     uint texel_height;
     uint flags;           // MATERIAL_*
+    float alpha_cutoff;   // where alpha is below it there is no surface; 0: there always is one
+    float pad0;
+    float pad1;
+    float pad2;
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u
 #define MATERIAL_WRAP_U_SHIFT 1u
 #define MATERIAL_WRAP_V_SHIFT 3u
 #define MATERIAL_WRAP_MASK 3u
+#define MATERIAL_BLENDED 32u
 
 struct Light {
     vec3 position;   // metres; directional: centre of the footprint, outside the scene
@@ -74,7 +79,7 @@ struct TraceTriangle {
     vec3 edge_ab;
     uint id;  // in the caller's numbering
     vec3 edge_ac;
-    uint pad0;
+    uint masked;  // 1: the material's mask may have holes in it
     vec2 uv_a;
     vec2 uv_b;
     vec2 uv_c;

@@ -1,5 +1,6 @@
 // Traces paths of light from the lights and leaves a VPL at every diffuse bounce: Keller, "Instant Radiosity" (1997).
-// One invocation a path; path and bounce give the VPL's place, so that the order is that of the paths.
+// Blended surfaces are not among the triangles: light passes through them unchanged. One invocation a path; path and
+// bounce give the VPL's place, so that the order is that of the paths.
 #include "bindings.glsl"
 #include "bvh.glsl"
 #include "lights.glsl"
@@ -72,7 +73,7 @@ void main() {
         vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
         bool from_front = dot(front, direction) < 0.0;
         vec3 normal = from_front ? front : -front;
-        vec3 albedo = from_front || is_double_sided(triangle.material) ? hit_albedo(triangle, hit.barycentric) : vec3(0.0);
+        vec3 albedo = from_front || is_double_sided(triangle.material) ? hit_colour(triangle, hit.barycentric).rgb : vec3(0.0);
         vec3 position = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
 
         vec3 reflected = carried * albedo;

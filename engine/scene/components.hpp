@@ -47,7 +47,14 @@ struct Image {
     Wrap wrap_v = Wrap::repeat;
 };
 
-/// A Lambertian surface. Albedo = `base_colour` × the decoded texture, each channel in [0, 1].
+/// What a material's alpha means (glTF's alphaMode).
+enum class AlphaMode : std::uint8_t {
+    opaque,  ///< nothing
+    mask,    ///< where it is below the cutoff there is no surface: it is neither seen nor does it stop light
+    blend    ///< share of the light behind that the surface covers; see add_transparent
+};
+
+/// A Lambertian surface. Albedo = `base_colour` × the decoded texture, each channel in [0, 1]; so is alpha.
 /// The back of a single-sided surface is not drawn and reflects nothing, yet it still stops light.
 struct Material {
     std::string name;
@@ -55,6 +62,8 @@ struct Material {
     std::shared_ptr<const Image> base_colour_texture;  ///< null: none
     glm::vec3 emissive{0.0F};                          ///< linear; kept for later, not yet emitted
     bool double_sided = false;
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;  ///< of AlphaMode::mask, >= 0
 };
 
 /// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.

@@ -28,7 +28,7 @@ struct ImportReport {
 ///
 /// Of the extensions KHR_lights_punctual is supported. Another one that the file requires is an error; one
 /// that it merely uses is a warning, as are points and lines, skins, animations, morph targets, vertex
-/// colours, alpha modes and base colours that read a second set of texture coordinates. Triangles without
+/// colours and base colours that read a second set of texture coordinates. Triangles without
 /// area are dropped. A matrix with shear, which no Transform can hold, becomes two entities, one the parent
 /// of the other (see decompose).
 ///

@@ -123,13 +123,17 @@ std::shared_ptr<const Image> base_colour_texture(const tinygltf::TextureInfo& in
     return image;
 }
 
+/// The schema has let through no other name.
+AlphaMode to_alpha_mode(std::string_view name) {
+    if (name == "MASK") {
+        return AlphaMode::mask;
+    }
+    return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
+}
+
 Material read_material(const tinygltf::Material& source, const std::string& label, Document& document,
                        Images& images, const std::filesystem::path& base_directory) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    if (source.alphaMode != "OPAQUE") {
-        document.warnings.push_back(
-            fmt::format("{}: alpha mode {} is not supported; it is opaque", label, source.alphaMode));
-    }
     Material material;
     material.name = source.name;
     for (int i = 0; i < 4; ++i) {
@@ -141,6 +145,8 @@ Material read_material(const tinygltf::Material& source, const std::string& labe
     material.base_colour_texture =
         base_colour_texture(pbr.baseColorTexture, label, document, images, base_directory);
     material.double_sided = source.doubleSided;
+    material.alpha_mode = to_alpha_mode(source.alphaMode);
+    material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
     return material;
 }
 

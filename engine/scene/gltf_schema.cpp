@@ -1,5 +1,6 @@
 #include "engine/scene/gltf_schema.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
@@ -135,6 +136,17 @@ Check version() {
     };
 }
 
+Check one_of(std::vector<std::string_view> names) {
+    return [names = std::move(names)](const Json& value, const Json&) -> Fault {
+        if (!value.is_string()) {
+            return "is not a string";
+        }
+        const auto& name = value.get_ref<const std::string&>();
+        const bool known = std::ranges::find(names, name) != names.end();
+        return known ? Fault{} : fmt::format("is \"{}\", not one of {}", name, fmt::join(names, ", "));
+    };
+}
+
 /// An index into the array at `path` of the document, called `plural` in messages.
 Check index_into(const char* path, const char* plural) {
     return [pointer = Json::json_pointer(path), plural](const Json& value, const Json& document) -> Fault {
@@ -205,7 +217,8 @@ std::vector<Rule> rules() {
         {"textures.[].source", image},
         {"materials.[].name", text()},
         {"materials.[].doubleSided", flag()},
-        {"materials.[].alphaMode", text()},
+        {"materials.[].alphaMode", one_of({"OPAQUE", "MASK", "BLEND"})},
+        {"materials.[].alphaCutoff", number(not_negative)},
         {"materials.[].emissiveFactor", numbers(3, not_negative)},
         {"materials.[].pbrMetallicRoughness.baseColorFactor", numbers(4, unit)},
         {"materials.[].pbrMetallicRoughness.baseColorTexture", has({"index"})},

@@ -1,8 +1,11 @@
 #include "renderer/configuration/build_frame.hpp"
 
 #include "renderer/passes/deferred.hpp"
+#include "renderer/passes/depth_prepass.hpp"
 #include "renderer/passes/forward.hpp"
 #include "renderer/passes/gbuffer.hpp"
+#include "renderer/passes/light_lists.hpp"
+#include "renderer/passes/transparent.hpp"
 
 namespace candela {
 
@@ -23,22 +26,45 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     if (configuration.indirect) {
         frame.vpls = add_vpl_trace(graph, gpu, tracing, frame.lights, buffers.lights, configuration.vpls);
     }
+    const ValueHandle<CameraView> view = add_view(graph, frame.request);
+
+    // The surfaces, as far as they are found before they are shaded.
+    const PathParts path = parts_of(configuration.path);
+    std::optional<TextureHandle> depth;
+    std::optional<Gbuffer> gbuffer;
+    if (path.surface == SurfaceStage::gbuffer) {
+        gbuffer = add_gbuffer(graph, gpu, scene, view, size);
+        depth = gbuffer->depth;
+    } else if (path.surface == SurfaceStage::forward_after_prepass) {
+        depth = add_depth_prepass(graph, gpu, scene, view, size);
+    }
+
+    if (path.list == LightList::tile) {
+        frame.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, depth, size, configuration.lists);
+    } else if (path.list == LightList::cluster) {
+        frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, frame.metrics, size,
+                                         configuration.lists);
+    }
+
     const Lighting lighting{.lights = frame.lights,
                             .metrics = frame.metrics,
                             .buffers = buffers,
                             .shadows = shadows,
                             .vpls = frame.vpls,
+                            .lists = frame.lists,
                             .show = configuration.show,
                             .geometry_bound = configuration.geometry_bound};
+    const ShadedSurfaces solid =
+        gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
+                : add_forward(graph, gpu, scene, lighting, view, depth, size);
 
-    const ValueHandle<CameraView> view = add_view(graph, frame.request);
-    TextureHandle radiance;
-    if (configuration.path == ShadingPath::forward) {
-        radiance = add_forward(graph, gpu, scene, lighting, view, size);
-    } else {
-        const Gbuffer gbuffer = add_gbuffer(graph, gpu, scene, view, size);
-        radiance = add_deferred(graph, gpu, gbuffer, lighting, view, size);
+    // Blended surfaces lie in front of what bounds the lists in depth.
+    Lighting unbounded = lighting;
+    if (path.list == LightList::tile && depth) {
+        unbounded.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, std::nullopt, size,
+                                          configuration.lists);
     }
+    const TextureHandle radiance = add_transparent(graph, gpu, scene, unbounded, view, solid, size);
     add_tone_map(graph, gpu, radiance, frame.target, size, configuration.tone_map);
     return frame;
 }

@@ -5,6 +5,7 @@
 #include "engine/graph/frame_graph.hpp"
 #include "renderer/configuration/configuration.hpp"
 #include "renderer/passes/bvh.hpp"
+#include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/lights.hpp"
 #include "renderer/passes/view.hpp"
 
@@ -17,7 +18,8 @@ struct FrameHandles {
     ValueHandle<SceneMetrics> metrics;
     ValueHandle<LightTable> lights;
     ValueHandle<ShadowPlan> shadows;
-    std::optional<Vpls> vpls;
+    std::optional<Vpls> vpls;         ///< none without indirect light
+    std::optional<LightLists> lists;  ///< none where all surfaces visit all lights
 };
 
 /// Declares the frame that a valid configuration asks for, at one size of target in pixels.

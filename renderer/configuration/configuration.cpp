@@ -12,7 +12,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 2> path_names{"forward", "deferred"};
+constexpr std::array<std::string_view, all_shading_paths.size()> path_names{
+    "forward",        "tiled-forward",     "forward+",          "deferred",
+    "tiled-deferred", "clustered-forward", "clustered-deferred"};
 constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
 
 std::span<const std::string_view> names_of(ShadingPath /*type*/) {
@@ -40,6 +42,10 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("bounces", c.vpls.bounces, {0, 64});
         visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
         visitor.member("geometry_bound", c.geometry_bound, {1e-6, infinity});
+    });
+    visitor.group("lists", [&] {
+        visitor.member("tile_size", c.lists.tile_size, {16, 64});
+        visitor.member("slices", c.lists.slices, {2, 256});
     });
     visitor.group("shadows", [&] {
         visitor.member("enabled", c.shadows.enabled);
@@ -213,6 +219,9 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     visit(configuration, reader);
     reader.report_unknown();
     if (result.faults.empty()) {
+        result.faults = validate(configuration);
+    }
+    if (result.faults.empty()) {
         result.configuration = configuration;
     }
     return result;
@@ -229,25 +238,51 @@ std::vector<std::string> validate(const Configuration& configuration) {
     std::vector<std::string> faults;
     Validator validator(faults);
     visit(configuration, validator);
+    if (configuration.lists.tile_size % 16 != 0) {
+        faults.push_back(fmt::format("lists.tile_size: {} is not a multiple of 16", configuration.lists.tile_size));
+    }
     return faults;
 }
 
 std::span<const NamedConfiguration> named_configurations() {
-    static const std::array<NamedConfiguration, 4> configurations = [] {
-        Configuration forward;
-        forward.path = ShadingPath::forward;
-        Configuration direct_only;
-        direct_only.indirect = false;
-        Configuration many;
-        many.vpls.count = 2048;
-        many.vpls.bounces = 5;
-        return std::array<NamedConfiguration, 4>{
-            {{"deferred", "G-buffer, then one pass over all lights and VPLs", {}},
-             {"forward", "surfaces shaded as they are rasterised, by all lights and VPLs", forward},
-             {"direct", "deferred, without indirect light", direct_only},
-             {"many-vpls", "deferred, 2048 VPLs and five bounces", many}}};
+    static const std::vector<NamedConfiguration> configurations = [] {
+        std::vector<NamedConfiguration> named;
+        const auto add = [&](std::string_view name, std::string_view description, auto change) {
+            Configuration configuration;
+            change(configuration);
+            named.push_back({name, description, configuration});
+        };
+        constexpr std::array<std::string_view, all_shading_paths.size()> descriptions{
+            "surfaces shaded as they are rasterised, by all lights",
+            "the same, by the lights of their screen tile",
+            "the same after a depth pre-pass, which bounds the tiles in depth",
+            "G-buffer, then one dispatch over all lights",
+            "the same, by the lights of each tile, bounded in depth",
+            "forward, by the lights of each cluster: a tile cut into slices of depth",
+            "deferred, by the lights of each cluster"};
+        for (std::size_t i = 0; i < all_shading_paths.size(); ++i) {
+            add(path_names.at(i), descriptions.at(i), [&](Configuration& c) { c.path = all_shading_paths.at(i); });
+        }
+        add("direct", "the default path without indirect light", [](Configuration& c) { c.indirect = false; });
+        add("many-vpls", "the default path with 2048 VPLs and five bounces", [](Configuration& c) {
+            c.vpls.count = 2048;
+            c.vpls.bounces = 5;
+        });
+        return named;
     }();
     return configurations;
+}
+
+PathParts parts_of(ShadingPath path) {
+    static constexpr std::array<PathParts, all_shading_paths.size()> parts{
+        {{SurfaceStage::forward, LightList::all},
+         {SurfaceStage::forward, LightList::tile},
+         {SurfaceStage::forward_after_prepass, LightList::tile},
+         {SurfaceStage::gbuffer, LightList::all},
+         {SurfaceStage::gbuffer, LightList::tile},
+         {SurfaceStage::forward, LightList::cluster},
+         {SurfaceStage::gbuffer, LightList::cluster}}};
+    return parts.at(static_cast<std::size_t>(path));
 }
 
 std::string_view to_string(ShadingPath path) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -7,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/lighting.hpp"
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/tone_map.hpp"
@@ -14,8 +16,31 @@
 
 namespace candela {
 
-/// How surfaces are found and shaded.
-enum class ShadingPath : std::uint8_t { forward, deferred };
+/// How surfaces are found, and which lights each visits. Names as in JSON and on the command line, in this order:
+/// forward, tiled-forward, forward+, deferred, tiled-deferred, clustered-forward, clustered-deferred.
+enum class ShadingPath : std::uint8_t {
+    forward,             ///< rasterised and shaded at once; all lights
+    tiled_forward,       ///< the same with lists of tiles, unbounded in depth
+    forward_plus,        ///< depth pre-pass, then the same with lists bound by depth
+    deferred,            ///< G-buffer, then one dispatch over all lights
+    tiled_deferred,      ///< the same with lists of tiles, bound by depth
+    clustered_forward,   ///< forward with lists of clusters
+    clustered_deferred   ///< deferred with lists of clusters
+};
+inline constexpr std::array all_shading_paths{
+    ShadingPath::forward,        ShadingPath::tiled_forward,     ShadingPath::forward_plus,
+    ShadingPath::deferred,       ShadingPath::tiled_deferred,    ShadingPath::clustered_forward,
+    ShadingPath::clustered_deferred};
+
+/// How a path finds the surfaces that it shades.
+enum class SurfaceStage : std::uint8_t { forward, forward_after_prepass, gbuffer };
+
+/// The two axes of a path.
+struct PathParts {
+    SurfaceStage surface;
+    LightList list;
+};
+[[nodiscard]] PathParts parts_of(ShadingPath path);
 
 /// Everything that a user chooses about a frame. The defaults are what the app uses when nothing else is
 /// asked for.
@@ -25,6 +50,7 @@ struct Configuration {
     bool indirect = true;
     VplSettings vpls;
     float geometry_bound = 1.0F;  ///< factor on the bound of a VPL's geometry term: see vpl_radius2
+    ListSettings lists;
     ShadowSettings shadows;
     ToneMapSettings tone_map;
     bool operator==(const Configuration&) const = default;

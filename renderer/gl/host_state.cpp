@@ -27,7 +27,10 @@ HostState::HostState(const Functions& gl)
       front_face_(get(GL_FRONT_FACE)),
       cull_face_(get(GL_CULL_FACE_MODE)),
       clip_origin_(get(GL_CLIP_ORIGIN)),
-      clip_depth_(get(GL_CLIP_DEPTH_MODE)) {
+      clip_depth_(get(GL_CLIP_DEPTH_MODE)),
+      blend_equation_{get(GL_BLEND_EQUATION_RGB), get(GL_BLEND_EQUATION_ALPHA)},
+      blend_factors_{get(GL_BLEND_SRC_RGB), get(GL_BLEND_DST_RGB), get(GL_BLEND_SRC_ALPHA),
+                     get(GL_BLEND_DST_ALPHA)} {
     gl.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
     gl.GetBooleanv(GL_COLOR_WRITEMASK, colour_mask_.data());
     gl.GetIntegerv(GL_VIEWPORT, viewport_.data());
@@ -76,6 +79,10 @@ HostState::~HostState() {
     gl.CullFace(static_cast<GLenum>(cull_face_));
     gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_[0]));
     gl.ClipControl(static_cast<GLenum>(clip_origin_), static_cast<GLenum>(clip_depth_));
+    gl.BlendEquationSeparate(static_cast<GLenum>(blend_equation_[0]),
+                             static_cast<GLenum>(blend_equation_[1]));
+    gl.BlendFuncSeparate(static_cast<GLenum>(blend_factors_[0]), static_cast<GLenum>(blend_factors_[1]),
+                         static_cast<GLenum>(blend_factors_[2]), static_cast<GLenum>(blend_factors_[3]));
     gl.DepthMask(depth_mask_);
     gl.ColorMask(colour_mask_[0], colour_mask_[1], colour_mask_[2], colour_mask_[3]);
     gl.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);

@@ -9,7 +9,7 @@ namespace candela::gl {
 
 /// Puts the host's state aside and sets what rendering assumes: depth in [0, 1] (glClipControl), and nothing
 /// enabled that a host may have turned on. At its end the host finds its framebuffers, program, vertex array,
-/// viewport, enables, depth, culling, polygon, colour and clip state as they were. Texture units, samplers,
+/// viewport, enables, depth, blending, culling, polygon, colour and clip state as they were. Texture units, samplers,
 /// indexed buffers and the indirect buffer that rendering used are left unbound.
 class HostState {
  public:
@@ -32,6 +32,8 @@ class HostState {
     GLint cull_face_;
     GLint clip_origin_;
     GLint clip_depth_;
+    std::array<GLint, 2> blend_equation_;  // of colour, of alpha
+    std::array<GLint, 4> blend_factors_;   // source and destination of colour, then of alpha
     GLboolean depth_mask_ = GL_TRUE;
     std::array<GLint, 4> viewport_{};
     std::array<GLint, 2> polygon_mode_{};  // one of both faces; some drivers write two values

@@ -40,7 +40,7 @@ glm::uvec3 corners(const SceneLayout& layout, const Origin& origin) {
 
 WorldTriangles place_triangles(const SceneLayout& layout, const ScenePlacement& placement) {
     WorldTriangles world;
-    for (std::uint32_t d = 0; d < layout.drawables.size(); ++d) {
+    for (std::uint32_t d = 0; d < layout.solid_count; ++d) {
         const Primitive& primitive = *layout.drawables[d].primitive;
         const glm::mat4& matrix = placement.world[layout.drawables[d].item];
         for (std::uint32_t i = 0; i < primitive.indices.size(); i += 3) {
@@ -57,7 +57,7 @@ WorldTriangles place_triangles(const SceneLayout& layout, const ScenePlacement& 
 
 std::vector<const Primitive*> primitives_of(const SceneLayout& layout) {
     std::vector<const Primitive*> primitives;
-    for (const SceneLayout::Drawable& drawable : layout.drawables) {
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
         primitives.push_back(drawable.primitive);
     }
     return primitives;
@@ -96,6 +96,7 @@ std::vector<gpu::TraceTriangle> trace_triangles(const SceneLayout& layout, const
                              .edge_ab = triangle.b - triangle.a,
                              .id = id,
                              .edge_ac = triangle.c - triangle.a,
+                             .masked = origin.drawable < layout.opaque_count ? 0U : 1U,
                              .uv_a = vertices[corner.x].uv,
                              .uv_b = vertices[corner.y].uv,
                              .uv_c = vertices[corner.z].uv});

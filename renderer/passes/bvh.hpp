@@ -11,7 +11,8 @@
 
 namespace candela {
 
-/// What the lighting needs to know of the scene as a whole, in world space.
+/// What the lighting needs to know of the scene as a whole, in world space: of the surfaces that stop light,
+/// masked ones as if they had no holes.
 struct SceneMetrics {
     glm::vec3 lower{0.0F};  ///< metres
     glm::vec3 upper{0.0F};
@@ -41,7 +42,7 @@ struct Tracing {
     ValueHandle<SceneMetrics> metrics;
 };
 
-/// Node `bvh`: builds the hierarchy over all triangles in world space; where instances only moved, refits it,
+/// Node `bvh`: builds the hierarchy over the triangles that stop light, in world space; where instances only moved, refits it,
 /// until its cost has grown by half.
 [[nodiscard]] Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene);
 

@@ -18,7 +18,7 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
         pass.read(gbuffer.depth, Usage::sampled);
         read_lighting(pass, lighting);
         pass.read(view);
-        const gl::Program& program = gpu.program({"deferred.comp"});
+        const gl::Program& program = gpu.program({"deferred.comp"}, lighting_variant(lighting));
         const auto radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::storage);
         pass.run([=, &gpu, &program](Execution& run) {
             const gl::Functions& gl = gpu.gl();

@@ -35,8 +35,31 @@ void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     gpu.bind_storage(BINDING_INSTANCES, run.object(scene.instances));
 }
 
+void bind_materials(const Gpu& gpu, Execution& run, const SceneData& scene) {
+    gpu.bind_storage(BINDING_MATERIALS, run.object(scene.materials));
+}
+
 void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
-    multi_draw(gpu.gl(), 0, run.value(scene.layout).drawables.size());
+    multi_draw(gpu.gl(), 0, run.value(scene.layout).opaque_count);
+}
+
+void draw_group(const Gpu& gpu, const SceneLayout::Group& group) {
+    const gl::Functions& gl = gpu.gl();
+    if (group.texture) {
+        group.texture->texture.bind(UNIT_BASE_COLOUR);
+        group.texture->sampler.bind(UNIT_BASE_COLOUR);
+    } else {
+        gpu.white().bind(UNIT_BASE_COLOUR);
+        gl.BindSampler(UNIT_BASE_COLOUR, 0);
+    }
+    gl.FrontFace(group.mirrored ? GL_CW : GL_CCW);
+    multi_draw(gl, group.first_draw, group.draw_count);
+}
+
+void draw_masked_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
+    for (const SceneLayout::Group& group : run.value(scene.layout).groups_of(AlphaMode::mask)) {
+        draw_group(gpu, group);
+    }
 }
 
 void begin_surfaces(const Gpu& gpu) {
@@ -47,26 +70,30 @@ void begin_surfaces(const Gpu& gpu) {
     gl.Enable(GL_DEPTH_TEST);
 }
 
+void begin_visible_surfaces(const Gpu& gpu) {
+    const gl::Functions& gl = gpu.gl();
+    gl.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+    gl.Clear(GL_COLOR_BUFFER_BIT);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_EQUAL);
+    gl.DepthMask(GL_FALSE);
+}
+
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program) {
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
-    gpu.bind_storage(BINDING_MATERIALS, run.object(scene.materials));
+    bind_materials(gpu, run, scene);
     program.use();
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
-        if (group.texture) {
-            group.texture->texture.bind(UNIT_BASE_COLOUR);
-            group.texture->sampler.bind(UNIT_BASE_COLOUR);
-        } else {
-            gpu.white().bind(UNIT_BASE_COLOUR);
-            gl.BindSampler(UNIT_BASE_COLOUR, 0);
+        if (group.alpha == AlphaMode::blend) {
+            continue;
         }
-        gl.FrontFace(group.mirrored ? GL_CW : GL_CCW);
         if (group.double_sided) {
             gl.Disable(GL_CULL_FACE);
         } else {
             gl.Enable(GL_CULL_FACE);
         }
-        multi_draw(gl, group.first_draw, group.draw_count);
+        draw_group(gpu, group);
     }
 }
 

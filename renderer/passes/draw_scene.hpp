@@ -11,19 +11,30 @@ namespace candela {
 /// Declares what drawing the meshes reads.
 void read_meshes(Pass& pass, const SceneData& scene);
 
-/// Declares what shading their surfaces reads besides.
+/// Declares what their surfaces, shaded or masked, read besides.
 void read_materials(Pass& pass, const SceneData& scene);
 
-/// Binds vertices, indices, instances and draw arguments; then `draw_depth` as often as wanted.
+/// Binds vertices, indices, instances and draw arguments.
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);
+void bind_materials(const Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws everything at once with the bound program, from both sides, without materials.
+/// Draws all opaque surfaces at once with the bound program, which needs the meshes and no materials.
 void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
+
+/// Draws the masked surfaces with the bound program, which needs meshes and materials; binds their images.
+void draw_masked_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
+
+/// Draws one group with the bound program; binds its image and sets which side is the front.
+void draw_group(const Gpu& gpu, const SceneLayout::Group& group);
 
 /// Clears the bound targets, colour to 0 and reversed depth to "nothing", and turns the depth test on.
 void begin_surfaces(const Gpu& gpu);
 
-/// Draws everything with its materials; the backs of single-sided ones are culled. Binds what it needs.
+/// For targets whose depth a pre-pass has filled: clears colour, and lets only those surfaces through that are seen.
+void begin_visible_surfaces(const Gpu& gpu);
+
+/// Draws all opaque and masked surfaces with their materials; the backs of single-sided ones are culled. Binds what it
+/// needs.
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program);
 
 }  // namespace candela

@@ -5,25 +5,34 @@
 
 namespace candela {
 
-TextureHandle add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                          ValueHandle<CameraView> view, glm::uvec2 size) {
+ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                   ValueHandle<CameraView> view, std::optional<TextureHandle> prepass_depth, glm::uvec2 size) {
     return graph.add("forward", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);
         read_lighting(pass, lighting);
         pass.read(view);
-        const gl::Program& program = gpu.program({"mesh_surface.vert", "forward.frag"});
-        const auto radiance =
-            pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
-        const auto depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
-        static_cast<void>(depth);  // nobody reads it
-        pass.run([=, &gpu, &program](Execution& run) {
-            begin_surfaces(gpu);
+        const gl::Program& program =
+            gpu.program({"mesh_surface.vert", "forward.frag"}, lighting_variant(lighting));
+        ShadedSurfaces out;
+        out.radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
+        if (prepass_depth) {
+            pass.read(*prepass_depth, Usage::depth_target);
+            out.depth = *prepass_depth;
+        } else {
+            out.depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
+        }
+        pass.run([=, &gpu, &program, after_prepass = prepass_depth.has_value()](Execution& run) {
+            if (after_prepass) {
+                begin_visible_surfaces(gpu);
+            } else {
+                begin_surfaces(gpu);
+            }
             bind_view(program, run.value(view), size);
             bind_lighting(gpu, run, program, lighting);
             draw_surfaces(gpu, run, scene, program);
         });
-        return radiance;
+        return out;
     });
 }
 

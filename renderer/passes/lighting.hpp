@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "engine/graph/frame_graph.hpp"
 #include "renderer/gpu.hpp"
+#include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/lights.hpp"
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/vpl_trace.hpp"
@@ -30,7 +33,8 @@ struct Lighting {
     ValueHandle<SceneMetrics> metrics;
     LightBuffers buffers;
     ShadowMaps shadows;
-    std::optional<Vpls> vpls;  ///< none: no indirect light
+    std::optional<Vpls> vpls;         ///< none: no indirect light
+    std::optional<LightLists> lists;  ///< none: every surface visits every light
     Show show = Show::total;
     float geometry_bound = 1.0F;  ///< see `vpl_radius2`
 };
@@ -40,6 +44,9 @@ struct Lighting {
 /// scales that bound: at infinity the VPL is a point. The radius shrinks as N grows, and the energy that it costs
 /// vanishes.
 [[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
+
+/// Words to define in shaders that include lighting.glsl.
+[[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
 
 /// For a pass that shades: declares its reads, and binds them and sets its uniforms when it runs.
 void read_lighting(Pass& pass, const Lighting& lighting);

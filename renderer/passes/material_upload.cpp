@@ -43,7 +43,8 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
     return std::make_shared<const MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
 }
 
-/// The image scaled down, if need be, to what tracing reads.
+/// The image scaled down, if need be, to what tracing reads. Alpha is linear and weights nothing: most materials
+/// ignore it.
 Image reduce(const Image& image) {
     const std::uint32_t longer = std::max(image.width, image.height);
     if (longer <= traced_image_size) {
@@ -55,7 +56,8 @@ Image reduce(const Image& image) {
     reduced.texels.resize(static_cast<std::size_t>(reduced.width) * reduced.height);
     stbir_resize_uint8_srgb(&image.texels[0].x, static_cast<int>(image.width), static_cast<int>(image.height),
                             0, &reduced.texels[0].x, static_cast<int>(reduced.width),
-                            static_cast<int>(reduced.height), 0, 4, STBIR_ALPHA_CHANNEL_NONE, 0);
+                            static_cast<int>(reduced.height), 0, 4, 3,
+                            STBIR_FLAG_ALPHA_PREMULTIPLIED);
     return reduced;
 }
 
@@ -66,11 +68,16 @@ std::uint32_t pack(const glm::u8vec4& texel) {
 
 std::uint32_t material_flags(const Material& material) {
     std::uint32_t flags = material.double_sided ? gpu::double_sided : 0U;
+    flags |= material.alpha_mode == AlphaMode::blend ? gpu::blended : 0U;
     if (const Image* image = material.base_colour_texture.get()) {
         flags |= static_cast<std::uint32_t>(image->wrap_u) << gpu::wrap_u_shift;
         flags |= static_cast<std::uint32_t>(image->wrap_v) << gpu::wrap_v_shift;
     }
     return flags;
+}
+
+bool is_masked(const Material& material) {
+    return material.alpha_mode == AlphaMode::mask;
 }
 
 /// IEC 61966-2-1.
@@ -94,7 +101,8 @@ std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& mat
                         .first_texel = images_[image].first_texel,
                         .texel_width = images_[image].width,
                         .texel_height = images_[image].height,
-                        .flags = material_flags(*material)});
+                        .flags = material_flags(*material),
+                        .alpha_cutoff = is_masked(*material) ? material->alpha_cutoff : 0.0F});
     return found->second;
 }
 

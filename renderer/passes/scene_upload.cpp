@@ -40,8 +40,8 @@ Gathered add_scene_gather(FrameGraph& graph) {
     });
 }
 
-/// Indices of the drawables in drawing order: grouped by image, sidedness and winding, otherwise as they
-/// were.
+/// Indices of the drawables in drawing order: grouped by alpha mode, image, sidedness and winding, otherwise as
+/// they were.
 template <class Key>
 std::vector<std::uint32_t> stable_order(std::size_t count, Key key) {
     std::vector<std::uint32_t> order(count);
@@ -67,8 +67,9 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
     }
     const auto key = [&](std::uint32_t i) {
         const SceneLayout::Drawable& drawable = drawables[i];
-        return std::tuple(materials.image_index(drawable.material),
-                          drawable.primitive->material->double_sided, geometry.items[drawable.item].mirrored);
+        const Material& material = *drawable.primitive->material;
+        return std::tuple(material.alpha_mode, materials.image_index(drawable.material),
+                          material.double_sided, geometry.items[drawable.item].mirrored);
     };
     std::vector<SceneLayout::Drawable> ordered;
     for (const std::uint32_t i : stable_order(drawables.size(), key)) {
@@ -100,21 +101,48 @@ PackedMeshes pack_meshes(const std::vector<SceneLayout::Drawable>& drawables) {
     return packed;
 }
 
+glm::vec3 centre_of_bounds(const Primitive& primitive) {
+    if (primitive.vertices.empty()) {
+        return glm::vec3(0.0F);
+    }
+    glm::vec3 lower = primitive.vertices.front().position;
+    glm::vec3 upper = lower;
+    for (const Vertex& vertex : primitive.vertices) {
+        lower = glm::min(lower, vertex.position);
+        upper = glm::max(upper, vertex.position);
+    }
+    return (lower + upper) * 0.5F;
+}
+
+bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
+    return a.alpha != AlphaMode::blend && a.alpha == b.alpha && a.texture == b.texture &&
+           a.double_sided == b.double_sided && a.mirrored == b.mirrored;
+}
+
+/// Of drawables in drawing order, how many have at most this alpha mode.
+std::uint32_t count_until(const std::vector<SceneLayout::Drawable>& drawables, AlphaMode last) {
+    return static_cast<std::uint32_t>(std::ranges::count_if(drawables, [&](const auto& drawable) {
+        return drawable.primitive->material->alpha_mode <= last;
+    }));
+}
+
 std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
                                             const std::vector<SceneLayout::Drawable>& drawables,
                                             const MaterialTable& materials) {
     std::vector<SceneLayout::Group> groups;
     for (std::uint32_t draw = 0; draw < drawables.size(); ++draw) {
         const SceneLayout::Drawable& drawable = drawables[draw];
+        const Material& material = *drawable.primitive->material;
         SceneLayout::Group group{.first_draw = draw,
                                  .draw_count = 1,
+                                 .alpha = material.alpha_mode,
                                  .texture = materials.texture(drawable.material),
-                                 .double_sided = drawable.primitive->material->double_sided,
+                                 .double_sided = material.double_sided,
                                  .mirrored = geometry.items[drawable.item].mirrored};
-        const bool same = !groups.empty() && groups.back().texture == group.texture &&
-                          groups.back().double_sided == group.double_sided &&
-                          groups.back().mirrored == group.mirrored;
-        if (same) {
+        if (group.alpha == AlphaMode::blend) {
+            group.centre = centre_of_bounds(*drawable.primitive);
+        }
+        if (!groups.empty() && can_share(groups.back(), group)) {
             ++groups.back().draw_count;
         } else {
             groups.push_back(std::move(group));
@@ -130,6 +158,8 @@ void upload_scene(Gpu& gpu, Execution& run, const SceneData& out, const SceneGeo
     layout.drawables = list_drawables(geometry, materials);
     layout.groups = group_draws(geometry, layout.drawables, materials);
     layout.materials = materials.materials();
+    layout.opaque_count = count_until(layout.drawables, AlphaMode::opaque);
+    layout.solid_count = count_until(layout.drawables, AlphaMode::mask);
 
     const PackedMeshes meshes = pack_meshes(layout.drawables);
     std::vector<std::uint32_t> instance_ids(meshes.draws.size());
@@ -159,6 +189,11 @@ BufferHandle<T> write_upload(FrameGraph& graph, Pass& pass, std::string_view nam
 }
 
 }  // namespace
+
+std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {
+    const auto range = std::ranges::equal_range(groups, alpha, {}, &Group::alpha);
+    return {range.begin(), range.end()};
+}
 
 SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
     const Gathered gathered = add_scene_gather(graph);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/graph/frame_graph.hpp"
@@ -42,18 +43,28 @@ struct SceneLayout {
         const Primitive* primitive;  ///< kept alive by `geometry`
         std::uint32_t material;      ///< index into `materials`
     };
-    /// Consecutive draws that differ in nothing but their geometry.
+    /// Consecutive draws that differ in nothing but their geometry. Blended draws have a group each, so that
+    /// they can be sorted.
     struct Group {
         std::uint32_t first_draw;
         std::uint32_t draw_count;
+        AlphaMode alpha;
         std::shared_ptr<const MaterialTexture> texture;  ///< null: none
         bool double_sided;
         bool mirrored;
+        glm::vec3 centre{0.0F};  ///< of the bounds of a blended draw, local space
     };
     SceneGeometry geometry;
-    std::vector<Drawable> drawables;
-    std::vector<Group> groups;
+    std::vector<Drawable> drawables;  ///< the opaque ones first, then the masked, then the blended ones
+    std::vector<Group> groups;        ///< in the order of the drawables
     std::vector<std::shared_ptr<const Material>> materials;
+    std::uint32_t opaque_count = 0;  ///< of drawables
+    std::uint32_t solid_count = 0;   ///< of drawables, opaque and masked: those that stop light
+
+    /// The groups of one alpha mode.
+    [[nodiscard]] std::span<const Group> groups_of(AlphaMode alpha) const;
+    /// The drawables that stop light.
+    [[nodiscard]] std::span<const Drawable> solids() const { return std::span(drawables).first(solid_count); }
 };
 
 /// The scene on the GPU.

@@ -120,8 +120,23 @@ TextureDesc map_desc(std::uint32_t resolution, std::uint32_t maps) {
     return {{resolution, resolution}, Format::depth32f, TextureShape::array, maps};
 }
 
+struct ShadowPrograms {
+    const gl::Program& opaque;
+    const gl::Program& masked;
+};
+
+void draw_view(const Gpu& gpu, Execution& run, const SceneData& scene, const ShadowPrograms& programs,
+               const glm::mat4& clip_from_world) {
+    programs.opaque.set("clip_from_world", clip_from_world);
+    programs.opaque.use();
+    draw_depth(gpu, run, scene);
+    programs.masked.set("clip_from_world", clip_from_world);
+    programs.masked.use();
+    draw_masked_depth(gpu, run, scene);
+}
+
 void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
-                    const ShadowSettings& settings, const gl::Program& program) {
+                    const ShadowSettings& settings, const ShadowPrograms& programs) {
     const ShadowPlan& plan = run.value(out.plan);
     run.reserve(out.cubes,
                 plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
@@ -129,7 +144,7 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
 
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
-    program.use();
+    bind_materials(gpu, run, scene);
     gl.Enable(GL_DEPTH_TEST);
     gl.Enable(GL_DEPTH_CLAMP);
     gl.Enable(GL_POLYGON_OFFSET_FILL);
@@ -144,8 +159,7 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
         gl.Viewport(0, 0, resolution, resolution);
         const float far_depth = 0.0F;
         gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
-        program.set("clip_from_world", view.clip_from_world);
-        draw_depth(gpu, run, scene);
+        draw_view(gpu, run, scene, programs, view.clip_from_world);
     }
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     target.attach_depth(0);
@@ -202,9 +216,11 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
     });
     return graph.add("shadow-maps", [&](Pass& pass) {
         read_meshes(pass, scene);
+        read_materials(pass, scene);
         pass.read(plan);
         pass.parameter(settings);
-        const gl::Program& program = gpu.program({"shadow_maps.vert"});
+        const ShadowPrograms programs{.opaque = gpu.program({"shadow_maps.vert"}),
+                                      .masked = gpu.program({"mesh_surface.vert", "shadow_maps.frag"})};
         const ShadowMaps out{
             .plan = plan,
             .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
@@ -212,7 +228,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
             .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
                                Usage::layer_target)};
         pass.run(
-            [=, &gpu, &program](Execution& run) { render_shadows(gpu, run, scene, out, settings, program); });
+            [=, &gpu](Execution& run) { render_shadows(gpu, run, scene, out, settings, programs); });
         return out;
     });
 }

@@ -49,10 +49,15 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, c
     jittered[3] = glm::vec4(-2.0F * request.jitter / size, 0.0F, 1.0F);
     const glm::mat4 pose = rigid(world_from_camera);
     // In doubles: the inverse of a view from far away loses the digits that shading needs.
-    const glm::dmat4 clip_from_world = glm::dmat4(jittered) *
-                                       glm::dmat4(projection(camera, size.x / size.y)) *
-                                       glm::inverse(glm::dmat4(pose));
-    return {glm::mat4(clip_from_world), glm::mat4(glm::inverse(clip_from_world)), glm::vec3(pose[3])};
+    const glm::dmat4 view_from_world = glm::inverse(glm::dmat4(pose));
+    const glm::dmat4 clip_from_view = glm::dmat4(jittered) * glm::dmat4(projection(camera, size.x / size.y));
+    const glm::dmat4 clip_from_world = clip_from_view * view_from_world;
+    return {.clip_from_world = glm::mat4(clip_from_world),
+            .world_from_clip = glm::mat4(glm::inverse(clip_from_world)),
+            .view_from_world = glm::mat4(view_from_world),
+            .clip_from_view = glm::mat4(clip_from_view),
+            .eye = glm::vec3(pose[3]),
+            .orthographic = camera.projection == Camera::Projection::orthographic};
 }
 
 void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size) {

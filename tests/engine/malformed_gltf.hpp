@@ -53,6 +53,7 @@ inline GltfBuilder complete_scene() {
         {"values", {{"bufferView", values}}}};
     file.document.update(Json::parse(R"({
         "materials": [{"emissiveFactor": [0, 0, 0], "doubleSided": true, "normalTexture": {"index": 0},
+                       "alphaMode": "MASK", "alphaCutoff": 0.5,
                        "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}}],
         "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 10497, "wrapT": 10497}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1, "zfar": 2}},

@@ -268,6 +268,11 @@ TEST_SUITE("malformed glTF") {
              "materials[0].pbrMetallicRoughness.baseColorFactor holds a member that is 1.5, which is out of "
              "range"},
             {"/materials/0/doubleSided", "1", "materials[0].doubleSided is not true or false"},
+            {"/materials/0/alphaMode", "\"GLASS\"",
+             "materials[0].alphaMode is \"GLASS\", not one of OPAQUE, MASK, BLEND"},
+            {"/materials/0/alphaMode", "2", "materials[0].alphaMode is not a string"},
+            {"/materials/0/alphaCutoff", "-0.1", "materials[0].alphaCutoff is -0.1, which is out of range"},
+            {"/materials/0/alphaCutoff", "\"half\"", "materials[0].alphaCutoff is not a number"},
             {"/samplers/0/wrapS", "1", "sampler 0 has the unknown wrapping mode 1"},
             {"/images/0", "{}", "image 0 needs either a \"uri\" or a \"bufferView\""},
             {"/images/0/bufferView", "0", "image 0 needs either a \"uri\" or a \"bufferView\""},

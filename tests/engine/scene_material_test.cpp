@@ -72,6 +72,29 @@ TEST_SUITE("glTF materials") {
         CHECK(imported.report.warnings.empty());
     }
 
+    TEST_CASE("alpha modes and their cutoff") {
+        struct Alpha {
+            const char* json;
+            AlphaMode mode;
+            float cutoff;
+        };
+        for (const auto& [json, mode, cutoff] : {Alpha{"{}", AlphaMode::opaque, 0.5F},
+                                                 Alpha{R"({"alphaMode": "OPAQUE"})", AlphaMode::opaque, 0.5F},
+                                                 Alpha{R"({"alphaMode": "MASK"})", AlphaMode::mask, 0.5F},
+                                                 Alpha{R"({"alphaMode": "MASK", "alphaCutoff": 0.25})",
+                                                       AlphaMode::mask, 0.25F},
+                                                 Alpha{R"({"alphaMode": "BLEND"})", AlphaMode::blend, 0.5F}}) {
+            CAPTURE(json);
+            GltfBuilder file = right_triangle();
+            file.primitive()["material"] = 0;
+            file.document["materials"] = Json::array({Json::parse(json)});
+            const Imported imported(file);
+            CHECK(imported.primitive().material->alpha_mode == mode);
+            CHECK(imported.primitive().material->alpha_cutoff == cutoff);
+            CHECK(imported.report.warnings.empty());
+        }
+    }
+
     TEST_CASE("an image in a data URI, in a buffer view, in a file with an awkward name") {
         const Bytes image = png(four_colours, 2, 2);
         const TemporaryDirectory directory;
@@ -140,11 +163,6 @@ TEST_SUITE("glTF materials") {
             file.document["textures"][0].erase("source");
             CHECK(Imported(file).report.warnings ==
                   std::vector<std::string>{"material 0: its texture has no PNG or JPEG image; ignored"});
-        }
-        SUBCASE("transparency") {
-            file.document["materials"][0]["alphaMode"] = "BLEND";
-            CHECK(Imported(file).report.warnings ==
-                  std::vector<std::string>{"material 0: alpha mode BLEND is not supported; it is opaque"});
         }
     }
 

@@ -102,7 +102,9 @@ TEST_SUITE("options") {
         CHECK(accepted({"--context", "egl"}).context == ContextChoice::egl);
         CHECK(accepted({"--show", "total"}).show == Show::total);
         CHECK(accepted({"--show", "direct"}).show == Show::direct);
-        CHECK(accepted({"--path", "forward"}).path == ShadingPath::forward);
+        for (const candela::ShadingPath path : candela::all_shading_paths) {
+            CHECK(accepted({"--path", std::string(to_string(path)).c_str()}).path == path);
+        }
         CHECK(accepted({"--indirect", "on"}).indirect == true);
     }
 
@@ -132,7 +134,7 @@ TEST_SUITE("options") {
     TEST_CASE("unknown words are refused, and so are flags without a value or given twice") {
         check_refused_value("--context", {"glx", "AUTO", "0"});
         check_refused_value("--show", {"both"});
-        check_refused_value("--path", {"tiled-forward", "forward+", "clustered-deferred", "1"});
+        check_refused_value("--path", {"tiled", "forward-plus", "Forward", "1"});
         check_refused_value("--indirect", {"true", "1"});
         check_refused({"--vpls"}, "--vpls", "");
         check_refused({"--vpls", "1", "--vpls", "2"}, "--vpls", "");

@@ -1,0 +1,25 @@
+#include "renderer/passes/depth_prepass.hpp"
+
+#include "engine/graph/execute.hpp"
+#include "renderer/passes/draw_scene.hpp"
+
+namespace candela {
+
+TextureHandle add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<CameraView> view,
+                                glm::uvec2 size) {
+    return graph.add("depth-prepass", [&](Pass& pass) {
+        read_meshes(pass, scene);
+        read_materials(pass, scene);
+        pass.read(view);
+        const gl::Program& program = gpu.program({"mesh_surface.vert", "depth_prepass.frag"});
+        const auto depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
+        pass.run([=, &gpu, &program](Execution& run) {
+            begin_surfaces(gpu);
+            bind_view(program, run.value(view), size);
+            draw_surfaces(gpu, run, scene, program);
+        });
+        return depth;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,179 @@
+#include "renderer/passes/light_bins.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+namespace candela {
+namespace {
+
+// A light that touches this share of all cells is cheaper to visit everywhere than to list.
+constexpr double widest_listed = 0.5;
+
+/// A sphere around all that a light reaches, in view space.
+struct Reach {
+    glm::vec3 centre;
+    float radius;
+};
+
+/// Spots: the sphere around a cone with its spherical cap, which for narrow cones is smaller than the light's own.
+Reach reach_of(const gpu::Light& light, const CameraView& view) {
+    glm::vec3 centre = light.position;
+    float radius = light.range;
+    if (light.kind == gpu::LightKind::spot && light.cos_outer > std::sqrt(0.5F)) {
+        radius = light.range / (2.0F * light.cos_outer);
+        centre += light.direction * radius;
+    }
+    const glm::vec3 in_view(view.view_from_world * glm::vec4(centre, 1.0F));
+    // Widened by what rounding may move it.
+    return {in_view, radius * 1.0001F + 1e-6F * (glm::length(in_view) + glm::length(view.eye))};
+}
+
+/// Cells [lower, upper) in x, y and z; empty where they meet.
+struct CellRange {
+    glm::uvec3 lower{0};
+    glm::uvec3 upper{0};
+
+    [[nodiscard]] std::uint64_t cells() const {
+        const glm::uvec3 extent = upper - lower;
+        return static_cast<std::uint64_t>(extent.x) * extent.y * extent.z;
+    }
+};
+
+/// Tiles between two window coordinates, a pixel of slack on either side.
+void to_tiles(float from, float to, std::uint32_t tile_size, std::uint32_t tiles, std::uint32_t& lower,
+              std::uint32_t& upper) {
+    const auto size = static_cast<float>(tile_size);
+    const auto most = static_cast<float>(tiles);
+    lower = static_cast<std::uint32_t>(std::clamp(std::floor((from - 1.0F) / size), 0.0F, most));
+    upper = static_cast<std::uint32_t>(std::clamp(std::floor((to + 1.0F) / size) + 1.0F, 0.0F, most));
+    upper = std::max(lower, upper);
+}
+
+/// Slice in which a depth lies; every depth lies in one.
+std::uint32_t slice_of(const CellGrid& grid, float depth) {
+    if (!(depth > grid.first_depth)) { return 0; }
+    const float slice = 1.0F + std::floor(std::log(depth / grid.first_depth) / std::log(grid.depth_ratio));
+    return static_cast<std::uint32_t>(std::min(slice, static_cast<float>(grid.slices - 1)));
+}
+
+/// The cells that the box around a sphere touches.
+CellRange touched(const Reach& reach, const CameraView& view, const CellGrid& grid) {
+    CellRange all{glm::uvec3(0), {grid.tiles, grid.slices}};
+    const float depth = -reach.centre.z;
+    const float nearest = depth - reach.radius;
+    const float farthest = depth + reach.radius;
+    if (!std::isfinite(reach.radius)) { return all; }
+    if (farthest <= 0.0F && !view.orthographic) { return {}; }
+
+    CellRange range = all;
+    if (grid.slices > 1) {
+        // A slice of slack on either side: shaders round the logarithm their own way.
+        range.lower.z = slice_of(grid, nearest);
+        range.lower.z -= range.lower.z > 0 ? 1 : 0;
+        range.upper.z = std::min(slice_of(grid, farthest) + 2, grid.slices);
+    }
+    if (nearest <= 0.0F && !view.orthographic) { return range; }  // around the eye's plane: all of the screen
+
+    const glm::mat4& clip = view.clip_from_view;
+    for (int axis = 0; axis < 2; ++axis) {
+        const float low = reach.centre[axis] - reach.radius;
+        const float high = reach.centre[axis] + reach.radius;
+        // Window coordinate of x at depth d: scale·x / d + shift in perspective, scale·x + shift orthographic.
+        float from = clip[axis][axis] * low;
+        float to = clip[axis][axis] * high;
+        float shift = clip[3][axis];
+        if (!view.orthographic) {
+            from /= low < 0.0F ? nearest : farthest;
+            to /= high < 0.0F ? farthest : nearest;
+            shift = -clip[2][axis];
+        }
+        const auto pixels = static_cast<float>(grid.size[axis]);
+        to_tiles((from + shift + 1.0F) * 0.5F * pixels, (to + shift + 1.0F) * 0.5F * pixels, grid.tile_size,
+                 grid.tiles[axis], range.lower[axis], range.upper[axis]);
+    }
+    return range;
+}
+
+template <class Visit>
+void each_cell(const CellRange& range, const CellGrid& grid, Visit visit) {
+    for (std::uint32_t z = range.lower.z; z < range.upper.z; ++z) {
+        for (std::uint32_t y = range.lower.y; y < range.upper.y; ++y) {
+            const std::uint32_t row = (z * grid.tiles.y + y) * grid.tiles.x;
+            for (std::uint32_t x = range.lower.x; x < range.upper.x; ++x) { visit(row + x); }
+        }
+    }
+}
+
+/// Which lights every cell visits: those without a range, those that touch most cells, and the widest of the rest
+/// until the others' entries fit.
+std::vector<bool> choose_global(const std::vector<CellRange>& ranges, const CellGrid& grid) {
+    const auto most = static_cast<std::uint64_t>(widest_listed * grid.cells());
+    std::vector<bool> global(ranges.size(), false);
+    std::vector<std::uint32_t> listed;
+    std::uint64_t entries = 0;
+    for (std::uint32_t i = 0; i < ranges.size(); ++i) {
+        global[i] = ranges[i].cells() > most;
+        if (global[i]) { continue; }
+        entries += ranges[i].cells();
+        listed.push_back(i);
+    }
+    if (entries <= most_list_entries) { return global; }
+    std::stable_sort(listed.begin(), listed.end(),
+                     [&](auto a, auto b) { return ranges[a].cells() > ranges[b].cells(); });
+    for (const std::uint32_t i : listed) {
+        if (entries <= most_list_entries) { break; }
+        entries -= ranges[i].cells();
+        global[i] = true;
+    }
+    return global;
+}
+
+}  // namespace
+
+LightBins bin_lights(const LightTable& lights, const CameraView& view, const CellGrid& grid) {
+    LightBins bins{.grid = grid, .first = {}, .entries = {}, .global_count = 0};
+    std::vector<CellRange> ranges;
+    ranges.reserve(lights.entries.size());
+    for (const LightTable::Entry& entry : lights.entries) {
+        ranges.push_back(touched(reach_of(entry.light, view), view, grid));
+    }
+    const std::vector<bool> global = choose_global(ranges, grid);
+    for (std::uint32_t i = 0; i < ranges.size(); ++i) {
+        if (global[i]) { bins.entries.push_back(i); }
+    }
+    bins.global_count = static_cast<std::uint32_t>(bins.entries.size());
+
+    // Counting sort by cell: counts, their running sum, then each light into the next place of its cells.
+    std::vector<std::uint32_t> next(grid.cells() + 1, 0);
+    for (std::uint32_t i = 0; i < ranges.size(); ++i) {
+        if (!global[i]) { each_cell(ranges[i], grid, [&](std::uint32_t cell) { ++next[cell + 1]; }); }
+    }
+    next[0] = bins.global_count;
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    bins.first = next;
+    bins.entries.resize(next.back());
+    for (std::uint32_t i = 0; i < ranges.size(); ++i) {
+        if (!global[i]) {
+            each_cell(ranges[i], grid, [&](std::uint32_t cell) { bins.entries[next[cell]++] = i; });
+        }
+    }
+    return bins;
+}
+
+CellGrid tile_grid(glm::uvec2 size, const ListSettings& settings) {
+    return {.size = size,
+            .tiles = (size + settings.tile_size - 1U) / settings.tile_size,
+            .tile_size = settings.tile_size};
+}
+
+CellGrid cluster_grid(glm::uvec2 size, const ListSettings& settings, float nearest, float farthest) {
+    CellGrid grid = tile_grid(size, settings);
+    grid.slices = std::max(settings.slices, 2U);
+    grid.first_depth = nearest;
+    grid.depth_ratio = std::pow(std::max(farthest / nearest, 1.001F), 1.0F / static_cast<float>(grid.slices - 1));
+    return grid;
+}
+
+}  // namespace candela

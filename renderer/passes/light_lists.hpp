@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "engine/graph/frame_graph.hpp"
+#include "renderer/passes/light_bins.hpp"
+
+namespace candela {
+
+/// Which lights a pixel visits.
+enum class LightList : std::uint8_t { all, tile, cluster };
+
+/// Light lists of the cells of a view, narrowed down to what truly reaches them.
+struct LightLists {
+    LightList kind = LightList::tile;
+    ValueHandle<LightBins> bins;
+    ValueHandle<CameraView> view;
+    BufferHandle<std::uint32_t> first;    ///< by cell: where its list begins
+    BufferHandle<std::uint32_t> count;    ///< by cell: its length
+    BufferHandle<std::uint32_t> entries;  ///< indices of lights, ascending within a list; the global ones come first
+};
+
+/// Node `light-tiles`. With a depth texture, tiles are bound by the nearest and the farthest surface in them, and by a
+/// mask of 32 slices between the two (Harada et al., "A 2.5D Culling for Forward+", 2012); what is drawn elsewhere in
+/// depth needs lists without one.
+[[nodiscard]] LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                                         BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
+                                         std::optional<TextureHandle> depth, glm::uvec2 size,
+                                         const ListSettings& settings);
+
+/// Node `light-clusters`: tiles cut into slices of depth.
+[[nodiscard]] LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                                            BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
+                                            ValueHandle<SceneMetrics> metrics, glm::uvec2 size,
+                                            const ListSettings& settings);
+
+/// For a pass that shades by lists: declares its reads, and binds them and sets its uniforms when it runs.
+void read_light_lists(Pass& pass, const LightLists& lists);
+void bind_light_lists(const Gpu& gpu, Execution& run, const gl::Program& program, const LightLists& lists);
+
+}  // namespace candela

@@ -1,0 +1,80 @@
+#include "renderer/passes/transparent.hpp"
+
+#include <algorithm>
+
+#include "engine/graph/execute.hpp"
+#include "renderer/passes/draw_scene.hpp"
+
+namespace candela {
+namespace {
+
+struct SortedGroup {
+    const SceneLayout::Group* group;
+    float depth;  ///< metres in front of the viewer
+};
+
+std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePlacement& placement,
+                                       const CameraView& view) {
+    std::vector<SortedGroup> sorted;
+    for (const SceneLayout::Group& group : layout.groups_of(AlphaMode::blend)) {
+        const glm::mat4& world = placement.world[layout.drawables[group.first_draw].item];
+        const glm::vec4 centre = view.view_from_world * (world * glm::vec4(group.centre, 1.0F));
+        sorted.push_back({&group, -centre.z});
+    }
+    std::ranges::stable_sort(sorted, std::greater{}, &SortedGroup::depth);
+    return sorted;
+}
+
+/// The shader weights the radiance by alpha itself and tells what it leaves of what is behind as the second source.
+void begin_blending(const gl::Functions& gl) {
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthMask(GL_FALSE);
+    gl.Enable(GL_CULL_FACE);
+    gl.Enable(GL_BLEND);
+    gl.BlendEquation(GL_FUNC_ADD);
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
+}
+
+void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
+    if (group.double_sided) {
+        gpu.gl().CullFace(GL_FRONT);
+        draw_group(gpu, group);
+        gpu.gl().CullFace(GL_BACK);
+    }
+    draw_group(gpu, group);
+}
+
+}  // namespace
+
+TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                              ValueHandle<CameraView> view, const ShadedSurfaces& surfaces, glm::uvec2 size) {
+    return graph.add("transparent", [&](Pass& pass) {
+        read_meshes(pass, scene);
+        read_materials(pass, scene);
+        read_lighting(pass, lighting);
+        pass.read(scene.placement);
+        pass.read(view);
+        pass.read(surfaces.depth, Usage::depth_target);
+        const gl::Program& program = gpu.program({"mesh_surface.vert", "forward.frag"}, lighting_variant(lighting));
+        const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
+        pass.run([=, &gpu, &program](Execution& run) {
+            const std::vector<SortedGroup> sorted =
+                back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view));
+            if (sorted.empty()) {
+                return;
+            }
+            begin_blending(gpu.gl());
+            bind_meshes(gpu, run, scene);
+            bind_materials(gpu, run, scene);
+            bind_view(program, run.value(view), size);
+            bind_lighting(gpu, run, program, lighting);
+            program.use();
+            for (const SortedGroup& next : sorted) {
+                draw_blended(gpu, *next.group);
+            }
+        });
+        return radiance;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,51 @@
+"""What is not opaque: tinted panes, and a trellis cut out by its image."""
+
+from gltf_writer import Scene
+from halls import hue
+from png_writer import png
+from shapes import box, flat, looking, pane, room, turn
+
+
+def trellis_texel(x, y):
+    """Two crossing laths to 32 x 32 texels; their alpha falls to 0 within a texel or two of their edges."""
+    across = min((x + y) % 32, -(x + y) % 32)
+    along = min((x - y) % 32, (y - x) % 32)
+    shade = 150 if across < along else 120  # one lath runs in front of the other
+    alpha = max(0, min(255, 255 - 80 * (min(across, along) - 4)))
+    return (shade - 30, shade, shade // 3, alpha)
+
+
+def glass():
+    """A room with panes that overlap from the camera, one of them seen from its back, opaque things in between and
+    lights before and behind each. A cut-out trellis stands at the back."""
+    scene = Scene()
+    plaster = scene.material("plaster", [0.65, 0.63, 0.6])
+    brick, slate = scene.material("brick", [0.5, 0.2, 0.12]), scene.material("slate", [0.2, 0.25, 0.35])
+    scene.place("room", flat(room((-3, 0, -4), (3, 3, 4))), plaster)
+    scene.place("plinth", flat(box(0.8, 0.9, 0.8)), slate, translation=[-0.2, 0.0, -0.9], rotation=turn(25))
+    scene.place("pillar", flat(box(0.5, 3.0, 0.5)), brick, translation=[1.6, 0.0, -2.2], rotation=turn(-20))
+    scene.place("block", flat(box(0.6, 0.5, 0.6)), brick, translation=[-1.5, 0.0, 0.6], rotation=turn(40))
+
+    def tinted(name, colour, alpha, **properties):
+        return scene.material(name, colour, alpha, alphaMode="BLEND", **properties)
+
+    scene.place("blue pane", pane(1.7, 2.2), tinted("blue glass", [0.15, 0.35, 0.8], 0.35),
+                translation=[-0.7, 0.0, -0.1], rotation=turn(8))  # fmt: skip
+    scene.place("red pane", pane(1.8, 2.0), tinted("red glass", [0.8, 0.15, 0.1], 0.4), translation=[0.2, 0.0, 0.5])
+    scene.place("green pane", pane(1.3, 1.6), tinted("green glass", [0.2, 0.7, 0.25], 0.5),
+                translation=[0.9, 0.0, 1.1], rotation=turn(-15))  # fmt: skip
+    scene.place("amber pane", pane(1.2, 1.9), tinted("amber glass", [0.85, 0.6, 0.1], 0.3, doubleSided=True),
+                translation=[1.8, 0.0, -0.8], rotation=turn(160))  # fmt: skip
+
+    texture = scene.texture("trellis", png(32, 32, trellis_texel))
+    wood = scene.material(
+        "trellis", [1.0, 1.0, 1.0], 1.0, texture, alphaMode="MASK", alphaCutoff=0.5, doubleSided=True
+    )
+    scene.place("trellis", pane(1.8, 2.4, 6), wood, translation=[-1.95, 0.0, -2.0], rotation=turn(12))
+
+    lights = [(-2.2, 2.2, 2.4), (1.9, 1.2, 2.2), (0.3, 2.4, 1.6), (-0.4, 1.3, 0.3), (0.7, 0.6, -0.1), (2.3, 1.8, -0.6),
+              (-0.8, 1.9, -1.2), (0.5, 2.3, -2.0), (-2.2, 0.6, -1.6), (-1.6, 1.6, -3.4), (2.3, 0.8, -3.2)]  # fmt: skip
+    for index, position in enumerate(lights):
+        scene.light(f"light {index}", "point", hue(0.618 * index % 1), 2.5, 3.0, translation=list(position))
+    scene.camera(50, 0.01, **looking((0.1, 1.5, 3.8), (-0.05, 1.1, 0.0)))
+    return scene

@@ -1,0 +1,104 @@
+"""glTF 2.0 documents in the making, with their buffer embedded."""
+
+import base64
+import json
+import math
+import struct
+
+FLOAT, UNSIGNED_INT = 5126, 5125
+VERTICES, INDICES = 34962, 34963
+
+
+class Scene:
+    """A glTF document under construction; the methods return indices into its lists."""
+
+    def __init__(self):
+        self.data = bytearray()
+        self.document = {
+            "asset": {"version": "2.0", "generator": "Candela"},
+            "extensionsUsed": ["KHR_lights_punctual"],
+            "extensions": {"KHR_lights_punctual": {"lights": []}},
+            "scene": 0,
+            "scenes": [{"nodes": []}],
+        }
+
+    def add(self, kind, item):
+        items = self.document.setdefault(kind, [])
+        items.append(item)
+        return len(items) - 1
+
+    def accessor(self, rows, component_type, code, target):
+        """One value or vector a row, in a buffer view of its own."""
+        view = {"buffer": 0, "byteOffset": len(self.data), "target": target}
+        for row in rows:
+            self.data += struct.pack(f"<{len(row)}{code}", *row)
+        view["byteLength"] = len(self.data) - view["byteOffset"]
+        accessor = {
+            "bufferView": self.add("bufferViews", view),
+            "componentType": component_type,
+            "count": len(rows),
+            "type": {1: "SCALAR", 2: "VEC2", 3: "VEC3"}[len(rows[0])],
+            "min": [min(column) for column in zip(*rows)],
+            "max": [max(column) for column in zip(*rows)],
+        }
+        return self.add("accessors", accessor)
+
+    def vertices(self, rows):
+        return self.accessor([single(row) for row in rows], FLOAT, "f", VERTICES)
+
+    def material(self, name, colour, alpha=1.0, texture=None, **properties):
+        pbr = {"baseColorFactor": [*colour, alpha], "metallicFactor": 0.0, "roughnessFactor": 1.0}
+        if texture is not None:
+            pbr["baseColorTexture"] = {"index": texture}
+        return self.add("materials", {"name": name, "pbrMetallicRoughness": pbr, **properties})
+
+    def texture(self, name, png):
+        """An image that repeats."""
+        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(png)}
+        self.data += png + bytes(-len(png) % 4)  # floats that follow stay aligned
+        image = {"name": name, "mimeType": "image/png", "bufferView": self.add("bufferViews", view)}
+        return self.add("textures", {"source": self.add("images", image)})
+
+    def mesh(self, name, surface, material):
+        """A surface of shapes.py; its corners have texture coordinates where it gives them."""
+        attributes = {"POSITION": self.vertices(surface.positions), "NORMAL": self.vertices(surface.normals)}
+        if surface.uvs:
+            attributes["TEXCOORD_0"] = self.vertices(surface.uvs)
+        indices = self.accessor([[index] for index in surface.indices], UNSIGNED_INT, "I", INDICES)
+        primitive = {"attributes": attributes, "indices": indices, "material": material}
+        return self.add("meshes", {"name": name, "primitives": [primitive]})
+
+    def node(self, name, **properties):
+        self.document["scenes"][0]["nodes"].append(self.add("nodes", {"name": name, **properties}))
+
+    def place(self, name, surface, material, **transform):
+        """A mesh with the only node that shows it."""
+        self.node(name, mesh=self.mesh(name, surface, material), **transform)
+
+    def light(self, name, kind, colour, intensity, reach=None, cone=None, **transform):
+        """Intensity in candela, or lux for a directional light; reach in metres; cone: inner and outer, in degrees."""
+        light = {"type": kind, "name": name, "color": colour, "intensity": intensity}
+        if reach is not None:
+            light["range"] = reach
+        if cone is not None:
+            inner, outer = (round(math.radians(angle), 6) for angle in cone)
+            light["spot"] = {"innerConeAngle": inner, "outerConeAngle": outer}
+        lights = self.document["extensions"]["KHR_lights_punctual"]["lights"]
+        lights.append(light)
+        self.node(name, **transform, extensions={"KHR_lights_punctual": {"light": len(lights) - 1}})
+
+    def camera(self, vertical_fov, near, **transform):
+        """The scene's view, in degrees and metres."""
+        perspective = {"yfov": round(math.radians(vertical_fov), 6), "znear": near}
+        camera = self.add("cameras", {"name": "camera", "type": "perspective", "perspective": perspective})
+        self.node("camera", camera=camera, **transform)
+
+    def text(self):
+        uri = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()
+        self.document["buffers"] = [{"byteLength": len(self.data), "uri": uri}]
+        return json.dumps(self.document, indent=1) + "\n"
+
+
+def single(vector):
+    """Rounded to single precision, as the buffer holds it; glTF wants `min` and `max` to agree."""
+    return struct.unpack(f"<{len(vector)}f", struct.pack(f"<{len(vector)}f", *vector))

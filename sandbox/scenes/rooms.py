@@ -1,0 +1,92 @@
+"""Small scenes of a few walls."""
+
+from gltf_writer import Scene
+from shapes import block, box, flat, looking, room, turn
+
+WHITE = [0.725, 0.71, 0.68]
+RED = [0.63, 0.065, 0.05]
+GREEN = [0.14, 0.45, 0.091]
+BLUE = [0.1, 0.2, 0.55]
+DAYLIGHT = [1.0, 0.92, 0.8]
+
+
+def cornell():
+    """The box of Goral et al. (1984) as Cornell measured it later, scaled to a room of 2 m and open towards +Z."""
+    scene = Scene()
+    white, red, green = scene.material("white", WHITE), scene.material("red", RED), scene.material("green", GREEN)
+
+    walls = {
+        "floor": (white, [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]),
+        "ceiling": (white, [(-1, 2, -1), (1, 2, -1), (1, 2, 1), (-1, 2, 1)]),
+        "back wall": (white, [(-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1)]),
+        "left wall": (red, [(-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)]),
+        "right wall": (green, [(1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)]),
+    }
+    for name, (material, quad) in walls.items():
+        scene.place(name, flat([quad]), material)
+    short, tall = flat(box(0.6, 0.6, 0.6)), flat(box(0.6, 1.2, 0.6))
+    scene.place("short block", short, white, translation=[0.33, 0.0, 0.39], rotation=turn(-17))
+    scene.place("tall block", tall, white, translation=[-0.33, 0.0, -0.26], rotation=turn(17))
+
+    # Far enough below the ceiling that its spot there is a glow rather than a glare, above the tall block by enough
+    # that its shadow reaches the walls. 4 cd at 1.6 m make pi / 2 lux on the floor, which then shows a radiance of 0.36:
+    # middle grey once the box's own light is added and the picture tone-mapped.
+    scene.light("ceiling light", "point", DAYLIGHT, 4.0, translation=[0.0, 1.6, 0.0])
+    # The opening, 2.9 m away, fills a square picture but for a thin margin.
+    scene.camera(39.3, 0.01, translation=[0.0, 1.0, 3.9])
+    return scene
+
+
+def corner():
+    """Two walls and a floor that meet at the origin, lit by a spot close to it: where light gathered from virtual
+    lights nearby grows without bound."""
+    scene = Scene()
+    white = scene.material("white", WHITE)
+    rose, azure = scene.material("rose", [0.75, 0.4, 0.35]), scene.material("azure", [0.35, 0.5, 0.75])
+    walls = {
+        "floor": (white, [(0, 0, 2), (2, 0, 2), (2, 0, 0), (0, 0, 0)]),
+        "left wall": (rose, [(0, 0, 2), (0, 0, 0), (0, 2, 0), (0, 2, 2)]),
+        "right wall": (azure, [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)]),
+    }
+    for name, (material, quad) in walls.items():
+        scene.place(name, flat([quad]), material)
+    spot = looking((0.6, 0.65, 0.55), (0.0, 0.0, 0.0))
+    scene.light("spot", "spot", DAYLIGHT, 2.5, cone=(25, 40), **spot)
+    scene.camera(45, 0.01, **looking((1.25, 0.95, 1.4), (0.2, 0.25, 0.2)))
+    return scene
+
+
+def two_rooms():
+    """Two rooms of 4 m x 2.6 m x 4 m either side of a wall at x = 0, 0.2 m thick, with an opening of 0.9 m x 2 m. The
+    light is in one, the camera in the other. The door's hinge is the origin of its node; turned by 0 it is shut."""
+    scene = Scene()
+    white, red, blue = scene.material("white", WHITE), scene.material("red", RED), scene.material("blue", BLUE)
+    wood = scene.material("wood", [0.45, 0.26, 0.12])
+
+    lit = room((-4.1, 0, -2), (-0.1, 2.6, 2))
+    # In place of its wall towards +X, what is left of that around the opening: ranges of z and y.
+    del lit[2]
+    for (z0, z1), (y0, y1) in [((-2, -0.45), (0, 2.6)), ((0.45, 2), (0, 2.6)), ((-0.45, 0.45), (2, 2.6))]:
+        lit.append([(-0.1, y0, z0), (-0.1, y0, z1), (-0.1, y1, z1), (-0.1, y1, z0)])
+    dark = [[(-x, y, z) for x, y, z in reversed(quad)] for quad in lit]
+    front, back, _, _, top, bottom = room((-0.1, 0, -0.45), (0.1, 2, 0.45))
+    scene.place("room", flat([*lit, *dark, front, back, top, bottom]), white)
+
+    leaf = flat(block((-0.02, 0, 0), (0.02, 2.03, 0.94)))
+    scene.place("door", leaf, wood, translation=[0.125, 0.0, -0.47], rotation=turn(105))
+    scene.place("cupboard", flat(box(0.6, 1.8, 1.2)), red, translation=[-3.75, 0.0, -0.2])
+    scene.place("chest", flat(box(0.7, 0.7, 0.7)), blue, translation=[2.2, 0.0, -1.3], rotation=turn(30))
+
+    scene.light("lamp", "point", DAYLIGHT, 6.0, translation=[-1.9, 2.0, 0.5])
+    scene.camera(65, 0.01, **looking((3.8, 1.7, 1.7), (0.6, 0.85, -0.4)))
+    return scene
+
+
+def furnace():
+    """A closed box of one albedo with a light in it: with every bounce, as much light is absorbed as is emitted."""
+    scene = Scene()
+    grey = scene.material("grey", [0.5, 0.5, 0.5])
+    scene.place("room", flat(room((-1, -1, -1), (1, 1, 1))), grey)
+    scene.light("light", "point", [1.0, 1.0, 1.0], 1.0, translation=[0.2, 0.3, -0.1])
+    scene.camera(80, 0.01, translation=[0.0, 0.0, 0.9])
+    return scene

@@ -1,0 +1,130 @@
+"""Surfaces, and rotations as quaternions (x, y, z, w). A quad is four corners in a plane, counter-clockwise from its
+front. Lengths in metres, +Y up, angles in degrees."""
+
+import math
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Surface:
+    """Indexed triangles, counter-clockwise from the front."""
+
+    positions: list = field(default_factory=list)
+    normals: list = field(default_factory=list)
+    indices: list = field(default_factory=list)
+    uvs: list = field(default_factory=list)  # empty or one a position
+
+    def __add__(self, other):
+        later = [index + len(self.positions) for index in other.indices]
+        return Surface(
+            self.positions + other.positions, self.normals + other.normals, self.indices + later, self.uvs + other.uvs
+        )
+
+
+def flat(quads):
+    """Quads as a surface, each with the normal of its plane."""
+    surface = Surface()
+    for quad in quads:
+        first = len(surface.positions)
+        surface.positions += quad
+        surface.normals += [normal(quad)] * 4
+        surface.indices += [first + i for i in (0, 1, 2, 0, 2, 3)]
+    return surface
+
+
+def normal(quad):
+    a, b, _, d = quad
+    u = [b[i] - a[i] for i in range(3)]
+    v = [d[i] - a[i] for i in range(3)]
+    cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    length = math.sqrt(sum(x * x for x in cross))
+    return [x / length + 0.0 for x in cross]  # + 0.0 makes -0.0 plain
+
+
+def block(low, high):
+    """The six faces of a closed box between two corners: those towards +Z, -Z, +X, -X, +Y, -Y."""
+    (a, b, c), (x, y, z) = low, high
+    return [
+        [(a, b, z), (x, b, z), (x, y, z), (a, y, z)],
+        [(x, b, c), (a, b, c), (a, y, c), (x, y, c)],
+        [(x, b, z), (x, b, c), (x, y, c), (x, y, z)],
+        [(a, b, c), (a, b, z), (a, y, z), (a, y, c)],
+        [(a, y, z), (x, y, z), (x, y, c), (a, y, c)],
+        [(a, b, c), (x, b, c), (x, b, z), (a, b, z)],
+    ]
+
+
+def box(width, height, depth):
+    """A block that stands on the origin."""
+    return block((-width / 2, 0, -depth / 2), (width / 2, height, depth / 2))
+
+
+def room(low, high):
+    """A block seen from inside."""
+    return [quad[::-1] for quad in block(low, high)]
+
+
+def ground(low, high):
+    """A level quad that faces up, between two corners (x, z) at height 0."""
+    (a, c), (x, z) = low, high
+    return [(a, 0, z), (x, 0, z), (x, 0, c), (a, 0, c)]
+
+
+def pane(width, height, repeats=None):
+    """An upright sheet that stands on the origin and faces +Z; its texture, if any, fits across it so many times."""
+    x = width / 2
+    surface = flat([[(-x, 0, 0), (x, 0, 0), (x, height, 0), (-x, height, 0)]])
+    if repeats:
+        u, v = repeats, repeats * height / width
+        surface.uvs = [(0, v), (u, v), (u, 0), (0, 0)]
+    return surface
+
+
+def lathe(profile, segments):
+    """A profile of (radius, height), from below, turned about +Y. Its normals are smooth."""
+    surface = Surface()
+    for ring, (radius, height) in enumerate(profile):
+        below, above = profile[max(ring - 1, 0)], profile[min(ring + 1, len(profile) - 1)]
+        outwards, upwards = above[1] - below[1], below[0] - above[0]
+        length = math.hypot(outwards, upwards)
+        for segment in range(segments + 1):
+            angle = 2 * math.pi * (segment % segments) / segments
+            x, z = math.sin(angle), math.cos(angle)
+            surface.positions.append((radius * x, height, radius * z))
+            surface.normals.append((outwards / length * x, upwards / length, outwards / length * z))
+    row = segments + 1
+    for ring in range(len(profile) - 1):
+        for segment in range(segments):
+            corner = ring * row + segment
+            surface.indices += [corner + i for i in (0, 1, row + 1, 0, row + 1, row)]
+    return surface
+
+
+def turn(degrees):
+    """A turn about +Y."""
+    half = math.radians(degrees) / 2
+    return [0.0, round(math.sin(half), 7), 0.0, round(math.cos(half), 7)]
+
+
+def tilt(degrees):
+    """A turn about +X."""
+    x, y, z, w = turn(degrees)
+    return [y, x, z, w]
+
+
+def aim(start, target):
+    """The rotation that takes -Z from `start` to `target` and keeps +X level, as cameras and lights want it."""
+    x, y, z = (b - a for a, b in zip(start, target))
+    yaw, pitch = math.atan2(-x, -z) / 2, math.atan2(y, math.hypot(x, z)) / 2
+    quaternion = [
+        math.cos(yaw) * math.sin(pitch),
+        math.sin(yaw) * math.cos(pitch),
+        -math.sin(yaw) * math.sin(pitch),
+        math.cos(yaw) * math.cos(pitch),
+    ]
+    return [round(part, 7) + 0.0 for part in quaternion]
+
+
+def looking(start, target):
+    """The transform of a camera or a light at `start` that looks at `target`."""
+    return {"translation": list(start), "rotation": aim(start, target)}

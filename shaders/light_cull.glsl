@@ -1,0 +1,109 @@
+// Narrows the list of a cell down to the lights that reach it, in place and in order. One invocation a cell.
+#include "bindings.glsl"
+#include "light_cells.glsl"
+#include "types.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
+layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
+layout(std430, binding = BINDING_LIST_COUNT) writeonly restrict buffer ListCount { uint list_count[]; };
+layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };
+
+uniform uvec2 target_pixels;
+uniform vec2 ray_scale;     // view-space x and y at depth 1 (orthographic: at any) of ndc - ray_shift
+uniform vec2 ray_shift;
+uniform bool orthographic;
+
+// What a cell holds: rays between `lower` and `upper` (view-space x and y at depth 1; orthographic: at any depth),
+// between two depths, and within them only where the mask has bits.
+struct Cell {
+    vec2 lower;
+    vec2 upper;
+    float nearest;
+    float farthest;
+    uint mask;  // 32 slices between nearest and farthest
+};
+
+Cell make_cell(uvec2 tile, float nearest, float farthest, uint mask) {
+    vec2 low = vec2(tile * tile_size) / vec2(target_pixels);
+    vec2 high = vec2((tile + 1u) * tile_size) / vec2(target_pixels);
+    vec2 lower = (low * 2.0 - 1.0 - ray_shift) * ray_scale;
+    vec2 upper = (high * 2.0 - 1.0 - ray_shift) * ray_scale;
+    return Cell(lower, upper, nearest, farthest, mask);
+}
+
+// Mask bits of the slices from depth a to depth b.
+uint slices_between(Cell cell, float a, float b) {
+    float extent = cell.farthest - cell.nearest;
+    if (extent <= 0.0) return 0xffffffffu;
+    vec2 at = clamp((vec2(a, b) - cell.nearest) / extent * 32.0, 0.0, 31.0);
+    uint low = uint(at.x);
+    uint count = uint(at.y) - low + 1u;
+    return count >= 32u ? 0xffffffffu : ((1u << count) - 1u) << low;
+}
+
+struct Bounds {
+    vec3 centre;  // view space, z towards the viewer
+    vec3 half_extent;
+};
+
+// Box around the part of the cell between two depths.
+Bounds box_between(Cell cell, float a, float b) {
+    vec2 scale = orthographic ? vec2(1.0) : vec2(a, b);
+    vec2 low = min(cell.lower * scale.x, cell.lower * scale.y);
+    vec2 high = max(cell.upper * scale.x, cell.upper * scale.y);
+    return Bounds(vec3(low + high, -(a + b)) * 0.5, vec3(high - low, b - a) * 0.5);
+}
+
+// Signed distances to the four side planes, positive inside, at least -radius: Hasselgren's and everybody's test.
+bool outside_planes(Cell cell, vec3 centre, float radius) {
+    vec2 depth = orthographic ? vec2(1.0) : vec2(-centre.z);
+    vec2 low = centre.xy - cell.lower * depth;
+    vec2 high = cell.upper * depth - centre.xy;
+    if (!orthographic) {
+        low *= inversesqrt(1.0 + cell.lower * cell.lower);
+        high *= inversesqrt(1.0 + cell.upper * cell.upper);
+    }
+    return any(lessThan(low, vec2(-radius))) || any(lessThan(high, vec2(-radius)));
+}
+
+// The sphere around a box against a cone with its apex and axis: the sphere lies wholly to the side of it, or behind.
+bool outside_cone(Bounds box, vec3 apex, vec3 axis, float cos_angle) {
+    float radius = length(box.half_extent);
+    vec3 from_apex = box.centre - apex;
+    float along = dot(from_apex, axis);
+    float across = sqrt(max(dot(from_apex, from_apex) - along * along, 0.0));
+    float sin_angle = sqrt(max(1.0 - cos_angle * cos_angle, 0.0));
+    return cos_angle * across - sin_angle * along > radius;
+}
+
+// Whether any of the light's reach is in the cell. Never false where the light's irradiance is not zero.
+bool reaches(Light light, Cell cell) {
+    if (isinf(light.range)) return true;
+    vec3 centre = (view_from_world * vec4(light.position, 1.0)).xyz;
+    // Widened by what rounding may move the centre.
+    float radius = light.range * 1.0001 + 1e-6 * (length(centre) + length(light.position));
+    float nearest = max(cell.nearest, -centre.z - radius);
+    float farthest = min(cell.farthest, -centre.z + radius);
+    if (nearest > farthest) return false;
+    if ((slices_between(cell, nearest, farthest) & cell.mask) == 0u) return false;
+    if (outside_planes(cell, centre, radius)) return false;
+    Bounds box = box_between(cell, nearest, farthest);
+    vec3 gap = max(abs(centre - box.centre) - box.half_extent * 1.0001, 0.0);
+    if (dot(gap, gap) > radius * radius) return false;
+    if (light.kind != LIGHT_SPOT) return true;
+    vec3 axis = mat3(view_from_world) * light.direction;
+    return !outside_cone(box, centre, axis, light.cos_outer - 1e-4);
+}
+
+void narrow(uint index, Cell cell) {
+    uint first = list_first[index];
+    uint end = list_first[index + 1u];
+    uint kept = first;
+    for (uint i = first; i < end; ++i) {
+        uint light = list_entries[i];
+        if (reaches(lights[light], cell)) list_entries[kept++] = light;
+    }
+    list_count[index] = kept - first;
+}

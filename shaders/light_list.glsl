@@ -1,0 +1,40 @@
+// Which lights a surface visits: all of them, or the list of its cell (LIGHT_LIST_CELLS).
+#include "bindings.glsl"
+#include "light_cells.glsl"
+
+uniform uint light_count;  // in all; 0: none is shown
+
+#ifdef LIGHT_LIST_CELLS
+
+layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
+layout(std430, binding = BINDING_LIST_COUNT) readonly restrict buffer ListCount { uint list_count[]; };
+layout(std430, binding = BINDING_LIST_ENTRIES) readonly restrict buffer ListEntries { uint list_entries[]; };
+
+uniform uint global_light_count;  // entries at the start that every cell visits
+
+struct LightListRange {
+    uint first;
+    uint size;
+};
+
+// The list for a surface under a pixel.
+LightListRange light_list_at(uvec2 pixel, vec3 position) {
+    float depth = grid_slices > 1u ? -(view_from_world * vec4(position, 1.0)).z : 0.0;
+    uint cell = cell_index(pixel / tile_size, grid_slices > 1u ? slice_of(depth) : 0u);
+    return LightListRange(list_first[cell], light_count == 0u ? 0u : global_light_count + list_count[cell]);
+}
+
+uint light_list_entry(LightListRange list, uint i) {
+    return list_entries[i < global_light_count ? i : list.first + i - global_light_count];
+}
+
+#else
+
+struct LightListRange {
+    uint size;
+};
+
+LightListRange light_list_at(uvec2 pixel, vec3 position) { return LightListRange(light_count); }
+uint light_list_entry(LightListRange list, uint i) { return i; }
+
+#endif

@@ -1,0 +1,458 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/bvh/box.hpp"
+#include "engine/bvh/bvh.hpp"
+#include "engine/scene/gltf.hpp"
+#include "engine/scene/hierarchy.hpp"
+#include "tests/engine/gltf_builder.hpp"
+
+using namespace candela;
+using namespace candela::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path scenes() {
+    return fs::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes";
+}
+
+fs::path shipped(const std::string& name) {
+    return scenes() / (name + ".gltf");
+}
+
+/// Runs the generator. What it is told must need no quoting.
+void generate(const fs::path& out, const std::string& arguments) {
+    const fs::path script = scenes() / "generate.py";
+    const std::string command =
+        fmt::format("python3 '{}' --out '{}' {} > /dev/null", script.string(), out.string(), arguments);
+    REQUIRE(std::system(command.c_str()) == 0);
+}
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// An imported scene.
+struct Loaded {
+    World world;
+    ImportReport report;
+
+    explicit Loaded(const fs::path& path) : report(import_gltf(path, world)) {}
+
+    [[nodiscard]] std::vector<Entity> called(const std::string& name) const {
+        std::vector<Entity> found;
+        for (auto [entity, is] : world.view<Name>()) {
+            if (is.value == name) {
+                found.push_back(entity);
+            }
+        }
+        return found;
+    }
+    [[nodiscard]] glm::mat4 camera() const { return world_matrix(world, called("camera").at(0)); }
+    [[nodiscard]] glm::vec3 position(Entity entity) const { return world_matrix(world, entity)[3]; }
+};
+
+void append(std::vector<Triangle>& triangles, const Primitive& primitive, const glm::mat4& matrix) {
+    const auto corner = [&](std::size_t i) {
+        return glm::vec3(matrix * glm::vec4(primitive.vertices[primitive.indices[i]].position, 1.0F));
+    };
+    for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
+        triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
+    }
+}
+
+/// In world space.
+std::vector<Triangle> triangles_of(const Loaded& scene, Entity entity) {
+    std::vector<Triangle> triangles;
+    for (const Primitive& primitive : scene.world.get<MeshInstance>(entity).mesh->primitives) {
+        append(triangles, primitive, world_matrix(scene.world, entity));
+    }
+    return triangles;
+}
+
+std::vector<Triangle> all_triangles(const Loaded& scene) {
+    std::vector<Triangle> triangles;
+    for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
+        const std::vector<Triangle> more = triangles_of(scene, entity);
+        triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+    return triangles;
+}
+
+/// Where all lights but the directional ones are.
+std::vector<glm::vec3> light_positions(const Loaded& scene) {
+    std::vector<glm::vec3> positions;
+    for (auto [entity, light] : scene.world.view<PointLight>()) {
+        positions.push_back(scene.position(entity));
+    }
+    for (auto [entity, light] : scene.world.view<SpotLight>()) {
+        positions.push_back(scene.position(entity));
+    }
+    return positions;
+}
+
+template <class Component>
+std::size_t count(const Loaded& scene) {
+    std::size_t found = 0;
+    for ([[maybe_unused]] auto [entity, component] : scene.world.view<Component>()) {
+        ++found;
+    }
+    return found;
+}
+
+/// Triangles that can be asked for what a ray meets.
+struct Target {
+    std::vector<Triangle> triangles;
+    Bvh bvh = build_bvh(triangles);
+
+    [[nodiscard]] std::optional<Hit> first(const glm::vec3& from, const glm::vec3& direction) const {
+        return closest_hit(bvh, triangles, {.origin = from, .direction = direction});
+    }
+    /// Whether the first thing along the ray is the front of a triangle.
+    [[nodiscard]] bool shows_front(const glm::vec3& from, const glm::vec3& direction) const {
+        const std::optional<Hit> hit = first(from, direction);
+        if (!hit) {
+            return false;
+        }
+        const Triangle& triangle = triangles[hit->triangle];
+        const glm::vec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+        return glm::dot(normal, direction) < 0.0F;
+    }
+};
+
+/// Directions spread evenly over the sphere: equal steps in height, golden angles around it.
+std::vector<glm::vec3> directions(int number) {
+    std::vector<glm::vec3> spread;
+    for (int i = 0; i < number; ++i) {
+        const float height = 1.0F - (2.0F * float(i) + 1.0F) / float(number);
+        const float radius = std::sqrt(1.0F - height * height);
+        const float angle = 2.39996323F * float(i);
+        spread.emplace_back(radius * std::cos(angle), height, radius * std::sin(angle));
+    }
+    return spread;
+}
+
+/// The direction through a pixel's centre of the scene's camera, in world space, not normalised: its depth is
+/// 1. Row 0 is at the top.
+glm::vec3 through_pixel(const Loaded& scene, glm::ivec2 pixel, glm::ivec2 size) {
+    const Camera& camera = scene.world.get<Camera>(scene.called("camera").at(0));
+    const float scale = 2.0F * std::tan(camera.vertical_fov / 2.0F) / float(size.y);
+    const float x = (float(pixel.x) + 0.5F - float(size.x) / 2.0F) * scale;
+    const float y = (float(size.y) / 2.0F - float(pixel.y) - 0.5F) * scale;
+    return glm::mat3(scene.camera()) * glm::vec3(x, y, -1.0F);
+}
+
+/// By the divergence theorem; negative where the triangles face inwards.
+double enclosed_volume(const std::vector<Triangle>& triangles) {
+    double volume = 0.0;
+    for (const Triangle& t : triangles) {
+        volume += glm::dot(glm::dvec3(t.a), glm::cross(glm::dvec3(t.b), glm::dvec3(t.c))) / 6.0;
+    }
+    return volume;
+}
+
+/// The fraction of a coarse picture that shows a surface's front.
+double covered(const Loaded& scene) {
+    const Target target{all_triangles(scene)};
+    const glm::ivec2 size(32, 24);
+    int shown = 0;
+    for (int i = 0; i < size.x * size.y; ++i) {
+        const glm::vec3 direction = through_pixel(scene, {i % size.x, i / size.x}, size);
+        shown += target.shows_front(scene.camera()[3], direction) ? 1 : 0;
+    }
+    return double(shown) / (size.x * size.y);
+}
+
+/// What everybody who quotes a figure on the scene may rely on.
+struct Facts {
+    std::string name;
+    std::uint64_t triangles;
+    std::size_t points, spots, suns;
+    glm::vec3 lower, upper;
+};
+
+void check_facts(const Loaded& scene, const Facts& facts) {
+    CHECK(scene.report.warnings.empty());
+    CHECK(scene.report.triangles == facts.triangles);
+    CHECK(count<PointLight>(scene) == facts.points);
+    CHECK(count<SpotLight>(scene) == facts.spots);
+    CHECK(count<DirectionalLight>(scene) == facts.suns);
+    CHECK(count<Camera>(scene) == 1);
+    REQUIRE(scene.called("camera").size() == 1);
+    CHECK(scene.world.find<Camera>(scene.called("camera")[0]) != nullptr);
+
+    Box box;
+    for (const Triangle& triangle : all_triangles(scene)) {
+        box.grow(bounds(triangle));
+    }
+    // Positions are floats of up to 256 m, rotations have seven digits.
+    CHECK(glm::distance(box.lower, facts.lower) < 1e-4F);
+    CHECK(glm::distance(box.upper, facts.upper) < 1e-4F);
+    // Lights of the open scenes hang over what they light, not outside it.
+    for (const glm::vec3& light : light_positions(scene)) {
+        CHECK(glm::all(glm::greaterThan(light, facts.lower)));
+        CHECK(glm::all(glm::lessThan(light, facts.upper)));
+    }
+    // The Cornell box is framed for a square, which has 3/4 of this picture.
+    CHECK(covered(scene) > 0.7);
+}
+
+/// Whether each vertex normal is on the front of the triangles that use it.
+bool normals_agree(const Primitive& primitive) {
+    std::vector<Triangle> triangles;
+    append(triangles, primitive, glm::mat4(1.0F));
+    for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
+        const Triangle& t = triangles[i / 3];
+        const glm::vec3 normal = primitive.vertices[primitive.indices[i]].normal;
+        if (glm::dot(glm::cross(t.b - t.a, t.c - t.a), normal) <= 0.0F) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// How many lights send anything to a point, shadows aside.
+int lights_reaching(const Loaded& scene, const glm::vec3& point) {
+    int reaching = 0;
+    for (auto [entity, light] : scene.world.view<PointLight>()) {
+        reaching += glm::distance(scene.position(entity), point) < light.range ? 1 : 0;
+    }
+    for (auto [entity, light] : scene.world.view<SpotLight>()) {
+        const glm::mat4 matrix = world_matrix(scene.world, entity);
+        const glm::vec3 to_point = point - glm::vec3(matrix[3]);
+        const float distance = glm::length(to_point);
+        const float along = glm::dot(to_point, -glm::vec3(matrix[2])) / distance;
+        reaching += distance < light.range && along > std::cos(light.outer_cone) ? 1 : 0;
+    }
+    return reaching;
+}
+
+/// The mean of lights_reaching over 24 × 24 points of the parallelogram of two edges from a corner.
+double mean_reaching(const Loaded& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v) {
+    int sum = 0;
+    for (int i = 0; i < 24 * 24; ++i) {
+        const float along_u = (float(i % 24) + 0.5F) / 24.0F;
+        const float along_v = (float(i / 24) + 0.5F) / 24.0F;
+        sum += lights_reaching(scene, corner + along_u * u + along_v * v);
+    }
+    return sum / (24.0 * 24.0);
+}
+
+}  // namespace
+
+TEST_SUITE("shipped scenes") {
+    TEST_CASE("each holds what figures are quoted on") {
+        const std::vector<Facts> facts_of_all{
+            {"cornell", 34, 1, 0, 0, {-1, 0, -1}, {1, 2, 1}},
+            {"corner", 6, 0, 1, 0, {0, 0, 0}, {2, 2, 2}},
+            {"two-rooms", 76, 1, 0, 0, {-4.1F, 0, -2}, {4.1F, 2.6F, 2}},
+            {"furnace", 12, 1, 0, 0, {-1, -1, -1}, {1, 1, 1}},
+            {"glass", 58, 11, 0, 0, {-3, 0, -4}, {3, 3, 4}},
+            {"hall-256", 372, 192, 64, 0, {-8, 0, -64}, {8, 4, 0}},
+            // The highest point is the top of a fin.
+            {"fins", 28802, 512, 0, 0, {-6.2F, 0, -22.28103F}, {6.2F, 3.79629F, 0}},
+        };
+        for (const Facts& facts : facts_of_all) {
+            CAPTURE(facts.name);
+            check_facts(Loaded(shipped(facts.name)), facts);
+        }
+    }
+
+    TEST_CASE("the generator writes the shipped files, and the large scenes on demand") {
+        const TemporaryDirectory directory;
+        generate(directory / "shipped", "");
+        for (const fs::directory_entry& file : fs::directory_iterator(directory / "shipped")) {
+            CAPTURE(file.path().filename().string());
+            CHECK(contents(file.path()) == contents(scenes() / file.path().filename()));
+        }
+        generate(directory / "large", "atrium hall-4096 hall --lights 7");
+        check_facts(Loaded(directory / "large/hall-4096.gltf"),
+                    {"hall-4096", 6060, 3072, 1024, 0, {-32, 0, -256}, {32, 4, 0}});
+        check_facts(Loaded(directory / "large/hall-7.gltf"),
+                    {"hall-7", 12, 6, 1, 0, {-1, 0, -14}, {1, 4, 0}});
+        const Loaded atrium(directory / "large/atrium.gltf");
+        check_facts(atrium, {"atrium", 116098, 4, 0, 1, {-13.75F, 0, -7.5F}, {13.75F, 9.6F, 7.5F}});
+        for (const Entity column : atrium.called("column")) {
+            CHECK(normals_agree(atrium.world.get<MeshInstance>(column).mesh->primitives.at(0)));
+        }
+    }
+
+    TEST_CASE("normals lie on the front of their triangles") {
+        for (const fs::directory_entry& file : fs::directory_iterator(scenes())) {
+            if (file.path().extension() != ".gltf") {
+                continue;
+            }
+            CAPTURE(file.path().filename().string());
+            const Loaded scene(file.path());
+            for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
+                CHECK(normals_agree(instance.mesh->primitives.at(0)));
+            }
+        }
+    }
+
+    TEST_CASE("closed rooms have no gap and face inwards") {
+        struct Closed {
+            std::string name;
+            double volume;  // cubic metres
+        };
+        const std::vector<Closed> rooms{{"furnace", 2.0 * 2.0 * 2.0},
+                                        {"glass", 6.0 * 3.0 * 8.0},
+                                        {"hall-256", 16.0 * 4.0 * 64.0},
+                                        {"two-rooms", 2 * 4.0 * 2.6 * 4.0 + 0.2 * 2.0 * 0.9}};
+        for (const Closed& expected : rooms) {
+            CAPTURE(expected.name);
+            const Loaded scene(shipped(expected.name));
+            const Target room{triangles_of(scene, scene.called("room").at(0))};
+            CHECK(enclosed_volume(room.triangles) == doctest::Approx(-expected.volume).epsilon(1e-6));
+
+            std::vector<glm::vec3> inside = light_positions(scene);
+            inside.push_back(scene.position(scene.called("camera").at(0)));
+            for (const glm::vec3& from : inside) {
+                for (const glm::vec3& direction : directions(500)) {
+                    REQUIRE(room.shows_front(from, direction));
+                }
+            }
+        }
+    }
+
+    TEST_CASE("the furnace is of one albedo, a half") {
+        const Loaded scene(shipped("furnace"));
+        CHECK(count<MeshInstance>(scene) == 1);
+        const MeshInstance& room = scene.world.get<MeshInstance>(scene.called("room").at(0));
+        CHECK(room.mesh->primitives.at(0).material->base_colour == glm::vec4(0.5F, 0.5F, 0.5F, 1.0F));
+    }
+
+    TEST_CASE("the spot of the corner shines into it from nearby") {
+        const Loaded scene(shipped("corner"));
+        const glm::mat4 spot = world_matrix(scene.world, scene.called("spot").at(0));
+        const glm::vec3 to_corner = -glm::vec3(spot[3]);
+        CHECK(glm::length(to_corner) < 1.1F);
+        CHECK(glm::dot(glm::normalize(to_corner), -glm::vec3(spot[2])) > 0.999F);
+    }
+
+    TEST_CASE("light passes the door of the two rooms only while it is open") {
+        Loaded scene(shipped("two-rooms"));
+        const Entity door = scene.called("door").at(0);
+        const glm::vec3 lamp = scene.position(scene.called("lamp").at(0));
+        REQUIRE(lamp.x < 0.0F);
+        const auto lit_beyond = [&] {
+            const Target target{all_triangles(scene)};
+            int beyond = 0;
+            for (const glm::vec3& direction : directions(20000)) {
+                const std::optional<Hit> hit = target.first(lamp, direction);
+                REQUIRE(hit);
+                // The door itself, shut, lies between 0.1 m and 0.15 m.
+                beyond += lamp.x + hit->t * direction.x > 0.15F ? 1 : 0;
+            }
+            return beyond;
+        };
+        // The opening is of the order of 0.9 m × 2 m seen from 2 m: a fraction 1.8 / (4 pi 4) or so of
+        // 20,000.
+        CHECK(lit_beyond() > 300);
+        Transform shut = scene.world.get<Transform>(door);
+        shut.rotation = {1.0F, 0.0F, 0.0F, 0.0F};
+        scene.world.set(door, shut);
+        CHECK(lit_beyond() == 0);
+    }
+
+    TEST_CASE("a few lights reach each point of the halls and of the slope") {
+        const TemporaryDirectory directory;
+        generate(directory / "", "hall --lights 64");
+        // The halls agree, or growing them would change more than their size. Each light has 4 square metres;
+        // a point light reaches a disc of radius sqrt(3.5² - 2²), a spot about one of 2 m · tan 55°: 6.4 on
+        // average, less near walls.
+        for (const Loaded& hall : {Loaded(shipped("hall-256")), Loaded(directory / "hall-64.gltf")}) {
+            const double reaching = mean_reaching(hall, {-1, 0, -28}, {2, 0, 0}, {0, 0, 24});
+            CHECK(reaching > 4.0);
+            CHECK(reaching < 8.0);
+        }
+        // 512 lights over 12 m × 21.6 m, each of which reaches a disc of radius sqrt(1.05² - 0.28²): 6.4.
+        const float slope = glm::radians(8.0F);
+        const glm::vec3 upwards(0.0F, std::sin(slope), -std::cos(slope));
+        const glm::vec3 corner = glm::vec3(-5, 0, 0) + 2.0F * upwards;
+        const double reaching = mean_reaching(Loaded(shipped("fins")), corner, {10, 0, 0}, 18.0F * upwards);
+        CHECK(reaching > 5.0);
+        CHECK(reaching < 8.0);
+    }
+
+    TEST_CASE("tiles of the fins span many depths") {
+        const Loaded scene(shipped("fins"));
+        const Target target{all_triangles(scene)};
+        const glm::ivec2 size(640, 480);
+        int spread = 0;
+        int tiles = 0;
+        for (int y = 128; y < size.y; y += 32) {
+            for (int x = 0; x < size.x; x += 32) {
+                float nearest = std::numeric_limits<float>::infinity();
+                float farthest = 0.0F;
+                for (int i = 0; i < 64; ++i) {
+                    const glm::ivec2 pixel(x + i % 8 * 2, y + i / 8 * 2);
+                    const std::optional<Hit> hit =
+                        target.first(scene.camera()[3], through_pixel(scene, pixel, size));
+                    nearest = std::min(nearest, hit ? hit->t : nearest);
+                    farthest = std::max(farthest, hit ? hit->t : farthest);
+                }
+                // Of a plane alone that is seen at 8° or more, 16 pixels of 30° / 480 span less than 1.15.
+                spread += farthest > 1.3F * nearest ? 1 : 0;
+                ++tiles;
+            }
+        }
+        CHECK(spread > tiles / 2);
+    }
+
+    TEST_CASE("the glass scene has panes one behind the other, one double-sided, and a cut-out") {
+        const Loaded scene(shipped("glass"));
+        std::vector<std::vector<Triangle>> panes;
+        int double_sided = 0;
+        for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
+            const Material& material = *instance.mesh->primitives.at(0).material;
+            if (material.alpha_mode == AlphaMode::blend) {
+                CHECK(material.base_colour.a < 1.0F);
+                double_sided += material.double_sided ? 1 : 0;
+                panes.push_back(triangles_of(scene, entity));
+            }
+        }
+        CHECK(panes.size() == 4);
+        CHECK(double_sided == 1);
+
+        const glm::vec3 eye = scene.camera()[3];
+        const glm::ivec2 size(48, 36);
+        std::size_t deepest = 0;
+        for (int i = 0; i < size.x * size.y; ++i) {
+            const glm::vec3 direction = through_pixel(scene, {i % size.x, i / size.x}, size);
+            const auto crossed = std::ranges::count_if(
+                panes, [&](const auto& pane) { return Target{pane}.first(eye, direction).has_value(); });
+            deepest = std::max(deepest, static_cast<std::size_t>(crossed));
+        }
+        CHECK(deepest >= 3);
+
+        const MeshInstance& trellis = scene.world.get<MeshInstance>(scene.called("trellis").at(0));
+        const Material& cut_out = *trellis.mesh->primitives.at(0).material;
+        CHECK(cut_out.alpha_mode == AlphaMode::mask);
+        REQUIRE(cut_out.base_colour_texture);
+        const std::vector<glm::u8vec4>& texels = cut_out.base_colour_texture->texels;
+        const auto solid = std::ranges::count_if(texels, [&](const glm::u8vec4& texel) {
+            return float(texel.a) / 255.0F >= cut_out.alpha_cutoff;
+        });
+        CHECK(double(solid) / double(texels.size()) > 0.3);
+        CHECK(double(solid) / double(texels.size()) < 0.8);
+    }
+}

@@ -1,0 +1,256 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr glm::uvec2 size{96, 64};
+constexpr double tolerance = 0.005;  // as for the closed forms: floats, and albedos in half floats
+constexpr std::uint32_t blocks = 4;  // along an edge of the image
+constexpr double cutoff = 0.3;
+constexpr double half = 2.0;            // of the square that the image spans once, metres
+constexpr double shading_height = 1.5;  // of a square that shades the ground, metres
+
+/// Alpha of a block, in 255ths, and that of the factor: products of 0, 0.2, 0.4 and 0.8.
+std::uint8_t stored_alpha(std::uint32_t x, std::uint32_t y) {
+    constexpr std::array<std::uint8_t, 4> levels{0, 64, 128, 255};
+    return levels[(x + 3 * y) % 4];
+}
+constexpr float factor_alpha = 0.8F;
+
+enum class Spot { solid, hole, edge };
+
+/// What the square's mask has at a place on it, in metres from its centre; `edge` where filtering may reach.
+Spot spot_at(glm::dvec2 place) {
+    const glm::dvec2 at = (place / (2.0 * half) + 0.5) * static_cast<double>(blocks);
+    const glm::dvec2 from_middle = glm::abs(glm::fract(at) - 0.5);
+    const bool near_rim = std::min({at.x, at.y, blocks - at.x, blocks - at.y}) < 0.05;
+    // A block is 4 texels wide at least: half a texel at its edge is filtered, and shadows add their own.
+    if (std::max(from_middle.x, from_middle.y) > 0.33 || near_rim) return Spot::edge;
+    if (std::min({at.x, at.y, blocks - at.x, blocks - at.y}) < 0.0) return Spot::hole;
+    const double alpha = static_cast<double>(factor_alpha) *
+                         stored_alpha(static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y)) /
+                         255.0;
+    return alpha < cutoff ? Spot::hole : Spot::solid;
+}
+
+template <class Alpha>
+std::shared_ptr<const Image> block_image(std::uint32_t texels, const Alpha& alpha) {
+    Image image{.width = texels,
+                .height = texels,
+                .texels = {},
+                .wrap_u = Wrap::clamp_to_edge,
+                .wrap_v = Wrap::clamp_to_edge};
+    for (std::uint32_t y = 0; y < texels; ++y) {
+        for (std::uint32_t x = 0; x < texels; ++x) {
+            image.texels.emplace_back(255, 255, 255, alpha(x * blocks / texels, y * blocks / texels));
+        }
+    }
+    return std::make_shared<const Image>(std::move(image));
+}
+
+std::shared_ptr<const Material> masked(float albedo, float alpha,
+                                       std::shared_ptr<const Image> image = nullptr) {
+    Material material;
+    material.base_colour = glm::vec4(glm::vec3(albedo), alpha);
+    material.base_colour_texture = std::move(image);
+    material.double_sided = true;
+    material.alpha_mode = AlphaMode::mask;
+    material.alpha_cutoff = static_cast<float>(cutoff);
+    return std::make_shared<const Material>(std::move(material));
+}
+
+/// A square with holes over the ground.
+Scene masked_scene(float height) {
+    Scene scene = ground();
+    add(scene.world, at({0, height, 0}),
+        MeshInstance{
+            square(static_cast<float>(half), masked(0.9F, factor_alpha, block_image(16, stored_alpha)))});
+    return scene;
+}
+
+/// Where a line meets the plane at a height, seen from above.
+glm::dvec2 meets(glm::dvec3 origin, glm::dvec3 direction, double height) {
+    const glm::dvec3 point = origin + (height - origin.y) / direction.y * direction;
+    return {point.x, point.z};
+}
+
+class Masks : public RenderFixture {
+ protected:
+    Picture direct_light(const Scene& scene, ShadingPath path, bool shadows = true) {
+        Configuration configuration = linear_configuration(path);
+        configuration.indirect = false;
+        configuration.shadows.enabled = shadows;
+        configure(configuration);
+        renderer.invalidate();
+        return render(scene, size);
+    }
+
+    /// Compares the pixels that see a place away from edges with `wanted(spot, pixel)`.
+    template <class SpotUnder, class Wanted>
+    void check(const Scene& scene, const Picture& picture, const SpotUnder& spot_under,
+               const Wanted& wanted) {
+        const auto& camera = scene.world.get<Camera>(scene.camera);
+        const auto& pose = scene.world.get<Transform>(scene.camera);
+        std::size_t solids = 0, holes = 0, wrong = 0;
+        for (std::uint32_t i = 0; i < picture.pixels.size(); ++i) {
+            const Spot spot = spot_under(pixel_ray(camera, pose, size, i % size.x, i / size.x));
+            if (spot == Spot::edge) continue;
+            (spot == Spot::solid ? solids : holes) += 1;
+            const double radiance = static_cast<double>(picture.pixels[i].r);
+            wrong += std::abs(radiance - wanted(spot, i)) > tolerance * wanted(Spot::hole, i) ? 1 : 0;
+        }
+        CHECK(solids > 200);
+        CHECK(holes > 200);
+        CHECK(wrong == 0);
+    }
+
+    /// The ground must be dark where the light, which travels to a point along `direction_to(point)`, meets
+    /// the square, and as without shadows where it passes through a hole.
+    template <class Direction>
+    void check_shadow(const Scene& scene, const Direction& direction_to) {
+        const Picture lit = direct_light(scene, ShadingPath::deferred, false);
+        const auto spot_under = [&](const PixelRay& ray) {
+            const glm::dvec2 seen = meets(ray.origin, ray.direction, 0.0);
+            const glm::dvec3 point(seen.x, 0.0, seen.y);
+            return spot_at(meets(point, direction_to(point), shading_height));
+        };
+        check(scene, direct_light(scene, ShadingPath::deferred), spot_under,
+              [&](Spot spot, std::uint32_t pixel) {
+                  return spot == Spot::solid ? 0.0 : static_cast<double>(lit.pixels[pixel].r);
+              });
+    }
+
+    EnergyAccount trace(const Scene& scene, const VplSettings& settings) {
+        Configuration configuration = linear_configuration();
+        configuration.vpls = settings;
+        configure(configuration);
+        renderer.invalidate();
+        static_cast<void>(render(scene, {4, 4}));
+        const auto report = renderer.report().vpls;
+        REQUIRE(report);
+        return report->flux;
+    }
+};
+
+double relative_to(glm::dvec3 difference, glm::dvec3 whole) {
+    const glm::dvec3 d = glm::abs(difference);
+    return std::max({d.r, d.g, d.b}) / std::max({whole.r, whole.g, whole.b});
+}
+
+}  // namespace
+
+TEST_SUITE("masks") {
+    TEST_CASE_FIXTURE(Masks,
+                      "a surface is seen where alpha reaches the cutoff, and what is behind elsewhere") {
+        Scene scene = masked_scene(0.5F);
+        scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+        scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F, .casts_shadow = false});
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            CAPTURE(to_string(path));
+            check(
+                scene, direct_light(scene, path),
+                [](const PixelRay& ray) { return spot_at(meets(ray.origin, ray.direction, 0.5)); },
+                [](Spot spot, std::uint32_t) { return 2.0 / pi * (spot == Spot::solid ? 0.9 : 0.5); });
+        }
+    }
+
+    TEST_CASE_FIXTURE(Masks, "an alpha at the cutoff is a surface, one below is none") {
+        for (const float alpha : {0.5F, 0.499F}) {
+            CAPTURE(alpha);
+            Scene scene = ground();
+            Material material = *masked(0.9F, alpha);
+            material.alpha_cutoff = 0.5F;
+            add(scene.world, at({0, 0.5F, 0}),
+                MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
+            scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+            scene.world.set(scene.light, DirectionalLight{});
+            for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+                const double albedo = alpha < 0.5F ? 0.5 : 0.9;
+                const double radiance = static_cast<double>(direct_light(scene, path).at(48, 32).r);
+                CHECK(std::abs(radiance - albedo / pi) < tolerance / pi);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(Masks, "light passes through the holes: shadows of suns, spots and points") {
+        // The square is above the camera, out of its sight.
+        Scene scene = masked_scene(static_cast<float>(shading_height));
+        scene.world.set(scene.camera, looking({0, 1.2F, 0.6F}, {0, 0, 0}));
+        scene.world.set(scene.camera, Camera{.vertical_fov = 1.6F});
+        SUBCASE("sun") {
+            const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2, -1.0, 0.1));
+            scene.world.set(scene.light, looking({0, 0, 0}, glm::vec3(direction)));
+            scene.world.set(scene.light, DirectionalLight{});
+            check_shadow(scene, [&](glm::dvec3) { return direction; });
+        }
+        const glm::dvec3 light(0.2, 5.0, 0.1);
+        const auto from_light = [&](glm::dvec3 point) { return point - light; };
+        SUBCASE("spot") {
+            scene.world.set(scene.light, looking(glm::vec3(light), {0.2F, 0.0F, 0.1F}, {0, 0, 1}));
+            scene.world.set(scene.light, SpotLight{.inner_cone = 0.9F, .outer_cone = 1.0F});
+            check_shadow(scene, from_light);
+        }
+        SUBCASE("point") {
+            scene.world.set(scene.light, at(glm::vec3(light)));
+            scene.world.set(scene.light, PointLight{});
+            check_shadow(scene, from_light);
+        }
+    }
+
+    TEST_CASE_FIXTURE(Masks, "what is all hole might as well not be there") {
+        Scene without = ground();
+        Scene with = ground();
+        add(with.world, at({0, 0.7F, 0}), MeshInstance{square(1.0F, masked(0.9F, 0.2F))});
+        for (Scene* scene : {&without, &with}) {
+            scene->world.set(scene->light, at({0.1F, 1.5F, 0.2F}));
+            scene->world.set(scene->light, PointLight{});
+        }
+        const VplSettings settings{.count = 500, .bounces = 1};
+        const EnergyAccount expected = trace(without, settings);
+        const EnergyAccount found = trace(with, settings);
+        CHECK(found.absorbed == expected.absorbed);
+        CHECK(found.escaped == expected.escaped);
+        CHECK(found.truncated == expected.truncated);
+
+        const Picture picture = direct_light(without, ShadingPath::forward);
+        CHECK(mean(picture) > 0.01);
+        CHECK(direct_light(with, ShadingPath::forward) == picture);
+    }
+
+    TEST_CASE_FIXTURE(Masks, "traced light passes through the holes and no energy is lost") {
+        // The light is 0.5 m under a square of half width 0.5 m, which fills a sixth of what it sees (one
+        // face of a cube around it). Turned by a quarter, the solid blocks of a checkerboard are its holes:
+        // they take half.
+        const auto checker = [](std::uint32_t x, std::uint32_t y) {
+            return static_cast<std::uint8_t>((x + y) % 2 * 255);
+        };
+        // The larger image is traced reduced.
+        for (const std::uint32_t texels : {64U, 512U}) {
+            CAPTURE(texels);
+            Scene scene = furnace_box(1.0F);
+            scene.world.set(scene.light, at({0, 0, 0}));
+            add(scene.world, at({0, 0.5F, 0}),
+                MeshInstance{square(0.5F, masked(0.0F, 0.6F, block_image(texels, checker)))});
+            const EnergyAccount once = trace(scene, {.count = 4000, .bounces = 1});
+            CHECK(relative_to(once.absorbed + once.truncated - once.emitted, once.emitted) < 1e-4);
+            // The error of 4,000 low-discrepancy points on 8 blocks, of the order of 10 · 1/N · log N.
+            CHECK(relative_to(once.absorbed - once.emitted / 12.0, once.emitted) < 0.01);
+
+            const EnergyAccount flux = trace(scene, {.count = 4000, .bounces = 8});
+            const glm::dvec3 accounted = flux.absorbed + flux.escaped + flux.truncated + flux.roulette;
+            CHECK(relative_to(accounted - flux.emitted, flux.emitted) < 1e-3);
+            CHECK(flux.escaped == glm::dvec3(0.0));
+            CHECK(flux.absorbed.r > once.absorbed.r);
+        }
+    }
+}

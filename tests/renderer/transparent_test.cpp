@@ -1,0 +1,292 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr glm::uvec2 size{96, 64};
+constexpr double tolerance = 0.005;  // as for the closed forms: floats, and albedos in half floats
+
+constexpr std::array paths{ShadingPath::forward, ShadingPath::deferred};
+
+std::shared_ptr<const Material> glass(glm::vec3 albedo, float alpha, bool double_sided = false) {
+    Material material;
+    material.base_colour = glm::vec4(albedo, alpha);
+    material.double_sided = double_sided;
+    material.alpha_mode = AlphaMode::blend;
+    return std::make_shared<const Material>(std::move(material));
+}
+
+/// A cube around the origin whose faces look outwards.
+std::shared_ptr<const Mesh> box_outwards(float half, std::shared_ptr<const Material> material) {
+    Mesh mesh = *box_inwards(half, std::move(material));
+    Primitive& primitive = mesh.primitives.front();
+    for (Vertex& vertex : primitive.vertices) {
+        vertex.normal = -vertex.normal;
+    }
+    std::ranges::reverse(primitive.indices);
+    return std::make_shared<const Mesh>(std::move(mesh));
+}
+
+/// A horizontal square pane around the y axis.
+struct Pane {
+    float height;  ///< metres
+    float half;    ///< metres
+    float albedo;
+    float alpha;
+};
+
+Entity add_pane(Scene& scene, const Pane& pane) {
+    return add(scene.world, at({0, pane.height, 0}),
+               MeshInstance{square(pane.half, glass(glm::vec3(pane.albedo), pane.alpha))});
+}
+
+constexpr glm::dvec3 light_position(0.4, 4.0, -0.2);
+constexpr double intensity = 30.0;  // candela
+
+/// What a horizontal surface reflects at a point.
+double reflected(double albedo, glm::dvec3 point) {
+    const glm::dvec3 to_light = light_position - point;
+    const double r = glm::length(to_light);
+    return albedo / pi * intensity * to_light.y / (r * r * r);
+}
+
+/// The ground under a point light, and panes between the two.
+Scene lit_ground() {
+    Scene scene = ground();
+    scene.world.set(scene.light, at(glm::vec3(light_position)));
+    scene.world.set(scene.light, PointLight{.intensity = static_cast<float>(intensity)});
+    return scene;
+}
+
+class Transparent : public RenderFixture {
+ protected:
+    Picture picture(const Scene& scene, ShadingPath path, bool indirect = false) {
+        Configuration configuration = linear_configuration(path);
+        configuration.indirect = indirect;
+        configure(configuration);
+        return render(scene, size);
+    }
+
+    /// Compares every pixel off the panes' rims with L = α·lit + (1 - α)·behind, from the ground up.
+    void check(const Scene& scene, std::vector<Pane> panes, double ground_albedo = 0.5) {
+        std::ranges::sort(panes, {}, &Pane::height);
+        const auto& camera = scene.world.get<Camera>(scene.camera);
+        const auto& pose = scene.world.get<Transform>(scene.camera);
+        for (const ShadingPath path : paths) {
+            CAPTURE(to_string(path));
+            const Picture found = picture(scene, path);
+            std::size_t covered = 0, wrong = 0;
+            for (std::uint32_t i = 0; i < found.pixels.size(); ++i) {
+                const PixelRay ray = pixel_ray(camera, pose, size, i % size.x, i / size.x);
+                const auto point_at = [&](double height) {
+                    return ray.origin + (height - ray.origin.y) / ray.direction.y * ray.direction;
+                };
+                double expected = reflected(ground_albedo, point_at(0.0));
+                bool rim = false;
+                for (const Pane& pane : panes) {
+                    const glm::dvec3 point = point_at(static_cast<double>(pane.height));
+                    const double inside =
+                        static_cast<double>(pane.half) - std::max(std::abs(point.x), std::abs(point.z));
+                    rim = rim || std::abs(inside) < 0.01;
+                    if (inside < 0.0) continue;
+                    const double alpha = static_cast<double>(pane.alpha);
+                    expected =
+                        alpha * reflected(static_cast<double>(pane.albedo), point) + (1.0 - alpha) * expected;
+                    ++covered;
+                }
+                const double radiance = static_cast<double>(found.pixels[i].r);
+                wrong += !rim && std::abs(radiance - expected) > tolerance * expected ? 1 : 0;
+            }
+            CHECK(covered > 300);
+            CHECK(wrong == 0);
+        }
+    }
+};
+
+/// Radiance with its alpha, as the picture shows it.
+std::vector<glm::vec4> with_alpha(const gl::Functions& gl, Renderer& renderer, const Scene& scene,
+                                  const RenderTarget& target) {
+    renderer.render(scene.world, scene.camera, target.target());
+    std::vector<glm::vec4> pixels(static_cast<std::size_t>(size.x) * size.y);
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, target.target().framebuffer);
+    gl.ReadPixels(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y), GL_RGBA, GL_FLOAT,
+                  pixels.data());
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    return pixels;
+}
+
+}  // namespace
+
+TEST_SUITE("transparent surfaces") {
+    TEST_CASE_FIXTURE(Transparent, "a pane shows alpha of itself and the rest of what is behind") {
+        for (const float alpha : {0.0F, 0.3F, 1.0F}) {
+            CAPTURE(alpha);
+            Scene scene = lit_ground();
+            const Pane pane{.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = alpha};
+            add_pane(scene, pane);
+            renderer.invalidate();
+            check(scene, {pane});
+        }
+    }
+
+    TEST_CASE_FIXTURE(Transparent, "panes are drawn back to front, however they are declared and move") {
+        const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
+        const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
+        for (const bool lower_first : {true, false}) {
+            CAPTURE(lower_first);
+            Scene scene = lit_ground();
+            const Entity first = add_pane(scene, lower_first ? lower : upper);
+            const Entity second = add_pane(scene, lower_first ? upper : lower);
+            renderer.invalidate();
+            check(scene, {lower, upper});
+
+            // Past each other.
+            const auto swap_height = [&](Entity entity, float height) {
+                scene.world.set(entity, at({0, height, 0}));
+            };
+            swap_height(first, lower_first ? upper.height : lower.height);
+            swap_height(second, lower_first ? lower.height : upper.height);
+            Pane now_lower = upper, now_upper = lower;
+            now_lower.height = lower.height;
+            now_upper.height = upper.height;
+            check(scene, {now_lower, now_upper});
+        }
+    }
+
+    TEST_CASE_FIXTURE(Transparent, "an orthographic camera sorts as well") {
+        const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
+        const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
+        Scene scene = lit_ground();
+        add_pane(scene, upper);
+        add_pane(scene, lower);
+        scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                             .half_height = 1.5F,
+                                             .near_plane = 0.0F,
+                                             .far_plane = 10.0F});
+        check(scene, {lower, upper});
+    }
+
+    TEST_CASE_FIXTURE(Transparent, "of a double-sided surface the far side is drawn before the near one") {
+        // A box seen from straight above, whose top and bottom are at different distances from the light.
+        // Mirrored, its triangles come in the other order.
+        for (const float mirror : {1.0F, -1.0F}) {
+            CAPTURE(mirror);
+            Scene scene = lit_ground();
+            add(scene.world, Transform{.translation = {0, 1.0F, 0}, .scale = {1, mirror, 1}},
+                MeshInstance{box_outwards(0.6F, glass(glm::vec3(0.8F), 0.5F, true))});
+            scene.world.set(scene.camera, looking({0, 3, 0}, {0, 0, 0}, {0, 0, 1}));
+            scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                                 .half_height = 1.5F,
+                                                 .near_plane = 0.0F,
+                                                 .far_plane = 10.0F});
+            renderer.invalidate();
+            const Pane bottom{.height = 0.4F, .half = 0.6F, .albedo = 0.8F, .alpha = 0.5F};
+            const Pane top{.height = 1.6F, .half = 0.6F, .albedo = 0.8F, .alpha = 0.5F};
+            check(scene, {bottom, top});
+        }
+    }
+
+    TEST_CASE_FIXTURE(Transparent,
+                      "the back of a single-sided pane is not drawn, nor what an opaque surface hides") {
+        const Scene without = lit_ground();
+        Scene with = lit_ground();
+        add(with.world,
+            Transform{.translation = {0, 1, 0}, .rotation = glm::angleAxis(3.14159265F, glm::vec3(1, 0, 0))},
+            MeshInstance{square(0.6F, glass(glm::vec3(0.9F), 0.5F))});
+        add(with.world, at({0, -0.5F, 0}), MeshInstance{square(0.6F, glass(glm::vec3(0.9F), 0.5F))});
+        for (const ShadingPath path : paths) {
+            renderer.invalidate();
+            const Picture expected = picture(without, path);
+            renderer.invalidate();
+            CHECK(picture(with, path) == expected);
+        }
+    }
+
+    TEST_CASE_FIXTURE(Transparent,
+                      "over nothing there is black behind, and the picture tells that it is covered") {
+        Scene scene = lit_ground();
+        Scene empty;
+        empty.camera = add(empty.world, scene.world.get<Transform>(scene.camera), Camera{});
+        add(empty.world, at(glm::vec3(light_position)),
+            PointLight{.intensity = static_cast<float>(intensity)});
+        add_pane(empty, {.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F});
+        check(empty, {{.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F}}, 0.0);
+
+        const RenderTarget target(device, size);
+        for (const ShadingPath path : paths) {
+            configure(linear_configuration(path));
+            renderer.invalidate();
+            std::size_t covered = 0;
+            for (const glm::vec4& pixel : with_alpha(device.gl(), renderer, empty, target)) {
+                CHECK(pixel.a == (pixel.r > 0.0F ? 1.0F : 0.0F));
+                covered += pixel.a == 1.0F ? 1 : 0;
+            }
+            CHECK(covered > 300);
+            add_pane(scene, {.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F});
+            renderer.invalidate();
+            for (const glm::vec4& pixel : with_alpha(device.gl(), renderer, scene, target)) {
+                CHECK(pixel.a == 1.0F);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(Transparent, "light goes through: no shadow, no VPL, the scene's size as without") {
+        const Scene without = lit_ground();
+        Scene with = lit_ground();
+        add_pane(with, {.height = 3.5F, .half = 2.0F, .albedo = 0.9F, .alpha = 0.9F});  // above the camera
+        for (const ShadingPath path : paths) {
+            renderer.invalidate();
+            const Picture expected = picture(without, path, true);
+            const Report report = renderer.report();
+            renderer.invalidate();
+            CHECK(picture(with, path, true) == expected);
+            CHECK(renderer.report().triangles == report.triangles);
+            CHECK(renderer.report().vpls->alive == report.vpls->alive);
+            CHECK(renderer.report().vpls->flux.absorbed == report.vpls->flux.absorbed);
+        }
+    }
+
+    TEST_CASE_FIXTURE(Transparent, "all paths agree at every pixel: panes and masks, shadows and VPLs") {
+        Scene scene = cornell_box();
+        Material mask = *diffuse({0.2F, 0.6F, 0.9F}, true);
+        mask.alpha_mode = AlphaMode::mask;
+        mask.base_colour_texture = std::make_shared<const Image>(
+            Image{.width = 2,
+                  .height = 2,
+                  .texels = {{255, 255, 255, 255}, {255, 0, 0, 0}, {255, 0, 0, 0}, {0, 255, 0, 255}}});
+        add(scene.world,
+            Transform{.translation = {-0.3F, 1.0F, 0.3F},
+                      .rotation = glm::angleAxis(1.2F, glm::normalize(glm::vec3(1, 0.4F, 0)))},
+            MeshInstance{square(0.4F, std::make_shared<const Material>(mask))});
+        for (int i = 0; i < 6; ++i) {
+            const auto step = static_cast<float>(i);
+            const glm::vec3 axis = glm::normalize(glm::vec3(1.0F, 0.3F * step, 0.2F));
+            add(scene.world,
+                Transform{.translation = {0.3F * step - 0.7F, 0.5F + 0.2F * step, 0.2F * step - 0.4F},
+                          .rotation = glm::angleAxis(0.9F + 0.3F * step, axis)},
+                MeshInstance{
+                    square(0.3F, glass({0.9F, 0.15F * step, 0.4F}, 0.2F + 0.1F * step, i % 2 == 0))});
+        }
+        std::array<Picture, paths.size()> pictures;
+        for (std::size_t i = 0; i < paths.size(); ++i) {
+            renderer.invalidate();
+            configure(linear_configuration(paths[i]));
+            pictures[i] = render(scene, {333, 217});
+            CHECK(is_sane(pictures[i]));
+            CHECK(mean(pictures[i]) > 0.01);
+            CHECK(worst_error(pictures[i], pictures[0], 1e-4) < 1e-3);
+        }
+        renderer.invalidate();
+        CHECK(worst_error(render(cornell_box(), {333, 217}), pictures[0], 1e-4) > 0.1);
+    }
+}
