@@ -32,6 +32,7 @@ HostState::HostState(const Functions& gl)
     gl.GetBooleanv(GL_COLOR_WRITEMASK, colour_mask_.data());
     gl.GetIntegerv(GL_VIEWPORT, viewport_.data());
     gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode_.data());
+    gl.GetFloatv(GL_DEPTH_RANGE, depth_range_.data());
     gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour_.data());
     gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
     gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &polygon_offset_factor_);
@@ -41,6 +42,7 @@ HostState::HostState(const Functions& gl)
         gl.Disable(capability);
     }
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.DepthRangef(0.0F, 1.0F);
     gl.CullFace(GL_BACK);
     gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -76,6 +78,7 @@ HostState::~HostState() {
     gl.CullFace(static_cast<GLenum>(cull_face_));
     gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_[0]));
     gl.ClipControl(static_cast<GLenum>(clip_origin_), static_cast<GLenum>(clip_depth_));
+    gl.DepthRangef(depth_range_[0], depth_range_[1]);
     gl.DepthMask(depth_mask_);
     gl.ColorMask(colour_mask_[0], colour_mask_[1], colour_mask_[2], colour_mask_[3]);
     gl.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
