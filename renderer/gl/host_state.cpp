@@ -35,6 +35,7 @@ HostState::HostState(const Functions& gl)
     gl.GetBooleanv(GL_COLOR_WRITEMASK, colour_mask_.data());
     gl.GetIntegerv(GL_VIEWPORT, viewport_.data());
     gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode_.data());
+    gl.GetFloatv(GL_DEPTH_RANGE, depth_range_.data());
     gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour_.data());
     gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
     gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &polygon_offset_factor_);
@@ -44,6 +45,7 @@ HostState::HostState(const Functions& gl)
         gl.Disable(capability);
     }
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.DepthRangef(0.0F, 1.0F);
     gl.CullFace(GL_BACK);
     gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -83,6 +85,7 @@ HostState::~HostState() {
                              static_cast<GLenum>(blend_equation_[1]));
     gl.BlendFuncSeparate(static_cast<GLenum>(blend_factors_[0]), static_cast<GLenum>(blend_factors_[1]),
                          static_cast<GLenum>(blend_factors_[2]), static_cast<GLenum>(blend_factors_[3]));
+    gl.DepthRangef(depth_range_[0], depth_range_[1]);
     gl.DepthMask(depth_mask_);
     gl.ColorMask(colour_mask_[0], colour_mask_[1], colour_mask_[2], colour_mask_[3]);
     gl.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);

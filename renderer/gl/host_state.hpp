@@ -38,6 +38,7 @@ class HostState {
     std::array<GLint, 4> viewport_{};
     std::array<GLint, 2> polygon_mode_{};  // one of both faces; some drivers write two values
     std::array<GLboolean, 4> colour_mask_{};
+    std::array<GLfloat, 2> depth_range_{};
     std::array<GLfloat, 4> clear_colour_{};
     GLfloat clear_depth_ = 0.0F;
     GLfloat polygon_offset_factor_ = 0.0F;

@@ -83,7 +83,11 @@ TEST_SUITE("changes") {
         const Entity block = named(world, "tall block");
         const Entity floor = named(world, "floor");
         Entity extra{};
-        const std::vector<std::pair<std::string, std::function<void()>>> edits = {
+        struct Edit {
+            std::string name;
+            std::function<void()> apply;
+        };
+        const std::vector<Edit> edits = {
             {"light moves",
              [&] {
                  move(world, scene.light, {0.3F, -0.2F, 0.4F});
@@ -126,9 +130,9 @@ TEST_SUITE("changes") {
              [&] { world.edit<Camera>(scene.camera, [](auto& c) { c.vertical_fov = 0.5F; }); }},
         };
         Picture before = render(scene, size);
-        for (const auto& [name, edit] : edits) {
-            CAPTURE(name);
-            edit();
+        for (const Edit& edit : edits) {
+            CAPTURE(edit.name);
+            edit.apply();
             const Picture after = render(scene, size);
             CHECK(after != before);
             CHECK(after == fresh_picture(scene));

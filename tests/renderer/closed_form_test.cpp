@@ -93,17 +93,18 @@ TEST_SUITE("closed forms") {
             float inner, outer;
         };
         // The last is wider than a flat map can hold: its shadow comes from a cube.
-        for (const auto& [inner, outer] : {Cone{0.3F, 0.6F}, Cone{0.0F, 0.7854F}, Cone{0.2F, 1.4F}}) {
+        for (const Cone& angles : {Cone{0.3F, 0.6F}, Cone{0.0F, 0.7854F}, Cone{0.2F, 1.4F}}) {
             const Transform pose = looking({0.6F, 1.5F, 0.3F}, {0.1F, 0.0F, -0.3F});
             scene.world.set(scene.light, pose);
-            scene.world.set(scene.light,
-                            SpotLight{.intensity = 5.0F, .inner_cone = inner, .outer_cone = outer});
+            scene.world.set(
+                scene.light,
+                SpotLight{.intensity = 5.0F, .inner_cone = angles.inner, .outer_cone = angles.outer});
             check(scene, {}, 0.5, [&](glm::dvec3 p) {
                 const glm::dvec3 light(pose.translation);
                 const glm::dvec3 axis = glm::dquat(pose.rotation) * glm::dvec3(0, 0, -1);
                 const double cosine = glm::dot(glm::normalize(p - light), axis);
                 return 5.0 * point_irradiance(light, p, {0, 1, 0}) *
-                       cone(cosine, static_cast<double>(inner), static_cast<double>(outer));
+                       cone(cosine, static_cast<double>(angles.inner), static_cast<double>(angles.outer));
             });
         }
     }

@@ -211,7 +211,7 @@ double worst_error(const Picture& a, const Picture& b, double floor) {
     double worst = 0.0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         for (int c = 0; c < 3; ++c) {
-            const double wanted = static_cast<double>(b.pixels[i][c]);
+            const auto wanted = static_cast<double>(b.pixels[i][c]);
             const double error =
                 std::abs(static_cast<double>(a.pixels[i][c]) - wanted) / std::max(std::abs(wanted), floor);
             if (std::isnan(error)) return std::numeric_limits<double>::infinity();

@@ -1,0 +1,177 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+using Faults = std::vector<std::string>;
+
+Faults faults_of(std::string_view json) {
+    const ConfigurationResult result = read_configuration(json);
+    CHECK(result.configuration.has_value() == result.faults.empty());
+    return result.faults;
+}
+
+/// A configuration that differs from the default in everything.
+Configuration unusual() {
+    Configuration c;
+    c.path = ShadingPath::forward;
+    c.show = Show::indirect;
+    c.indirect = false;
+    c.vpls = {.count = 7, .bounces = 5, .seed = 4'000'000'000U};
+    c.geometry_bound = std::numeric_limits<float>::infinity();
+    c.shadows = {.enabled = false, .cube_resolution = 16, .map_resolution = 8192, .budget_mib = 0};
+    c.tone_map = {.enabled = false, .exposure_ev = -1.7F};
+    return c;
+}
+
+}  // namespace
+
+TEST_SUITE("configuration") {
+    TEST_CASE("what is written reads back as it was") {
+        CHECK(read_configuration(write_configuration({})).configuration == Configuration{});
+        CHECK(read_configuration(write_configuration(unusual())).configuration == unusual());
+        for (const NamedConfiguration& named : named_configurations()) {
+            CAPTURE(named.name);
+            CHECK(validate(named.configuration) == Faults{});
+            CHECK(read_configuration(write_configuration(named.configuration)).configuration ==
+                  named.configuration);
+        }
+    }
+
+    TEST_CASE("members that are left out keep the values of the base") {
+        CHECK(read_configuration("{}").configuration == Configuration{});
+        Configuration wanted = unusual();
+        wanted.vpls.count = 9;
+        CHECK(read_configuration(R"({"vpls": {"count": 9}})", unusual()).configuration == wanted);
+    }
+
+    TEST_CASE("every fault is named by its place") {
+        CHECK(faults_of("") == Faults{"not valid JSON"});
+        CHECK(faults_of("{\"path\": ") == Faults{"not valid JSON"});
+        CHECK(faults_of("[]") == Faults{"not a JSON object"});
+        CHECK(faults_of("3") == Faults{"not a JSON object"});
+        CHECK(faults_of(R"({"path": "sideways"})") == Faults{"path: is not one of forward, deferred"});
+        CHECK(faults_of(R"({"path": 1})") == Faults{"path: is not one of forward, deferred"});
+        CHECK(faults_of(R"({"indirect": "on"})") == Faults{"indirect: is not true or false"});
+        CHECK(faults_of(R"({"vpls": 256})") == Faults{"vpls: is not an object"});
+        CHECK(faults_of(R"({"bounce": 1, "vpls": {"number": 2}})").size() == 2);
+        for (const char* count :
+             {"-1", "1.5", "\"many\"", "null", "4294967296", "1e300", "18446744073709551616"}) {
+            CAPTURE(count);
+            const Faults faults = faults_of(std::string(R"({"vpls": {"count": )") + count + "}}");
+            REQUIRE(faults.size() == 1);
+            CHECK(faults[0].starts_with("vpls.count: "));
+        }
+        CHECK(faults_of(R"({"shadows": {"cube_resolution": 15}})").size() == 1);
+        CHECK(faults_of(R"({"shadows": {"map_resolution": 8193}})").size() == 1);
+        CHECK(faults_of(R"({"vpls": {"geometry_bound": -0.1}})").size() == 1);
+        CHECK(faults_of(R"({"tone_map": {"exposure_ev": "infinity"}})").size() == 1);
+
+        const Faults several = faults_of(
+            R"({"path": "sideways", "vpls": {"count": -1, "seed": true}, "shadows": {"enabled": 1}, "extra": {}})");
+        REQUIRE(several.size() == 5);
+        CHECK(several[0].starts_with("path: "));
+        CHECK(several[1].starts_with("vpls.count: "));
+        CHECK(several[2].starts_with("vpls.seed: "));
+        CHECK(several[3].starts_with("shadows.enabled: "));
+        CHECK(several[4] == "extra: is unknown");
+    }
+
+    TEST_CASE("values out of range are found, and so is what is not a number") {
+        Configuration c;
+        c.vpls.count = (1U << 20U) + 1;
+        c.vpls.bounces = 65;
+        c.geometry_bound = std::nanf("");
+        c.shadows.cube_resolution = 0;
+        c.tone_map.exposure_ev = std::numeric_limits<float>::infinity();
+        const Faults faults = validate(c);
+        REQUIRE(faults.size() == 5);
+        CHECK(faults[0].starts_with("vpls.count: "));
+        CHECK(faults[1].starts_with("vpls.bounces: "));
+        CHECK(faults[2].starts_with("vpls.geometry_bound: "));
+        CHECK(faults[3].starts_with("shadows.cube_resolution: "));
+        CHECK(faults[4].starts_with("tone_map.exposure_ev: "));
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "a faulty configuration leaves the present one running") {
+        const Scene scene = cornell_box();
+        configure(linear_configuration(ShadingPath::forward));
+        const Picture before = render(scene, {20, 15});
+        Configuration faulty = unusual();
+        faulty.vpls.bounces = 65;
+        CHECK(renderer.configure(faulty).size() == 1);
+        CHECK(renderer.configuration() == linear_configuration(ShadingPath::forward));
+        CHECK(render(scene, {20, 15}) == before);
+        CHECK_FALSE(ran("forward"));
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "the described graph lists the passes of each path in their order") {
+        const auto passes_of = [&](ShadingPath path, bool indirect) {
+            Configuration configuration = linear_configuration(path);
+            configuration.indirect = indirect;
+            configure(configuration);
+            const Scene scene = cornell_box();
+            renderer.invalidate();
+            static_cast<void>(render(scene, {4, 4}));
+            std::string names;
+            const std::string text = renderer.describe(GraphFormat::text);
+            std::size_t at = 0;
+            for (const PassRecord& pass : renderer.last_passes()) {
+                names += names.empty() ? "" : " ";
+                names += pass.name;
+                // Each has its paragraph, in the same order.
+                at = text.find(" " + std::string(pass.name) + "\n", at);
+                CHECK(at != std::string::npos);
+            }
+            return names;
+        };
+        CHECK(passes_of(ShadingPath::deferred, true) ==
+              "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
+              "vpl-paths "
+              "vpl-trace view gbuffer deferred tone-map");
+        CHECK(passes_of(ShadingPath::forward, true) ==
+              "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
+              "vpl-paths "
+              "vpl-trace view forward tone-map");
+        CHECK(passes_of(ShadingPath::deferred, false) ==
+              "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
+              "view gbuffer "
+              "deferred tone-map");
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture,
+                      "barriers stand before the readers of what shaders store, and nowhere else") {
+        const auto barriers_of = [&](ShadingPath path) {
+            configure(linear_configuration(path));
+            std::istringstream text(renderer.describe(GraphFormat::text));
+            std::string barriers, pass;
+            for (std::string line; std::getline(text, line) && line != "resources";) {
+                if (line.starts_with("      barrier ")) {
+                    barriers += pass + ":" + line.substr(13) + "\n";
+                } else if (!line.starts_with("      ")) {
+                    pass = line.substr(line.rfind(' ') + 1);
+                }
+            }
+            return barriers;
+        };
+        // The first of each is about the frame before, whose VPLs and radiance are overwritten.
+        CHECK(barriers_of(ShadingPath::deferred) ==
+              "vpl-trace: storage\ndeferred: image access + storage\ntone-map: texture fetch\n");
+        CHECK(barriers_of(ShadingPath::forward) == "vpl-trace: storage\nforward: storage\n");
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "the graph is described for Graphviz and as JSON, too") {
+        CHECK(renderer.describe(GraphFormat::dot).starts_with("digraph"));
+        CHECK(nlohmann::json::accept(renderer.describe(GraphFormat::json)));
+    }
+}
