@@ -40,12 +40,17 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
     layer_target_.draw_buffers(0);
 }
 
-const gl::Program& Gpu::program(const std::vector<std::string>& stages, const std::vector<std::string>& defined) {
+const gl::Program& Gpu::program(const std::vector<std::string>& stages,
+                                const std::vector<std::string>& defined) {
     ProgramKey key(stages, defined);
     const auto found = programs_.find(key);
-    if (found != programs_.end()) { return found->second; }
+    if (found != programs_.end()) {
+        return found->second;
+    }
     std::vector<gl::Define> defines;
-    for (const std::string& name : defined) { defines.push_back({.name = name, .value = "1"}); }
+    for (const std::string& name : defined) {
+        defines.push_back({.name = name, .value = "1"});
+    }
     return programs_.emplace(std::move(key), gl::compile(device_, shaders_, stages, defines)).first->second;
 }
 

@@ -23,8 +23,8 @@ class Gpu {
     [[nodiscard]] const gl::Device& device() const { return device_; }
     [[nodiscard]] const gl::Functions& gl() const { return device_.gl(); }
 
-    /// The program of these stage files with these words defined, compiled when first asked for and kept. Throws
-    /// gl::ProgramError.
+    /// The program of these stage files with these words defined, compiled when first asked for and kept.
+    /// Throws gl::ProgramError.
     [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,
                                              const std::vector<std::string>& defined = {});
 

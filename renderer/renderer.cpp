@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "engine/graph/compile.hpp"
@@ -194,16 +195,30 @@ VplReport Renderer::report_vpls(const Vpls& vpls) const {
             .flux = sum_up(accounts)};
 }
 
-Report Renderer::report() {
+LightReport Renderer::report_lights() const {
     const ShadowPlan& shadows = runtime_.value(frame_.shadows);
-    Report report{
-        .gl_renderer = device().renderer(),
-        .triangles = runtime_.value(frame_.metrics).triangles,
-        .vpls = std::nullopt,
-        .lights = {.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
-                   .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
-                   .without_shadow = shadows.lights_without},
-        .memory = runtime_.memory()};
+    LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
+                       .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
+                       .without_shadow = shadows.lights_without};
+    if (!frame_.lists) {
+        return report;
+    }
+    const LightBins& bins = runtime_.value(frame_.lists->bins);
+    auto counts = backend_.buffer(runtime_.object(frame_.lists->count)).download<std::uint32_t>();
+    counts.resize(bins.grid.cells());
+    report.global = bins.global_count;
+    report.tile_max = bins.global_count + *std::ranges::max_element(counts);
+    report.tile_mean =
+        bins.global_count + std::accumulate(counts.begin(), counts.end(), 0.0) / bins.grid.cells();
+    return report;
+}
+
+Report Renderer::report() {
+    Report report{.gl_renderer = device().renderer(),
+                  .triangles = runtime_.value(frame_.metrics).triangles,
+                  .vpls = std::nullopt,
+                  .lights = report_lights(),
+                  .memory = runtime_.memory()};
     if (frame_.vpls && configuration_.show != Show::direct) {
         report.vpls = report_vpls(*frame_.vpls);
     }

@@ -60,6 +60,9 @@ struct LightReport {
     std::uint32_t count = 0;
     std::uint32_t with_shadow = 0;
     std::uint32_t without_shadow = 0;  ///< that should cast shadows but found no room in the budget
+    std::uint32_t global = 0;          ///< that every list visits, being too wide to be worth listing
+    std::uint32_t tile_max = 0;        ///< lights that the longest list of a tile or cluster visits; 0 without lists
+    double tile_mean = 0.0;            ///< the same in the mean of all tiles or clusters
 };
 
 /// The state after the last frame.
@@ -121,6 +124,7 @@ class Renderer {
     void adopt(const Configuration& configuration, glm::uvec2 size);
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls) const;
+    [[nodiscard]] LightReport report_lights() const;
 
     Gpu gpu_;
     gl::GraphBackend backend_;

@@ -135,7 +135,8 @@ void declare(CLI::App& app, Options& options) {
     add_number(app, "--vpls", options.vpls, 0U, "virtual point lights");
     add_number(app, "--bounces", options.bounces, 0U, "indirect bounces: 0 is direct light only");
     add_number(app, "--seed", options.seed, 0U, "of the light paths");
-    app.add_option("--config", options.config, "configuration; flags override it")
+    app.add_option("--config", options.config,
+                   "configuration; flags override it; in a window it is read again whenever it is saved")
         ->type_name("FILE.json")
         ->check(CLI::ExistingFile.description(""));
     app.add_flag("--print-config", options.print_config, "print the whole configuration as JSON and exit");

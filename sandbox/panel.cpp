@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -29,6 +30,34 @@ void combo(const char* label, Enum& value, const std::array<Enum, N>& choices) {
 
 void drag(const char* label, std::uint32_t& value, float speed) {
     ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
+}
+
+/// Named configurations, of which one is shown where nothing was changed since.
+void draw_named_configurations(Configuration& value) {
+    const auto named = named_configurations();
+    const auto is_value = [&](const NamedConfiguration& choice) { return choice.configuration == value; };
+    const auto shown = std::find_if(named.begin(), named.end(), is_value);
+    if (!ImGui::BeginCombo("configuration",
+                           shown == named.end() ? "custom" : std::string(shown->name).c_str()))
+        return;
+    for (const NamedConfiguration& choice : named) {
+        if (ImGui::Selectable(std::string(choice.name).c_str(), is_value(choice)))
+            value = choice.configuration;
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(choice.description).c_str());
+    }
+    ImGui::EndCombo();
+}
+
+/// What the path's lists go by; nothing if it has none.
+void draw_list_settings(LightList list, ListSettings& settings) {
+    if (list == LightList::all) return;
+    for (const std::uint32_t size : {16U, 32U, 64U}) {
+        if (ImGui::RadioButton(fmt::format("{}", size).c_str(), settings.tile_size == size))
+            settings.tile_size = size;
+        ImGui::SameLine();
+    }
+    text("tile size");
+    if (list == LightList::cluster) drag("slices", settings.slices, 0.2F);
 }
 
 void draw_cameras(const World& world, Interaction& interaction) {
@@ -102,6 +131,13 @@ void draw_passes(const FrameReport& frame) {
     ImGui::EndTable();
 }
 
+void draw_light_counts(const LightReport& lights) {
+    text(fmt::format("shadow maps: {}, no room for {}", lights.with_shadow, lights.without_shadow));
+    if (lights.tile_max == 0) return;
+    text(fmt::format("in a list: {:.1f} lights in the mean, {} at most", lights.tile_mean, lights.tile_max));
+    text(fmt::format("in all lists: {} lights", lights.global));
+}
+
 void draw_vpls(const VplReport& vpls) {
     text(fmt::format("{} of {} VPLs on {} paths", vpls.alive, vpls.requested, vpls.paths));
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
@@ -115,12 +151,13 @@ void draw_vpls(const VplReport& vpls) {
 
 void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, const FrameReport& frame) {
     if (!visible) return;
+    Configuration wanted = renderer.configuration();
     const float scale = ImGui::GetIO().FontGlobalScale;
     ImGui::SetNextWindowPos({8.0F, 8.0F}, ImGuiCond_FirstUseEver);
     const bool open = ImGui::Begin("Candela (F1)", &visible, ImGuiWindowFlags_AlwaysAutoResize);
     if (open) {
         ImGui::PushItemWidth(150.0F * scale);
-        draw_configuration(renderer);
+        draw_configuration(wanted);
         ImGui::Separator();
         draw_cameras(world, interaction);
         draw_lights(world, interaction.selected);
@@ -129,11 +166,14 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, con
         ImGui::PopItemWidth();
     }
     ImGui::End();
+    // Not before the account was drawn: it tells of the last frame, which the present configuration made.
+    if (wanted != renderer.configuration()) faults = renderer.configure(wanted);
 }
 
-void Panel::draw_configuration(Renderer& renderer) {
-    Configuration wanted = renderer.configuration();
+void Panel::draw_configuration(Configuration& wanted) {
+    draw_named_configurations(wanted);
     combo("path", wanted.path, all_shading_paths);
+    draw_list_settings(parts_of(wanted.path).list, wanted.lists);
     combo("show", wanted.show, std::array{Show::total, Show::direct, Show::indirect});
     ImGui::Checkbox("indirect light", &wanted.indirect);
     drag("VPLs", wanted.vpls.count, 1.0F);
@@ -142,10 +182,9 @@ void Panel::draw_configuration(Renderer& renderer) {
     ImGui::DragFloat("geometry bound", &wanted.geometry_bound, 0.01F);
     ImGui::Checkbox("shadows", &wanted.shadows.enabled);
     ImGui::DragFloat("exposure (EV)", &wanted.tone_map.exposure_ev, 0.02F);
-    if (wanted != renderer.configuration()) faults_ = renderer.configure(wanted);
 
     ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 96, 96, 255));
-    for (const std::string& fault : faults_) ImGui::TextWrapped("%s", fault.c_str());
+    for (const std::string& fault : faults) ImGui::TextWrapped("%s", fault.c_str());
     ImGui::PopStyleColor();
 }
 
@@ -158,8 +197,7 @@ void Panel::draw_account(Renderer& renderer) {
         report_time_ = ImGui::GetTime();
     }
     text(fmt::format("{} triangles, {} lights", report_->triangles, report_->lights.count));
-    text(fmt::format("shadow maps: {}, no room for {}", report_->lights.with_shadow,
-                     report_->lights.without_shadow));
+    draw_light_counts(report_->lights);
     if (report_->vpls) draw_vpls(*report_->vpls);
 }
 

@@ -13,15 +13,16 @@ namespace candela::sandbox {
 class Panel {
  public:
     bool visible = true;
+    /// Of the configuration that was last asked for, in the panel or elsewhere.
+    std::vector<std::string> faults;
 
     /// Draws it, and puts into effect what people change in it. Between Gui::begin_frame and end_frame.
     void draw(Renderer& renderer, World& world, Interaction& interaction, const FrameReport& frame);
 
  private:
-    void draw_configuration(Renderer& renderer);
+    void draw_configuration(Configuration& wanted);
     void draw_account(Renderer& renderer);
 
-    std::vector<std::string> faults_;  ///< of the configuration that was last refused
     std::optional<Report> report_;
     double report_time_ = 0.0;  ///< seconds since the start
 };

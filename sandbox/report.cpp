@@ -35,7 +35,12 @@ Json to_json(const VplReport& vpls) {
 Json to_json(const LightReport& lights) {
     return {{"count", lights.count},
             {"with_shadow", lights.with_shadow},
-            {"without_shadow", lights.without_shadow}};
+            {"without_shadow", lights.without_shadow},
+            {"global", lights.global},
+            {"tile_max", lights.tile_max},
+            {"tile_mean", lights.tile_mean},
+            // Lists have no cap that they could overflow.
+            {"overflowed_tiles", 0}};
 }
 
 Json to_json(const MemoryUse& memory) {
@@ -51,6 +56,15 @@ std::string pass_table(const FrameReport& frame) {
                              pass.cpu_ms, pass.gpu_ms);
     }
     return table + fmt::format("{:<21} {:>10.3f} {:>10.3f}\n", "frame", frame.cpu_ms, frame.gpu_ms);
+}
+
+std::string light_table(const LightReport& lights) {
+    std::string table =
+        fmt::format("lights           {}, {} with a shadow map, {} that found no room for one\n",
+                    lights.count, lights.with_shadow, lights.without_shadow);
+    if (lights.tile_max == 0) return table;
+    return table + fmt::format("  in a list      {:.1f} in the mean, {} at most; {} in every one\n",
+                               lights.tile_mean, lights.tile_max, lights.global);
 }
 
 std::string vpl_table(const VplReport& vpls) {
@@ -87,8 +101,7 @@ std::string to_json(const RunReport& report) {
 std::string to_table(const FrameReport& frame, const Report& state) {
     std::string table = pass_table(frame);
     table += fmt::format("triangles        {}\n", state.triangles);
-    table += fmt::format("lights           {}, {} with a shadow map, {} that found no room for one\n",
-                         state.lights.count, state.lights.with_shadow, state.lights.without_shadow);
+    table += light_table(state.lights);
     return state.vpls ? table + vpl_table(*state.vpls) : table;
 }
 

@@ -12,6 +12,7 @@
 
 #include "renderer/context/headless.hpp"
 #include "sandbox/choose_configuration.hpp"
+#include "sandbox/config_watch.hpp"
 #include "sandbox/headless.hpp"
 #include "sandbox/scene.hpp"
 #include "sandbox/window.hpp"
@@ -88,6 +89,7 @@ float aspect(glm::ivec2 size) {
 }
 
 void run_session(const Options& options) {
+    ConfigWatch watch(options);
     const Configuration configuration = choose_configuration(options);
     if (options.list_configs || options.print_config) {
         fmt::print("{}",
@@ -101,7 +103,7 @@ void run_session(const Options& options) {
     const glm::ivec2 size_in_window = options.size.value_or(window_size);
     if (const std::unique_ptr<Window> window = open_window(options, size_in_window, tried)) {
         const Entity camera = choose_camera(scene.world, options.camera, aspect(size_in_window));
-        return run_window(*window, scene, camera, configuration, options);
+        return run_window(*window, scene, camera, configuration, watch, options);
     }
     for (const std::string& fault : tried) fmt::print(stderr, "candela: no window: {}\n", fault);
     const glm::ivec2 size = options.size.value_or(headless_size);

@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -24,9 +25,10 @@ namespace {
 class WindowSession {
  public:
     WindowSession(Window& window, Scene& scene, Entity camera, const Configuration& configuration,
-                  const Options& options)
+                  ConfigWatch& watch, const Options& options)
         : window_(window),
           scene_(scene),
+          watch_(watch),
           options_(options),
           renderer_(Window::get_proc()),
           gui_(window),
@@ -62,6 +64,7 @@ class WindowSession {
         gui_.begin_frame();
         for (const InputEvent& event : events) handle(event, size);
         panel_.draw(renderer_, scene_.world, interaction_, frames_.empty() ? FrameReport{} : frames_.back());
+        take_saved_configuration();
         const Viewport viewport = make_viewport(scene_.world, interaction_.viewer(), size);
         draw_markers(light_markers(scene_.world), viewport, interaction_.selected);
         renderer_.render(scene_.world, interaction_.viewer(), {0, pixels_});
@@ -69,6 +72,13 @@ class WindowSession {
         window_.swap();
         ++frame_;
         collect(false);
+    }
+
+    void take_saved_configuration() {
+        const std::optional<ConfigurationResult> saved = watch_.poll(ConfigWatch::Clock::now());
+        if (!saved) return;
+        panel_.faults = saved->configuration ? renderer_.configure(*saved->configuration) : saved->faults;
+        for (const std::string& fault : panel_.faults) fmt::print(stderr, "candela: {}\n", fault);
     }
 
     /// Panels take two frames to settle after an event. A given number of frames is not waited for.
@@ -102,6 +112,7 @@ class WindowSession {
 
     Window& window_;
     Scene& scene_;
+    ConfigWatch& watch_;
     const Options& options_;
     Renderer renderer_;
     Gui gui_;
@@ -116,8 +127,8 @@ class WindowSession {
 }  // namespace
 
 void run_window(Window& window, Scene& scene, Entity camera, const Configuration& configuration,
-                const Options& options) {
-    WindowSession session(window, scene, camera, configuration, options);
+                ConfigWatch& watch, const Options& options) {
+    WindowSession session(window, scene, camera, configuration, watch, options);
     session.run();
     session.write_results();
 }

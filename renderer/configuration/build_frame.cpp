@@ -40,7 +40,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     }
 
     if (path.list == LightList::tile) {
-        frame.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, depth, size, configuration.lists);
+        frame.lists =
+            add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, depth, size, configuration.lists);
     } else if (path.list == LightList::cluster) {
         frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, frame.metrics, size,
                                          configuration.lists);
@@ -54,16 +55,16 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
                             .lists = frame.lists,
                             .show = configuration.show,
                             .geometry_bound = configuration.geometry_bound};
-    const ShadedSurfaces solid =
-        gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
-                : add_forward(graph, gpu, scene, lighting, view, depth, size);
-
     // Blended surfaces lie in front of what bounds the lists in depth.
     Lighting unbounded = lighting;
     if (path.list == LightList::tile && depth) {
-        unbounded.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, std::nullopt, size,
-                                          configuration.lists);
+        unbounded.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
+                                                  scene.layout, size, configuration.lists);
     }
+
+    const ShadedSurfaces solid =
+        gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
+                : add_forward(graph, gpu, scene, lighting, view, depth, size);
     const TextureHandle radiance = add_transparent(graph, gpu, scene, unbounded, view, solid, size);
     add_tone_map(graph, gpu, radiance, frame.target, size, configuration.tone_map);
     return frame;

@@ -239,7 +239,8 @@ std::vector<std::string> validate(const Configuration& configuration) {
     Validator validator(faults);
     visit(configuration, validator);
     if (configuration.lists.tile_size % 16 != 0) {
-        faults.push_back(fmt::format("lists.tile_size: {} is not a multiple of 16", configuration.lists.tile_size));
+        faults.push_back(
+            fmt::format("lists.tile_size: {} is not a multiple of 16", configuration.lists.tile_size));
     }
     return faults;
 }
@@ -261,9 +262,11 @@ std::span<const NamedConfiguration> named_configurations() {
             "forward, by the lights of each cluster: a tile cut into slices of depth",
             "deferred, by the lights of each cluster"};
         for (std::size_t i = 0; i < all_shading_paths.size(); ++i) {
-            add(path_names.at(i), descriptions.at(i), [&](Configuration& c) { c.path = all_shading_paths.at(i); });
+            add(path_names.at(i), descriptions.at(i),
+                [&](Configuration& c) { c.path = all_shading_paths.at(i); });
         }
-        add("direct", "the default path without indirect light", [](Configuration& c) { c.indirect = false; });
+        add("direct", "the default path without indirect light",
+            [](Configuration& c) { c.indirect = false; });
         add("many-vpls", "the default path with 2048 VPLs and five bounces", [](Configuration& c) {
             c.vpls.count = 2048;
             c.vpls.bounces = 5;

@@ -16,21 +16,21 @@
 
 namespace candela {
 
-/// How surfaces are found, and which lights each visits. Names as in JSON and on the command line, in this order:
-/// forward, tiled-forward, forward+, deferred, tiled-deferred, clustered-forward, clustered-deferred.
+/// How surfaces are found, and which lights each visits. Names as in JSON and on the command line, in this
+/// order: forward, tiled-forward, forward+, deferred, tiled-deferred, clustered-forward, clustered-deferred.
 enum class ShadingPath : std::uint8_t {
-    forward,             ///< rasterised and shaded at once; all lights
-    tiled_forward,       ///< the same with lists of tiles, unbounded in depth
-    forward_plus,        ///< depth pre-pass, then the same with lists bound by depth
-    deferred,            ///< G-buffer, then one dispatch over all lights
-    tiled_deferred,      ///< the same with lists of tiles, bound by depth
-    clustered_forward,   ///< forward with lists of clusters
-    clustered_deferred   ///< deferred with lists of clusters
+    forward,            ///< rasterised and shaded at once; all lights
+    tiled_forward,      ///< the same with lists of tiles, unbounded in depth
+    forward_plus,       ///< depth pre-pass, then the same with lists bound by depth
+    deferred,           ///< G-buffer, then one dispatch over all lights
+    tiled_deferred,     ///< the same with lists of tiles, bound by depth
+    clustered_forward,  ///< forward with lists of clusters
+    clustered_deferred  ///< deferred with lists of clusters
 };
-inline constexpr std::array all_shading_paths{
-    ShadingPath::forward,        ShadingPath::tiled_forward,     ShadingPath::forward_plus,
-    ShadingPath::deferred,       ShadingPath::tiled_deferred,    ShadingPath::clustered_forward,
-    ShadingPath::clustered_deferred};
+inline constexpr std::array all_shading_paths{ShadingPath::forward,           ShadingPath::tiled_forward,
+                                              ShadingPath::forward_plus,      ShadingPath::deferred,
+                                              ShadingPath::tiled_deferred,    ShadingPath::clustered_forward,
+                                              ShadingPath::clustered_deferred};
 
 /// How a path finds the surfaces that it shades.
 enum class SurfaceStage : std::uint8_t { forward, forward_after_prepass, gbuffer };

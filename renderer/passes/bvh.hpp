@@ -42,8 +42,8 @@ struct Tracing {
     ValueHandle<SceneMetrics> metrics;
 };
 
-/// Node `bvh`: builds the hierarchy over the triangles that stop light, in world space; where instances only moved, refits it,
-/// until its cost has grown by half.
+/// Node `bvh`: builds the hierarchy over the triangles that stop light, in world space; where instances only
+/// moved, refits it, until its cost has grown by half.
 [[nodiscard]] Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene);
 
 /// For a pass that traces: declares its reads, and binds them and sets its uniforms when it runs.

@@ -5,8 +5,8 @@
 
 namespace candela {
 
-TextureHandle add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<CameraView> view,
-                                glm::uvec2 size) {
+TextureHandle add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                ValueHandle<CameraView> view, glm::uvec2 size) {
     return graph.add("depth-prepass", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);

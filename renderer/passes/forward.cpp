@@ -6,7 +6,8 @@
 namespace candela {
 
 ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                   ValueHandle<CameraView> view, std::optional<TextureHandle> prepass_depth, glm::uvec2 size) {
+                           ValueHandle<CameraView> view, std::optional<TextureHandle> prepass_depth,
+                           glm::uvec2 size) {
     return graph.add("forward", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);

@@ -16,10 +16,10 @@ struct ShadedSurfaces {
     TextureHandle depth;     ///< depth32f, reversed; 0 where there is nothing
 };
 
-/// Node `forward`: rasterises the surfaces and shades them at once. With the depth of a pre-pass only those are shaded
-/// that are seen in the end.
-[[nodiscard]] ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                                 ValueHandle<CameraView> view, std::optional<TextureHandle> prepass_depth,
-                                 glm::uvec2 size);
+/// Node `forward`: rasterises the surfaces and shades them at once. With the depth of a pre-pass only those
+/// are shaded that are seen in the end.
+[[nodiscard]] ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                         const Lighting& lighting, ValueHandle<CameraView> view,
+                                         std::optional<TextureHandle> prepass_depth, glm::uvec2 size);
 
 }  // namespace candela

@@ -17,7 +17,8 @@ struct Reach {
     float radius;
 };
 
-/// Spots: the sphere around a cone with its spherical cap, which for narrow cones is smaller than the light's own.
+/// Spots: the sphere around a cone with its spherical cap, which for narrow cones is smaller than the light's
+/// own.
 Reach reach_of(const gpu::Light& light, const CameraView& view) {
     glm::vec3 centre = light.position;
     float radius = light.range;
@@ -53,7 +54,9 @@ void to_tiles(float from, float to, std::uint32_t tile_size, std::uint32_t tiles
 
 /// Slice in which a depth lies; every depth lies in one.
 std::uint32_t slice_of(const CellGrid& grid, float depth) {
-    if (!(depth > grid.first_depth)) { return 0; }
+    if (!(depth > grid.first_depth)) {
+        return 0;
+    }
     const float slice = 1.0F + std::floor(std::log(depth / grid.first_depth) / std::log(grid.depth_ratio));
     return static_cast<std::uint32_t>(std::min(slice, static_cast<float>(grid.slices - 1)));
 }
@@ -64,8 +67,12 @@ CellRange touched(const Reach& reach, const CameraView& view, const CellGrid& gr
     const float depth = -reach.centre.z;
     const float nearest = depth - reach.radius;
     const float farthest = depth + reach.radius;
-    if (!std::isfinite(reach.radius)) { return all; }
-    if (farthest <= 0.0F && !view.orthographic) { return {}; }
+    if (!std::isfinite(reach.radius)) {
+        return all;
+    }
+    if (farthest <= 0.0F && !view.orthographic) {
+        return {};
+    }
 
     CellRange range = all;
     if (grid.slices > 1) {
@@ -74,13 +81,16 @@ CellRange touched(const Reach& reach, const CameraView& view, const CellGrid& gr
         range.lower.z -= range.lower.z > 0 ? 1 : 0;
         range.upper.z = std::min(slice_of(grid, farthest) + 2, grid.slices);
     }
-    if (nearest <= 0.0F && !view.orthographic) { return range; }  // around the eye's plane: all of the screen
+    if (nearest <= 0.0F && !view.orthographic) {
+        return range;
+    }  // around the eye's plane: all of the screen
 
     const glm::mat4& clip = view.clip_from_view;
     for (int axis = 0; axis < 2; ++axis) {
         const float low = reach.centre[axis] - reach.radius;
         const float high = reach.centre[axis] + reach.radius;
-        // Window coordinate of x at depth d: scale·x / d + shift in perspective, scale·x + shift orthographic.
+        // Window coordinate of x at depth d: scale·x / d + shift in perspective, scale·x + shift
+        // orthographic.
         float from = clip[axis][axis] * low;
         float to = clip[axis][axis] * high;
         float shift = clip[3][axis];
@@ -101,13 +111,15 @@ void each_cell(const CellRange& range, const CellGrid& grid, Visit visit) {
     for (std::uint32_t z = range.lower.z; z < range.upper.z; ++z) {
         for (std::uint32_t y = range.lower.y; y < range.upper.y; ++y) {
             const std::uint32_t row = (z * grid.tiles.y + y) * grid.tiles.x;
-            for (std::uint32_t x = range.lower.x; x < range.upper.x; ++x) { visit(row + x); }
+            for (std::uint32_t x = range.lower.x; x < range.upper.x; ++x) {
+                visit(row + x);
+            }
         }
     }
 }
 
-/// Which lights every cell visits: those without a range, those that touch most cells, and the widest of the rest
-/// until the others' entries fit.
+/// Which lights every cell visits: those without a range, those that touch most cells, and the widest of the
+/// rest until the others' entries fit.
 std::vector<bool> choose_global(const std::vector<CellRange>& ranges, const CellGrid& grid) {
     const auto most = static_cast<std::uint64_t>(widest_listed * grid.cells());
     std::vector<bool> global(ranges.size(), false);
@@ -115,15 +127,21 @@ std::vector<bool> choose_global(const std::vector<CellRange>& ranges, const Cell
     std::uint64_t entries = 0;
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
         global[i] = ranges[i].cells() > most;
-        if (global[i]) { continue; }
+        if (global[i]) {
+            continue;
+        }
         entries += ranges[i].cells();
         listed.push_back(i);
     }
-    if (entries <= most_list_entries) { return global; }
+    if (entries <= most_list_entries) {
+        return global;
+    }
     std::stable_sort(listed.begin(), listed.end(),
                      [&](auto a, auto b) { return ranges[a].cells() > ranges[b].cells(); });
     for (const std::uint32_t i : listed) {
-        if (entries <= most_list_entries) { break; }
+        if (entries <= most_list_entries) {
+            break;
+        }
         entries -= ranges[i].cells();
         global[i] = true;
     }
@@ -141,14 +159,18 @@ LightBins bin_lights(const LightTable& lights, const CameraView& view, const Cel
     }
     const std::vector<bool> global = choose_global(ranges, grid);
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
-        if (global[i]) { bins.entries.push_back(i); }
+        if (global[i]) {
+            bins.entries.push_back(i);
+        }
     }
     bins.global_count = static_cast<std::uint32_t>(bins.entries.size());
 
     // Counting sort by cell: counts, their running sum, then each light into the next place of its cells.
     std::vector<std::uint32_t> next(grid.cells() + 1, 0);
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
-        if (!global[i]) { each_cell(ranges[i], grid, [&](std::uint32_t cell) { ++next[cell + 1]; }); }
+        if (!global[i]) {
+            each_cell(ranges[i], grid, [&](std::uint32_t cell) { ++next[cell + 1]; });
+        }
     }
     next[0] = bins.global_count;
     std::partial_sum(next.begin(), next.end(), next.begin());
@@ -172,7 +194,8 @@ CellGrid cluster_grid(glm::uvec2 size, const ListSettings& settings, float neare
     CellGrid grid = tile_grid(size, settings);
     grid.slices = std::max(settings.slices, 2U);
     grid.first_depth = nearest;
-    grid.depth_ratio = std::pow(std::max(farthest / nearest, 1.001F), 1.0F / static_cast<float>(grid.slices - 1));
+    grid.depth_ratio =
+        std::pow(std::max(farthest / nearest, 1.001F), 1.0F / static_cast<float>(grid.slices - 1));
     return grid;
 }
 

@@ -1,7 +1,7 @@
 #include "renderer/passes/light_lists.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "engine/graph/execute.hpp"
 #include "renderer/passes/upload.hpp"
@@ -32,11 +32,14 @@ void set_rays(const gl::Program& program, const CameraView& view) {
     program.set("depth_terms", glm::vec2(clip[2][2], clip[3][2]));
 }
 
-/// Node that sorts the lights into cells on the CPU and uploads them. `make_grid` is `CellGrid(Execution&)`.
-template <class Declare, class MakeGrid>
-BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name, ValueHandle<LightTable> lights,
-                          ValueHandle<CameraView> view, const ListSettings& settings, Declare declare,
-                          MakeGrid make_grid) {
+/// Node that sorts the lights into cells on the CPU and uploads them. `declare(Pass&)` states what the other
+/// two read; `make_grid(Execution&)` gives the cells, `is_wanted(Execution&)` whether anybody will look at
+/// the lists.
+template <class Declare, class MakeGrid, class IsWanted>
+BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
+                          ValueHandle<LightTable> lights, ValueHandle<CameraView> view,
+                          const ListSettings& settings, Declare declare, MakeGrid make_grid,
+                          IsWanted is_wanted) {
     return graph.add(fmt::format("{}-bins", name), [&](Pass& pass) {
         pass.read(lights);
         pass.read(view);
@@ -44,13 +47,16 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         declare(pass);
         const auto buffer = [&](std::string_view what) {
             return pass.write(
-                graph.buffer<std::uint32_t>(fmt::format("{} {}", name, what), 1, Lifetime::persistent), Usage::copy);
+                graph.buffer<std::uint32_t>(fmt::format("{} {}", name, what), 1, Lifetime::persistent),
+                Usage::copy);
         };
         const BinBuffers out{.bins = pass.write(graph.value<LightBins>(fmt::format("{} bins", name))),
                              .first = buffer("first"),
                              .entries = buffer("entries")};
         pass.run([=, &gpu](Execution& run) {
-            LightBins bins = bin_lights(run.value(lights), run.value(view), make_grid(run));
+            const LightTable nothing;
+            const LightTable& table = is_wanted(run) ? run.value(lights) : nothing;
+            LightBins bins = bin_lights(table, run.value(view), make_grid(run));
             upload<std::uint32_t>(gpu, run, out.first, bins.first);
             upload<std::uint32_t>(gpu, run, out.entries, bins.entries);
             run.set(out.bins, std::move(bins));
@@ -60,24 +66,26 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
 }
 
 /// Node that narrows the bins down in place: each cell keeps, in order, the lights that reach it.
-LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader, LightList kind,
-                         const BinBuffers& bins, BufferHandle<gpu::Light> lights, ValueHandle<CameraView> view,
-                         std::optional<TextureHandle> depth) {
+LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
+                         LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
+                         ValueHandle<CameraView> view, std::optional<TextureHandle> depth) {
     return graph.add(name, [&](Pass& pass) {
         pass.read(bins.bins);
         pass.read(view);
         pass.read(lights, Usage::storage);
         pass.read(bins.first, Usage::storage);
-        if (depth) { pass.read(*depth, Usage::sampled); }
+        if (depth) {
+            pass.read(*depth, Usage::sampled);
+        }
         const gl::Program& program = gpu.program({shader});
-        const LightLists out{
-            .kind = kind,
-            .bins = bins.bins,
-            .view = view,
-            .first = bins.first,
-            .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1, Lifetime::persistent),
-                                Usage::storage),
-            .entries = pass.write(bins.entries, Usage::storage)};
+        const LightLists out{.kind = kind,
+                             .bins = bins.bins,
+                             .view = view,
+                             .first = bins.first,
+                             .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1,
+                                                                             Lifetime::persistent),
+                                                 Usage::storage),
+                             .entries = pass.write(bins.entries, Usage::storage)};
         pass.run([=, &gpu, &program](Execution& run) {
             const CellGrid& grid = run.value(bins.bins).grid;
             run.reserve(out.count, grid.cells());
@@ -86,7 +94,9 @@ LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, con
             gpu.bind_storage(BINDING_LIST_COUNT, run.object(out.count));
             gpu.bind_storage(BINDING_LIST_ENTRIES, run.object(out.entries));
             program.set("has_depth", depth.has_value());
-            if (depth) { gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(*depth)); }
+            if (depth) {
+                gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(*depth));
+            }
             set_grid(program, grid);
             set_rays(program, run.value(view));
             program.use();
@@ -100,18 +110,31 @@ LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, con
 
 LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                            BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
-                           std::optional<TextureHandle> depth, glm::uvec2 size, const ListSettings& settings) {
-    // Lists with and without depth bounds may stand in one graph.
-    const std::string_view name = depth ? "light-tiles" : "light-tiles-unbounded";
-    const BinBuffers bins =
-        add_light_bins(graph, gpu, name, lights, view, settings, [](Pass&) {},
-                       [=](Execution&) { return tile_grid(size, settings); });
-    return add_narrowing(graph, gpu, name, "light_tiles.comp", LightList::tile, bins, light_buffer, view, depth);
+                           std::optional<TextureHandle> depth, glm::uvec2 size,
+                           const ListSettings& settings) {
+    const BinBuffers bins = add_light_bins(
+        graph, gpu, "light-tiles", lights, view, settings, [](Pass&) {},
+        [=](Execution&) { return tile_grid(size, settings); }, [](Execution&) { return true; });
+    return add_narrowing(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
+                         view, depth);
+}
+
+LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                                   BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
+                                   ValueHandle<SceneLayout> layout, glm::uvec2 size,
+                                   const ListSettings& settings) {
+    const BinBuffers bins = add_light_bins(
+        graph, gpu, "blended-light-tiles", lights, view, settings, [&](Pass& pass) { pass.read(layout); },
+        [=](Execution&) { return tile_grid(size, settings); },
+        [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
+    return add_narrowing(graph, gpu, "blended-light-tiles", "light_tiles.comp", LightList::tile, bins,
+                         light_buffer, view, std::nullopt);
 }
 
 LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                               BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
-                              ValueHandle<SceneMetrics> metrics, glm::uvec2 size, const ListSettings& settings) {
+                              ValueHandle<SceneMetrics> metrics, glm::uvec2 size,
+                              const ListSettings& settings) {
     const auto make_grid = [=](Execution& run) {
         const SceneMetrics& scene = run.value(metrics);
         const float distance = glm::length(scene.centre() - run.value(view).eye);
@@ -120,10 +143,11 @@ LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTabl
         const float nearest = std::max(distance - scene.radius(), 1e-3F * farthest);
         return cluster_grid(size, settings, nearest, farthest);
     };
-    const BinBuffers bins = add_light_bins(graph, gpu, "light-clusters", lights, view, settings,
-                                           [&](Pass& pass) { pass.read(metrics); }, make_grid);
-    return add_narrowing(graph, gpu, "light-clusters", "light_clusters.comp", LightList::cluster, bins, light_buffer,
-                         view, std::nullopt);
+    const BinBuffers bins = add_light_bins(
+        graph, gpu, "light-clusters", lights, view, settings, [&](Pass& pass) { pass.read(metrics); },
+        make_grid, [](Execution&) { return true; });
+    return add_narrowing(graph, gpu, "light-clusters", "light_clusters.comp", LightList::cluster, bins,
+                         light_buffer, view, std::nullopt);
 }
 
 void read_light_lists(Pass& pass, const LightLists& lists) {

@@ -15,24 +15,32 @@ struct LightLists {
     LightList kind = LightList::tile;
     ValueHandle<LightBins> bins;
     ValueHandle<CameraView> view;
-    BufferHandle<std::uint32_t> first;    ///< by cell: where its list begins
-    BufferHandle<std::uint32_t> count;    ///< by cell: its length
-    BufferHandle<std::uint32_t> entries;  ///< indices of lights, ascending within a list; the global ones come first
+    BufferHandle<std::uint32_t> first;  ///< by cell: where its list begins
+    BufferHandle<std::uint32_t> count;  ///< by cell: its length
+    BufferHandle<std::uint32_t>
+        entries;  ///< indices of lights, ascending within a list; the global ones come first
 };
 
-/// Node `light-tiles`. With a depth texture, tiles are bound by the nearest and the farthest surface in them, and by a
-/// mask of 32 slices between the two (Harada et al., "A 2.5D Culling for Forward+", 2012); what is drawn elsewhere in
-/// depth needs lists without one.
+/// Node `light-tiles`. With a depth texture, tiles are bound by the nearest and the farthest surface in them,
+/// and by a mask of 32 slices between the two (Harada et al., "A 2.5D Culling for Forward+", 2012).
 [[nodiscard]] LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                                          BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
                                          std::optional<TextureHandle> depth, glm::uvec2 size,
                                          const ListSettings& settings);
 
+/// Node `blended-light-tiles`: tiles without bounds in depth, for the blended surfaces in front of what
+/// bounds the others. Its lists are empty while the scene has none.
+[[nodiscard]] LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                                                 BufferHandle<gpu::Light> light_buffer,
+                                                 ValueHandle<CameraView> view,
+                                                 ValueHandle<SceneLayout> layout, glm::uvec2 size,
+                                                 const ListSettings& settings);
+
 /// Node `light-clusters`: tiles cut into slices of depth.
 [[nodiscard]] LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                                            BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
-                                            ValueHandle<SceneMetrics> metrics, glm::uvec2 size,
-                                            const ListSettings& settings);
+                                            BufferHandle<gpu::Light> light_buffer,
+                                            ValueHandle<CameraView> view, ValueHandle<SceneMetrics> metrics,
+                                            glm::uvec2 size, const ListSettings& settings);
 
 /// For a pass that shades by lists: declares its reads, and binds them and sets its uniforms when it runs.
 void read_light_lists(Pass& pass, const LightLists& lists);

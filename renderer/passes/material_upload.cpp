@@ -43,8 +43,8 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
     return std::make_shared<const MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
 }
 
-/// The image scaled down, if need be, to what tracing reads. Alpha is linear and weights nothing: most materials
-/// ignore it.
+/// The image scaled down, if need be, to what tracing reads. Alpha is linear and weights nothing: most
+/// materials ignore it.
 Image reduce(const Image& image) {
     const std::uint32_t longer = std::max(image.width, image.height);
     if (longer <= traced_image_size) {
@@ -56,8 +56,7 @@ Image reduce(const Image& image) {
     reduced.texels.resize(static_cast<std::size_t>(reduced.width) * reduced.height);
     stbir_resize_uint8_srgb(&image.texels[0].x, static_cast<int>(image.width), static_cast<int>(image.height),
                             0, &reduced.texels[0].x, static_cast<int>(reduced.width),
-                            static_cast<int>(reduced.height), 0, 4, 3,
-                            STBIR_FLAG_ALPHA_PREMULTIPLIED);
+                            static_cast<int>(reduced.height), 0, 4, 3, STBIR_FLAG_ALPHA_PREMULTIPLIED);
     return reduced;
 }
 

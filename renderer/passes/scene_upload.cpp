@@ -40,8 +40,8 @@ Gathered add_scene_gather(FrameGraph& graph) {
     });
 }
 
-/// Indices of the drawables in drawing order: grouped by alpha mode, image, sidedness and winding, otherwise as
-/// they were.
+/// Indices of the drawables in drawing order: grouped by alpha mode, image, sidedness and winding, otherwise
+/// as they were.
 template <class Key>
 std::vector<std::uint32_t> stable_order(std::size_t count, Key key) {
     std::vector<std::uint32_t> order(count);
@@ -121,9 +121,8 @@ bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
 
 /// Of drawables in drawing order, how many have at most this alpha mode.
 std::uint32_t count_until(const std::vector<SceneLayout::Drawable>& drawables, AlphaMode last) {
-    return static_cast<std::uint32_t>(std::ranges::count_if(drawables, [&](const auto& drawable) {
-        return drawable.primitive->material->alpha_mode <= last;
-    }));
+    return static_cast<std::uint32_t>(std::ranges::count_if(
+        drawables, [&](const auto& drawable) { return drawable.primitive->material->alpha_mode <= last; }));
 }
 
 std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
@@ -191,8 +190,9 @@ BufferHandle<T> write_upload(FrameGraph& graph, Pass& pass, std::string_view nam
 }  // namespace
 
 std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {
-    const auto range = std::ranges::equal_range(groups, alpha, {}, &Group::alpha);
-    return {range.begin(), range.end()};
+    const auto first = std::ranges::lower_bound(groups, alpha, {}, &Group::alpha);
+    const auto last = std::ranges::upper_bound(groups, alpha, {}, &Group::alpha);
+    return {first, last};
 }
 
 SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {

@@ -227,8 +227,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                 Usage::layer_target),
             .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
                                Usage::layer_target)};
-        pass.run(
-            [=, &gpu](Execution& run) { render_shadows(gpu, run, scene, out, settings, programs); });
+        pass.run([=, &gpu](Execution& run) { render_shadows(gpu, run, scene, out, settings, programs); });
         return out;
     });
 }

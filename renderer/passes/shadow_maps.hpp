@@ -48,8 +48,9 @@ struct ShadowMaps {
                                       const ShadowSettings& settings);
 
 /// Nodes `shadow-plan` (CPU) and `shadow-maps`: depth of the scene from every light that has a map, all
-/// triangles from both sides, less the holes of masks and what is blended. A point light looks through the six faces of a cube, a spot through its cone,
-/// a directional light through the rectangle that the scene covers.
+/// triangles from both sides, less the holes of masks and what is blended. A point light looks through the
+/// six faces of a cube, a spot through its cone, a directional light through the rectangle that the scene
+/// covers.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

@@ -25,7 +25,8 @@ std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePla
     return sorted;
 }
 
-/// The shader weights the radiance by alpha itself and tells what it leaves of what is behind as the second source.
+/// The shader weights the radiance by alpha itself and tells what it leaves of what is behind as the second
+/// source.
 void begin_blending(const gl::Functions& gl) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthMask(GL_FALSE);
@@ -55,7 +56,8 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         pass.read(scene.placement);
         pass.read(view);
         pass.read(surfaces.depth, Usage::depth_target);
-        const gl::Program& program = gpu.program({"mesh_surface.vert", "forward.frag"}, lighting_variant(lighting));
+        const gl::Program& program =
+            gpu.program({"mesh_surface.vert", "forward.frag"}, lighting_variant(lighting));
         const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::vector<SortedGroup> sorted =

@@ -98,7 +98,7 @@ def atrium():
     for x, z, degrees in bays():
         scene.node("parapet", mesh=parapet, translation=[x, storeys[1], z], rotation=turn(degrees))
 
-    scene.light("sun", "directional", [1.0, 0.93, 0.82], 2.8, **looking((3.0, 9.0, 2.0), (0.0, 0.0, 0.0)))
+    scene.light("sun", "directional", [1.0, 0.93, 0.82], 3.2, **looking((3.0, 9.0, 2.0), (0.0, 0.0, 0.0)))
     colours = {"red": [1.0, 0.25, 0.15], "green": [0.25, 1.0, 0.3], "blue": [0.2, 0.4, 1.0], "amber": [1.0, 0.7, 0.2]}
     for (name, colour), (x, z) in zip(colours.items(), [(-6.25, -5.6), (1.25, -5.6), (-3.75, 5.6), (3.75, 5.6)]):
         scene.light(f"{name} light", "point", colour, 12.0, translation=[x, 2.4, z])

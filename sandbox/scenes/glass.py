@@ -26,26 +26,24 @@ def glass():
     scene.place("pillar", flat(box(0.5, 3.0, 0.5)), brick, translation=[1.6, 0.0, -2.2], rotation=turn(-20))
     scene.place("block", flat(box(0.6, 0.5, 0.6)), brick, translation=[-1.5, 0.0, 0.6], rotation=turn(40))
 
-    def tinted(name, colour, alpha, **properties):
-        return scene.material(name, colour, alpha, alphaMode="BLEND", **properties)
+    def place_pane(name, colour, alpha, size, translation, degrees, **properties):
+        tint = scene.material(f"{name} glass", colour, alpha, alphaMode="BLEND", **properties)
+        scene.place(f"{name} pane", pane(*size), tint, translation=translation, rotation=turn(degrees))
 
-    scene.place("blue pane", pane(1.7, 2.2), tinted("blue glass", [0.15, 0.35, 0.8], 0.35),
-                translation=[-0.7, 0.0, -0.1], rotation=turn(8))  # fmt: skip
-    scene.place("red pane", pane(1.8, 2.0), tinted("red glass", [0.8, 0.15, 0.1], 0.4), translation=[0.2, 0.0, 0.5])
-    scene.place("green pane", pane(1.3, 1.6), tinted("green glass", [0.2, 0.7, 0.25], 0.5),
-                translation=[0.9, 0.0, 1.1], rotation=turn(-15))  # fmt: skip
-    scene.place("amber pane", pane(1.2, 1.9), tinted("amber glass", [0.85, 0.6, 0.1], 0.3, doubleSided=True),
-                translation=[1.8, 0.0, -0.8], rotation=turn(160))  # fmt: skip
+    place_pane("blue", [0.15, 0.35, 0.8], 0.35, (1.7, 2.2), [-0.7, 0.0, -0.1], 8)
+    place_pane("red", [0.8, 0.15, 0.1], 0.4, (1.8, 2.0), [0.2, 0.0, 0.5], 0)
+    place_pane("green", [0.2, 0.7, 0.25], 0.5, (1.3, 1.6), [0.9, 0.0, 1.1], -15)
+    place_pane("amber", [0.85, 0.6, 0.1], 0.3, (1.2, 1.9), [1.8, 0.0, -0.8], 160, doubleSided=True)
 
     texture = scene.texture("trellis", png(32, 32, trellis_texel))
-    wood = scene.material(
-        "trellis", [1.0, 1.0, 1.0], 1.0, texture, alphaMode="MASK", alphaCutoff=0.5, doubleSided=True
-    )
+    cut_out = {"alphaMode": "MASK", "alphaCutoff": 0.5, "doubleSided": True}
+    wood = scene.material("trellis", [1.0, 1.0, 1.0], 1.0, texture, **cut_out)
     scene.place("trellis", pane(1.8, 2.4, 6), wood, translation=[-1.95, 0.0, -2.0], rotation=turn(12))
 
-    lights = [(-2.2, 2.2, 2.4), (1.9, 1.2, 2.2), (0.3, 2.4, 1.6), (-0.4, 1.3, 0.3), (0.7, 0.6, -0.1), (2.3, 1.8, -0.6),
-              (-0.8, 1.9, -1.2), (0.5, 2.3, -2.0), (-2.2, 0.6, -1.6), (-1.6, 1.6, -3.4), (2.3, 0.8, -3.2)]  # fmt: skip
-    for index, position in enumerate(lights):
-        scene.light(f"light {index}", "point", hue(0.618 * index % 1), 2.5, 3.0, translation=list(position))
+    in_front = [(-2.2, 2.2, 2.4), (1.9, 1.2, 2.2), (0.3, 2.4, 1.6)]
+    between = [(-0.4, 1.3, 0.2), (0.7, 0.6, -0.1), (2.3, 1.8, 0.0)]
+    behind = [(-0.8, 1.9, -1.2), (0.5, 2.3, -2.0), (-2.2, 0.6, -1.6), (-1.6, 1.6, -3.4), (2.3, 0.8, -3.2)]
+    for index, position in enumerate([*in_front, *between, *behind]):
+        scene.light(f"light {index}", "point", hue(0.618 * index % 1), 4.0, 3.2, translation=list(position))
     scene.camera(50, 0.01, **looking((0.1, 1.5, 3.8), (-0.05, 1.1, 0.0)))
     return scene

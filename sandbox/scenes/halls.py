@@ -44,9 +44,9 @@ def hall(count):
         reach, colour = round(3.3 + 0.4 * numbers.random(), 3), hue(numbers.random())
         if index % 4 == 3:
             below = (position[0], 0.0, position[2])
-            scene.light(f"spot {index}", "spot", colour, 4.5, reach, (30, 55), **looking(position, below))
+            scene.light(f"spot {index}", "spot", colour, 6.0, reach, (30, 55), **looking(position, below))
         else:
-            scene.light(f"light {index}", "point", colour, 2.4, reach, translation=position)
+            scene.light(f"light {index}", "point", colour, 3.0, reach, translation=position)
     scene.camera(60, 0.05, **looking((0.3, 1.7, -0.5), (-0.2, 1.5, -8.0)))
     return scene
 
@@ -78,13 +78,14 @@ def fins():
         place = on_slope(shift, 0, (index + 1) * spacing)
         scene.node("row of fins", mesh=mesh, translation=place, rotation=tilt(slope))
 
-    cells = (across * pitch / 16, rows * spacing / 32)
+    # Lights keep to the middle between two rows, whichever of them is near the jittered place.
     for index in range(512):
         far, side = divmod(index, 16)
-        x = (side - 8 + numbers.random()) * cells[0]
-        distance = (far + numbers.random()) * cells[1] + spacing / 2
+        x = (side - 8 + numbers.random()) * across * pitch / 16
+        gap = int((far + numbers.random()) * rows / 32)
+        distance = (gap + 1.35 + 0.3 * numbers.random()) * spacing
         position = on_slope(x, 0.1 + 0.35 * numbers.random(), distance)
         reach, colour = round(0.9 + 0.3 * numbers.random(), 3), hue(numbers.random())
-        scene.light(f"light {index}", "point", colour, 0.15, reach, translation=position)
+        scene.light(f"light {index}", "point", colour, 0.25, reach, translation=position)
     scene.camera(30, 0.05, **looking((0.4, 1.2, 0.8), (0.0, -0.5, -12.0)))
     return scene

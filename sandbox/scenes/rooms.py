@@ -29,8 +29,8 @@ def cornell():
     scene.place("tall block", tall, white, translation=[-0.33, 0.0, -0.26], rotation=turn(17))
 
     # Far enough below the ceiling that its spot there is a glow rather than a glare, above the tall block by enough
-    # that its shadow reaches the walls. 4 cd at 1.6 m make pi / 2 lux on the floor, which then shows a radiance of 0.36:
-    # middle grey once the box's own light is added and the picture tone-mapped.
+    # that its shadow reaches the walls. 4 cd at 1.6 m make pi / 2 lux on the floor, which then shows a radiance of
+    # 0.36: middle grey once the box's own light is added and the picture tone-mapped.
     scene.light("ceiling light", "point", DAYLIGHT, 4.0, translation=[0.0, 1.6, 0.0])
     # The opening, 2.9 m away, fills a square picture but for a thin margin.
     scene.camera(39.3, 0.01, translation=[0.0, 1.0, 3.9])
@@ -77,7 +77,7 @@ def two_rooms():
     scene.place("cupboard", flat(box(0.6, 1.8, 1.2)), red, translation=[-3.75, 0.0, -0.2])
     scene.place("chest", flat(box(0.7, 0.7, 0.7)), blue, translation=[2.2, 0.0, -1.3], rotation=turn(30))
 
-    scene.light("lamp", "point", DAYLIGHT, 6.0, translation=[-1.9, 2.0, 0.5])
+    scene.light("lamp", "point", DAYLIGHT, 9.0, translation=[-1.9, 2.0, 0.5])
     scene.camera(65, 0.01, **looking((3.8, 1.7, 1.7), (0.6, 0.85, -0.4)))
     return scene
 
@@ -87,6 +87,6 @@ def furnace():
     scene = Scene()
     grey = scene.material("grey", [0.5, 0.5, 0.5])
     scene.place("room", flat(room((-1, -1, -1), (1, 1, 1))), grey)
-    scene.light("light", "point", [1.0, 1.0, 1.0], 1.0, translation=[0.2, 0.3, -0.1])
+    scene.light("light", "point", [1.0, 1.0, 1.0], 2.0, translation=[0.2, 0.3, -0.1])
     scene.camera(80, 0.01, translation=[0.0, 0.0, 0.9])
     return scene

@@ -78,19 +78,19 @@ TEST_SUITE("glTF materials") {
             AlphaMode mode;
             float cutoff;
         };
-        for (const auto& [json, mode, cutoff] : {Alpha{"{}", AlphaMode::opaque, 0.5F},
-                                                 Alpha{R"({"alphaMode": "OPAQUE"})", AlphaMode::opaque, 0.5F},
-                                                 Alpha{R"({"alphaMode": "MASK"})", AlphaMode::mask, 0.5F},
-                                                 Alpha{R"({"alphaMode": "MASK", "alphaCutoff": 0.25})",
-                                                       AlphaMode::mask, 0.25F},
-                                                 Alpha{R"({"alphaMode": "BLEND"})", AlphaMode::blend, 0.5F}}) {
-            CAPTURE(json);
+        for (const Alpha& alpha :
+             {Alpha{"{}", AlphaMode::opaque, 0.5F},
+              Alpha{R"({"alphaMode": "OPAQUE"})", AlphaMode::opaque, 0.5F},
+              Alpha{R"({"alphaMode": "MASK"})", AlphaMode::mask, 0.5F},
+              Alpha{R"({"alphaMode": "MASK", "alphaCutoff": 0.25})", AlphaMode::mask, 0.25F},
+              Alpha{R"({"alphaMode": "BLEND"})", AlphaMode::blend, 0.5F}}) {
+            CAPTURE(alpha.json);
             GltfBuilder file = right_triangle();
             file.primitive()["material"] = 0;
-            file.document["materials"] = Json::array({Json::parse(json)});
+            file.document["materials"] = Json::array({Json::parse(alpha.json)});
             const Imported imported(file);
-            CHECK(imported.primitive().material->alpha_mode == mode);
-            CHECK(imported.primitive().material->alpha_cutoff == cutoff);
+            CHECK(imported.primitive().material->alpha_mode == alpha.mode);
+            CHECK(imported.primitive().material->alpha_cutoff == alpha.cutoff);
             CHECK(imported.report.warnings.empty());
         }
     }

@@ -9,19 +9,15 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "engine/bvh/box.hpp"
-#include "engine/bvh/bvh.hpp"
-#include "engine/scene/gltf.hpp"
-#include "engine/scene/hierarchy.hpp"
 #include "tests/engine/gltf_builder.hpp"
+#include "tests/engine/scene_probe.hpp"
 
 using namespace candela;
 using namespace candela::test;
@@ -37,6 +33,16 @@ fs::path shipped(const std::string& name) {
     return scenes() / (name + ".gltf");
 }
 
+std::vector<fs::path> shipped_files() {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& file : fs::directory_iterator(scenes())) {
+        if (file.path().extension() == ".gltf") {
+            files.push_back(file.path());
+        }
+    }
+    return files;
+}
+
 /// Runs the generator. What it is told must need no quoting.
 void generate(const fs::path& out, const std::string& arguments) {
     const fs::path script = scenes() / "generate.py";
@@ -50,116 +56,6 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// An imported scene.
-struct Loaded {
-    World world;
-    ImportReport report;
-
-    explicit Loaded(const fs::path& path) : report(import_gltf(path, world)) {}
-
-    [[nodiscard]] std::vector<Entity> called(const std::string& name) const {
-        std::vector<Entity> found;
-        for (auto [entity, is] : world.view<Name>()) {
-            if (is.value == name) {
-                found.push_back(entity);
-            }
-        }
-        return found;
-    }
-    [[nodiscard]] glm::mat4 camera() const { return world_matrix(world, called("camera").at(0)); }
-    [[nodiscard]] glm::vec3 position(Entity entity) const { return world_matrix(world, entity)[3]; }
-};
-
-void append(std::vector<Triangle>& triangles, const Primitive& primitive, const glm::mat4& matrix) {
-    const auto corner = [&](std::size_t i) {
-        return glm::vec3(matrix * glm::vec4(primitive.vertices[primitive.indices[i]].position, 1.0F));
-    };
-    for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
-        triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
-    }
-}
-
-/// In world space.
-std::vector<Triangle> triangles_of(const Loaded& scene, Entity entity) {
-    std::vector<Triangle> triangles;
-    for (const Primitive& primitive : scene.world.get<MeshInstance>(entity).mesh->primitives) {
-        append(triangles, primitive, world_matrix(scene.world, entity));
-    }
-    return triangles;
-}
-
-std::vector<Triangle> all_triangles(const Loaded& scene) {
-    std::vector<Triangle> triangles;
-    for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
-        const std::vector<Triangle> more = triangles_of(scene, entity);
-        triangles.insert(triangles.end(), more.begin(), more.end());
-    }
-    return triangles;
-}
-
-/// Where all lights but the directional ones are.
-std::vector<glm::vec3> light_positions(const Loaded& scene) {
-    std::vector<glm::vec3> positions;
-    for (auto [entity, light] : scene.world.view<PointLight>()) {
-        positions.push_back(scene.position(entity));
-    }
-    for (auto [entity, light] : scene.world.view<SpotLight>()) {
-        positions.push_back(scene.position(entity));
-    }
-    return positions;
-}
-
-template <class Component>
-std::size_t count(const Loaded& scene) {
-    std::size_t found = 0;
-    for ([[maybe_unused]] auto [entity, component] : scene.world.view<Component>()) {
-        ++found;
-    }
-    return found;
-}
-
-/// Triangles that can be asked for what a ray meets.
-struct Target {
-    std::vector<Triangle> triangles;
-    Bvh bvh = build_bvh(triangles);
-
-    [[nodiscard]] std::optional<Hit> first(const glm::vec3& from, const glm::vec3& direction) const {
-        return closest_hit(bvh, triangles, {.origin = from, .direction = direction});
-    }
-    /// Whether the first thing along the ray is the front of a triangle.
-    [[nodiscard]] bool shows_front(const glm::vec3& from, const glm::vec3& direction) const {
-        const std::optional<Hit> hit = first(from, direction);
-        if (!hit) {
-            return false;
-        }
-        const Triangle& triangle = triangles[hit->triangle];
-        const glm::vec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-        return glm::dot(normal, direction) < 0.0F;
-    }
-};
-
-/// Directions spread evenly over the sphere: equal steps in height, golden angles around it.
-std::vector<glm::vec3> directions(int number) {
-    std::vector<glm::vec3> spread;
-    for (int i = 0; i < number; ++i) {
-        const float height = 1.0F - (2.0F * float(i) + 1.0F) / float(number);
-        const float radius = std::sqrt(1.0F - height * height);
-        const float angle = 2.39996323F * float(i);
-        spread.emplace_back(radius * std::cos(angle), height, radius * std::sin(angle));
-    }
-    return spread;
-}
-
-/// The direction through a pixel's centre of the scene's camera, in world space, not normalised: its depth is
-/// 1. Row 0 is at the top.
-glm::vec3 through_pixel(const Loaded& scene, glm::ivec2 pixel, glm::ivec2 size) {
-    const Camera& camera = scene.world.get<Camera>(scene.called("camera").at(0));
-    const float scale = 2.0F * std::tan(camera.vertical_fov / 2.0F) / float(size.y);
-    const float x = (float(pixel.x) + 0.5F - float(size.x) / 2.0F) * scale;
-    const float y = (float(size.y) / 2.0F - float(pixel.y) - 0.5F) * scale;
-    return glm::mat3(scene.camera()) * glm::vec3(x, y, -1.0F);
-}
-
 /// By the divergence theorem; negative where the triangles face inwards.
 double enclosed_volume(const std::vector<Triangle>& triangles) {
     double volume = 0.0;
@@ -170,8 +66,7 @@ double enclosed_volume(const std::vector<Triangle>& triangles) {
 }
 
 /// The fraction of a coarse picture that shows a surface's front.
-double covered(const Loaded& scene) {
-    const Target target{all_triangles(scene)};
+double covered(const Loaded& scene, const Target& target) {
     const glm::ivec2 size(32, 24);
     int shown = 0;
     for (int i = 0; i < size.x * size.y; ++i) {
@@ -179,6 +74,17 @@ double covered(const Loaded& scene) {
         shown += target.shows_front(scene.camera()[3], direction) ? 1 : 0;
     }
     return double(shown) / (size.x * size.y);
+}
+
+/// How near the nearest surface comes, in metres, as far as a hundred rays can tell: a light that touches one
+/// makes a spot so bright that it swamps every measure of error.
+float room_around(const Target& target, const glm::vec3& place) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& direction : directions(100)) {
+        const std::optional<Hit> hit = target.first(place, direction);
+        nearest = std::min(nearest, hit ? hit->t : nearest);
+    }
+    return nearest;
 }
 
 /// What everybody who quotes a figure on the scene may rely on.
@@ -199,8 +105,9 @@ void check_facts(const Loaded& scene, const Facts& facts) {
     REQUIRE(scene.called("camera").size() == 1);
     CHECK(scene.world.find<Camera>(scene.called("camera")[0]) != nullptr);
 
+    const Target target{all_triangles(scene)};
     Box box;
-    for (const Triangle& triangle : all_triangles(scene)) {
+    for (const Triangle& triangle : target.triangles) {
         box.grow(bounds(triangle));
     }
     // Positions are floats of up to 256 m, rotations have seven digits.
@@ -210,9 +117,10 @@ void check_facts(const Loaded& scene, const Facts& facts) {
     for (const glm::vec3& light : light_positions(scene)) {
         CHECK(glm::all(glm::greaterThan(light, facts.lower)));
         CHECK(glm::all(glm::lessThan(light, facts.upper)));
+        CHECK(room_around(target, light) > 0.1F);
     }
     // The Cornell box is framed for a square, which has 3/4 of this picture.
-    CHECK(covered(scene) > 0.7);
+    CHECK(covered(scene, target) > 0.7);
 }
 
 /// Whether each vertex normal is on the front of the triangles that use it.
@@ -279,9 +187,9 @@ TEST_SUITE("shipped scenes") {
     TEST_CASE("the generator writes the shipped files, and the large scenes on demand") {
         const TemporaryDirectory directory;
         generate(directory / "shipped", "");
-        for (const fs::directory_entry& file : fs::directory_iterator(directory / "shipped")) {
-            CAPTURE(file.path().filename().string());
-            CHECK(contents(file.path()) == contents(scenes() / file.path().filename()));
+        for (const fs::path& path : shipped_files()) {
+            CAPTURE(path.filename().string());
+            CHECK(contents(directory / "shipped" / path.filename()) == contents(path));
         }
         generate(directory / "large", "atrium hall-4096 hall --lights 7");
         check_facts(Loaded(directory / "large/hall-4096.gltf"),
@@ -296,12 +204,9 @@ TEST_SUITE("shipped scenes") {
     }
 
     TEST_CASE("normals lie on the front of their triangles") {
-        for (const fs::directory_entry& file : fs::directory_iterator(scenes())) {
-            if (file.path().extension() != ".gltf") {
-                continue;
-            }
-            CAPTURE(file.path().filename().string());
-            const Loaded scene(file.path());
+        for (const fs::path& path : shipped_files()) {
+            CAPTURE(path.filename().string());
+            const Loaded scene(path);
             for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
                 CHECK(normals_agree(instance.mesh->primitives.at(0)));
             }

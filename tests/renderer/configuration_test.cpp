@@ -60,8 +60,11 @@ TEST_SUITE("configuration") {
         CHECK(faults_of("{\"path\": ") == Faults{"not valid JSON"});
         CHECK(faults_of("[]") == Faults{"not a JSON object"});
         CHECK(faults_of("3") == Faults{"not a JSON object"});
-        CHECK(faults_of(R"({"path": "sideways"})") == Faults{"path: is not one of forward, deferred"});
-        CHECK(faults_of(R"({"path": 1})") == Faults{"path: is not one of forward, deferred"});
+        const std::string paths =
+            "path: is not one of forward, tiled-forward, forward+, deferred, tiled-deferred, "
+            "clustered-forward, clustered-deferred";
+        CHECK(faults_of(R"({"path": "sideways"})") == Faults{paths});
+        CHECK(faults_of(R"({"path": 1})") == Faults{paths});
         CHECK(faults_of(R"({"indirect": "on"})") == Faults{"indirect: is not true or false"});
         CHECK(faults_of(R"({"vpls": 256})") == Faults{"vpls: is not an object"});
         CHECK(faults_of(R"({"bounce": 1, "vpls": {"number": 2}})").size() == 2);
@@ -138,15 +141,15 @@ TEST_SUITE("configuration") {
         CHECK(passes_of(ShadingPath::deferred, true) ==
               "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
               "vpl-paths "
-              "vpl-trace view gbuffer deferred tone-map");
+              "vpl-trace view gbuffer deferred transparent tone-map");
         CHECK(passes_of(ShadingPath::forward, true) ==
               "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
               "vpl-paths "
-              "vpl-trace view forward tone-map");
+              "vpl-trace view forward transparent tone-map");
         CHECK(passes_of(ShadingPath::deferred, false) ==
               "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
               "view gbuffer "
-              "deferred tone-map");
+              "deferred transparent tone-map");
     }
 
     TEST_CASE_FIXTURE(RenderFixture,
@@ -166,7 +169,8 @@ TEST_SUITE("configuration") {
         };
         // The first of each is about the frame before, whose VPLs and radiance are overwritten.
         CHECK(barriers_of(ShadingPath::deferred) ==
-              "vpl-trace: storage\ndeferred: image access + storage\ntone-map: texture fetch\n");
+              "vpl-trace: storage\ndeferred: image access + storage\ntransparent: framebuffer\n"
+              "tone-map: texture fetch\n");
         CHECK(barriers_of(ShadingPath::forward) == "vpl-trace: storage\nforward: storage\n");
     }
 

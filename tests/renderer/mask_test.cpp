@@ -155,7 +155,7 @@ TEST_SUITE("masks") {
         Scene scene = masked_scene(0.5F);
         scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
         scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F, .casts_shadow = false});
-        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+        for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
             check(
                 scene, direct_light(scene, path),
@@ -174,7 +174,7 @@ TEST_SUITE("masks") {
                 MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
             scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
             scene.world.set(scene.light, DirectionalLight{});
-            for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+            for (const ShadingPath path : all_shading_paths) {
                 const double albedo = alpha < 0.5F ? 0.5 : 0.9;
                 const double radiance = static_cast<double>(direct_light(scene, path).at(48, 32).r);
                 CHECK(std::abs(radiance - albedo / pi) < tolerance / pi);

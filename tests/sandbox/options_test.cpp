@@ -146,7 +146,6 @@ TEST_SUITE("options") {
             check_refused({flag, "x"}, flag, "");
             CHECK(help.find(flag) == std::string::npos);
         }
-        CHECK(help.find("tiled") == std::string::npos);
         check_refused({"a.gltf", "b.gltf"}, "b.gltf", "");
     }
 

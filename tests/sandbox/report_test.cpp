@@ -27,7 +27,8 @@ RunReport some_run() {
     run.state.gl_renderer = "a driver";
     run.state.triangles = 36;
     run.state.vpls = VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced()};
-    run.state.lights = {.count = 3, .with_shadow = 2, .without_shadow = 1};
+    run.state.lights = {
+        .count = 300, .with_shadow = 2, .without_shadow = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
     run.state.memory = {
         .texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .spare_bytes = 0};
     return run;
@@ -51,6 +52,10 @@ TEST_SUITE("report") {
         CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
         CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
         CHECK(json["lights"]["without_shadow"] == 1);
+        CHECK(json["lights"]["global"] == 4);
+        CHECK(json["lights"]["tile_max"] == 19);
+        CHECK(json["lights"]["tile_mean"] == 6.5);
+        CHECK(json["lights"]["overflowed_tiles"] == 0);
         CHECK(json["memory"]["shared_by_aliasing_bytes"] == 9);
     }
 
@@ -59,6 +64,13 @@ TEST_SUITE("report") {
         run.state.vpls.reset();
         CHECK(nlohmann::json::parse(to_json(run))["vpls"].is_null());
         CHECK(to_table(run.frames[0], run.state).find("emitted") == std::string::npos);
+    }
+
+    TEST_CASE("the table tells of lists only where there are some") {
+        RunReport run = some_run();
+        CHECK(to_table(run.frames[0], run.state).find("6.5 in the mean, 19 at most") != std::string::npos);
+        run.state.lights.tile_max = 0;
+        CHECK(to_table(run.frames[0], run.state).find("in a list") == std::string::npos);
     }
 
     TEST_CASE("the residual is what the worst channel lacks") {

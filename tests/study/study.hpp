@@ -16,6 +16,19 @@ int shading(const std::filesystem::path& scene);
 /// Error, bias and spikes of the indirect light for several bounds of the geometry term.
 int bound(const std::filesystem::path& scene);
 
+/// Which shading paths are timed on what.
+struct PathStudy {
+    std::filesystem::path scene;
+    std::vector<ShadingPath> paths{all_shading_paths.begin(),
+                                   all_shading_paths.end()};  ///< ratios are to the first
+    glm::uvec2 size{640, 480};
+    int rounds = 5;
+    std::uint32_t vpls = 0;
+    std::filesystem::path csv;  ///< lines are appended to it; empty: none
+};
+/// Frame times of shading paths, interleaved, with the share that goes into building lists.
+int paths(const PathStudy& study);
+
 /// Renders linear radiance of one scene through its first camera.
 class Bench {
  public:

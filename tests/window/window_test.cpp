@@ -8,7 +8,9 @@
 #include <X11/Xutil.h>
 #include <X11/extensions/XTest.h>
 #include <X11/keysym.h>
+#include <fcntl.h>
 #include <spawn.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,15 +21,21 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "tests/sandbox/temporary_folder.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
+using candela::sandbox::TemporaryFolder;
 
 constexpr int width = 480;
 constexpr int height = 360;
@@ -75,14 +83,24 @@ double mean(const Shot& shot, int left, int right) {
 /// The app in a window. Its panel hides the picture in part, and is hidden itself at once.
 class App {
  public:
-    explicit App(std::vector<std::string> flags) : display_(XOpenDisplay(nullptr)) {
+    /// What it says on stderr goes to the file `errors`, or where the test's own goes.
+    explicit App(std::vector<std::string> flags, const fs::path& errors = {})
+        : display_(XOpenDisplay(nullptr)) {
         REQUIRE_MESSAGE(display_, "no display: run under xvfb-run");
         flags.insert(flags.begin(), {CANDELA_APP, "--context", "window", "--size", "480x360"});
         std::vector<char*> arguments;
         arguments.reserve(flags.size() + 1);
         for (std::string& flag : flags) arguments.push_back(flag.data());
         arguments.push_back(nullptr);
-        REQUIRE(posix_spawn(&process_, CANDELA_APP, nullptr, nullptr, arguments.data(), environ) == 0);
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        if (!errors.empty()) {
+            posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(),
+                                             O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
+        }
+        const int fault = posix_spawn(&process_, CANDELA_APP, &actions, nullptr, arguments.data(), environ);
+        posix_spawn_file_actions_destroy(&actions);
+        REQUIRE(fault == 0);
         REQUIRE_MESSAGE(wait_until([&] { return find_window(DefaultRootWindow(display_.get())); }),
                         "no window");
         REQUIRE_MESSAGE(wait_until([&] { return mean(shoot(), 0, width) > 1.0; }), "nothing but black");
@@ -95,6 +113,21 @@ class App {
         if (process_ == 0) return;
         kill(process_, SIGKILL);
         waitpid(process_, nullptr, 0);
+    }
+
+    [[nodiscard]] Shot shoot() {
+        XImage* image = XGetImage(display_.get(), window_, 0, 0, width, height, AllPlanes, ZPixmap);
+        REQUIRE(image != nullptr);
+        Shot shot;
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                const unsigned long rgb = XGetPixel(image, x, y);
+                shot.pixels.push_back(
+                    static_cast<int>((rgb & 0xFFU) + ((rgb >> 8U) & 0xFFU) + ((rgb >> 16U) & 0xFFU)));
+            }
+        }
+        XDestroyImage(image);
+        return shot;
     }
 
     /// The picture as soon as it is at rest.
@@ -155,21 +188,6 @@ class App {
         return found;
     }
 
-    [[nodiscard]] Shot shoot() {
-        XImage* image = XGetImage(display_.get(), window_, 0, 0, width, height, AllPlanes, ZPixmap);
-        REQUIRE(image != nullptr);
-        Shot shot;
-        for (int y = 0; y < height; ++y) {
-            for (int x = 0; x < width; ++x) {
-                const unsigned long rgb = XGetPixel(image, x, y);
-                shot.pixels.push_back(
-                    static_cast<int>((rgb & 0xFFU) + ((rgb >> 8U) & 0xFFU) + ((rgb >> 16U) & 0xFFU)));
-            }
-        }
-        XDestroyImage(image);
-        return shot;
-    }
-
     void move_pointer(double x, double y) {
         int left = 0;
         int top = 0;
@@ -207,20 +225,17 @@ class App {
 /// Exposed so that nothing comes near white, where differences vanish.
 class DarkConfiguration {
  public:
-    DarkConfiguration() {
-        std::string name = (fs::temp_directory_path() / "candela-XXXXXX").string();
-        REQUIRE(mkdtemp(name.data()) != nullptr);
-        folder_ = name;
-        std::ofstream(path()) << R"({"tone_map": {"exposure_ev": -3}})";
-    }
-    DarkConfiguration(const DarkConfiguration&) = delete;
-    DarkConfiguration& operator=(const DarkConfiguration&) = delete;
-    ~DarkConfiguration() { fs::remove_all(folder_); }
+    DarkConfiguration() { std::ofstream(path()) << R"({"tone_map": {"exposure_ev": -3}})"; }
     [[nodiscard]] std::string path() const { return (folder_ / "dark.json").string(); }
 
  private:
-    fs::path folder_;
+    TemporaryFolder folder_;
 };
+
+std::string text_of(const fs::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
 /// The middle of the brightest stretch of the back wall, on a row above the blocks and below the light's
 /// marker.
@@ -312,5 +327,34 @@ TEST_SUITE("window") {
             changed += std::abs(before.pixels[i] - back.pixels[i]) > 6 ? 1 : 0;
         CHECK(changed < 50);
         CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("a configuration that is saved goes into force, and a faulty one leaves it there") {
+        const TemporaryFolder folder;
+        const fs::path config = folder / "config.json";
+        const fs::path report = folder / "report.json";
+        const fs::path graph = folder / "graph.txt";
+        const fs::path errors = folder / "errors.txt";
+        std::ofstream(config) << R"({"path": "deferred"})";
+        App app({"--indirect", "off", "--config", config.string(), "--report", report.string(),
+                 "--describe-graph", graph.string()},
+                errors);
+        // Paths agree in what they show, so that the exposure has to tell which file is in force.
+        const double before = mean(app.settled(), 0, width);
+        std::ofstream(config) << R"({"path": "forward+", "tone_map": {"exposure_ev": -3}})";
+        CHECK(wait_until([&] { return mean(app.shoot(), 0, width) < 0.7 * before; }));
+        const Shot switched = app.settled();
+
+        std::ofstream(config) << R"({"path": "fastest", "tone_map": {"exposure_ev": 3}})";
+        CHECK(wait_until([&] { return text_of(errors).find("config.json: path: ") != std::string::npos; }));
+        CHECK(app.settled() == switched);
+
+        CHECK(app.quit() == 0);
+        CHECK(nlohmann::json::parse(text_of(report))["config"]["path"] == "forward+");
+        CHECK(text_of(graph).find("depth-prepass") != std::string::npos);
+        CHECK(text_of(graph).find("gbuffer") == std::string::npos);
+        const std::string said = text_of(errors);
+        CHECK_MESSAGE(said.find("fastest") == said.rfind("fastest"), said);
+        CHECK_MESSAGE(std::count(said.begin(), said.end(), '\n') == 1, said);
     }
 }

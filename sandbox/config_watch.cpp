@@ -1,0 +1,47 @@
+#include "sandbox/config_watch.hpp"
+
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "sandbox/choose_configuration.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+ConfigurationResult read(const Options& options) {
+    try {
+        return {choose_configuration(options), {}};
+    } catch (const std::runtime_error& fault) {
+        return {std::nullopt, {fault.what()}};
+    }
+}
+
+}  // namespace
+
+ConfigWatch::ConfigWatch(const Options& options) : options_(options), seen_(look()), read_(seen_) {}
+
+std::optional<ConfigurationResult> ConfigWatch::poll(Clock::time_point now) {
+    if (now < next_look_) return std::nullopt;
+    next_look_ = now + interval;
+    const std::optional<Stamp> stamp = look();
+    const bool settled = stamp == std::exchange(seen_, stamp);
+    if (!stamp || !settled || stamp == read_) return std::nullopt;
+    ConfigurationResult result = read(options_);
+    // Saved again meanwhile: what was read may be half of each.
+    if (look() != stamp) return std::nullopt;
+    read_ = stamp;
+    return result;
+}
+
+std::optional<ConfigWatch::Stamp> ConfigWatch::look() const {
+    if (!options_.config) return std::nullopt;
+    std::error_code no_time;
+    std::error_code no_size;
+    const Stamp stamp{std::filesystem::last_write_time(*options_.config, no_time),
+                      std::filesystem::file_size(*options_.config, no_size)};
+    return no_time || no_size ? std::nullopt : std::optional(stamp);
+}
+
+}  // namespace candela::sandbox
