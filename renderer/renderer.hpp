@@ -60,7 +60,7 @@ struct LightReport {
     std::uint32_t count = 0;
     std::uint32_t with_shadow = 0;
     std::uint32_t without_shadow = 0;  ///< that should cast shadows but found no room in the budget
-    std::uint32_t global = 0;          ///< that every list visits, being too wide to be worth listing
+    std::uint32_t global = 0;          ///< that every list visits, having no range, or no room in the lists' memory
     std::uint32_t tile_max = 0;        ///< lights that the longest list of a tile or cluster visits; 0 without lists
     double tile_mean = 0.0;            ///< the same in the mean of all tiles or clusters
 };

@@ -134,8 +134,8 @@ void draw_passes(const FrameReport& frame) {
 void draw_light_counts(const LightReport& lights) {
     text(fmt::format("shadow maps: {}, no room for {}", lights.with_shadow, lights.without_shadow));
     if (lights.tile_max == 0) return;
-    text(fmt::format("in a list: {:.1f} lights in the mean, {} at most", lights.tile_mean, lights.tile_max));
-    text(fmt::format("in all lists: {} lights", lights.global));
+    text(fmt::format("a list: {:.1f} in the mean, {} at most", lights.tile_mean, lights.tile_max));
+    text(fmt::format("in all lists: {}", lights.global));
 }
 
 void draw_vpls(const VplReport& vpls) {

@@ -218,9 +218,9 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     Reader reader(json, result.faults);
     visit(configuration, reader);
     reader.report_unknown();
-    if (result.faults.empty()) {
-        result.faults = validate(configuration);
-    }
+    // What was refused above kept its value; this adds what only the values together tell.
+    const std::vector<std::string> of_values = validate(configuration);
+    result.faults.insert(result.faults.end(), of_values.begin(), of_values.end());
     if (result.faults.empty()) {
         result.configuration = configuration;
     }

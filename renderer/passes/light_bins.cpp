@@ -8,9 +8,6 @@
 namespace candela {
 namespace {
 
-// A light that touches this share of all cells is cheaper to visit everywhere than to list.
-constexpr double widest_listed = 0.5;
-
 /// A sphere around all that a light reaches, in view space.
 struct Reach {
     glm::vec3 centre;
@@ -118,15 +115,14 @@ void each_cell(const CellRange& range, const CellGrid& grid, Visit visit) {
     }
 }
 
-/// Which lights every cell visits: those without a range, those that touch most cells, and the widest of the
-/// rest until the others' entries fit.
-std::vector<bool> choose_global(const std::vector<CellRange>& ranges, const CellGrid& grid) {
-    const auto most = static_cast<std::uint64_t>(widest_listed * grid.cells());
+/// Which lights every cell visits: those without a range, and the widest of the rest until the others' entries
+/// fit. However wide a light is, an entry in a list costs less than the pixels that it may be found not to reach.
+std::vector<bool> choose_global(const LightTable& lights, const std::vector<CellRange>& ranges) {
     std::vector<bool> global(ranges.size(), false);
     std::vector<std::uint32_t> listed;
     std::uint64_t entries = 0;
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
-        global[i] = ranges[i].cells() > most;
+        global[i] = std::isinf(lights.entries[i].light.range);
         if (global[i]) {
             continue;
         }
@@ -157,7 +153,7 @@ LightBins bin_lights(const LightTable& lights, const CameraView& view, const Cel
     for (const LightTable::Entry& entry : lights.entries) {
         ranges.push_back(touched(reach_of(entry.light, view), view, grid));
     }
-    const std::vector<bool> global = choose_global(ranges, grid);
+    const std::vector<bool> global = choose_global(lights, ranges);
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
         if (global[i]) {
             bins.entries.push_back(i);
