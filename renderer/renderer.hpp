@@ -94,8 +94,8 @@ class Renderer {
     /// up from there.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 
-    /// Does everything anew in the next frame. A world is known by its address and its pools' revisions: call this
-    /// after putting another world in the place of the last one.
+    /// Does everything anew in the next frame. A world is known by its address and its pools' revisions: call
+    /// this after putting another world in the place of the last one.
     void invalidate() { runtime_.invalidate(); }
 
     /// Tone-maps a picture of linear radiance that was averaged elsewhere; row 0 is the bottom.

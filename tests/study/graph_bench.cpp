@@ -155,7 +155,9 @@ BENCHMARK_CAPTURE(run_idle_passes, diamonds, diamonds)->Apply(sizes);
 
 int candela::study::graph(int count, char** arguments) {
     benchmark::Initialize(&count, arguments);
-    if (benchmark::ReportUnrecognizedArguments(count, arguments)) { return 2; }
+    if (benchmark::ReportUnrecognizedArguments(count, arguments)) {
+        return 2;
+    }
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     return 0;
