@@ -60,9 +60,10 @@ struct LightReport {
     std::uint32_t count = 0;
     std::uint32_t with_shadow = 0;
     std::uint32_t without_shadow = 0;  ///< that should cast shadows but found no room in the budget
-    std::uint32_t global = 0;          ///< that every list visits, having no range, or no room in the lists' memory
-    std::uint32_t tile_max = 0;        ///< lights that the longest list of a tile or cluster visits; 0 without lists
-    double tile_mean = 0.0;            ///< the same in the mean of all tiles or clusters
+    std::uint32_t global = 0;  ///< that every list visits, having no range, or no room in the lists' memory
+    std::uint32_t tile_max =
+        0;                   ///< lights that the longest list of a tile or cluster visits; 0 without lists
+    double tile_mean = 0.0;  ///< the same in the mean of all tiles or clusters
 };
 
 /// The state after the last frame.
@@ -97,8 +98,8 @@ class Renderer {
     /// up from there.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 
-    /// Does everything anew in the next frame. A world is known by its address and its pools' revisions: call this
-    /// after putting another world in the place of the last one.
+    /// Does everything anew in the next frame. A world is known by its address and its pools' revisions: call
+    /// this after putting another world in the place of the last one.
     void invalidate() { runtime_.invalidate(); }
 
     /// Tone-maps a picture of linear radiance that was averaged elsewhere; row 0 is the bottom.

@@ -130,9 +130,7 @@ class EglContext final : public HeadlessContext {
         if (!egl_.make_current(display_, surface_, surface_, context_))
             fail("the context cannot be made current");
     }
-    [[nodiscard]] gl::GetProc get_proc() const override {
-        return egl_.get_proc;
-    }
+    [[nodiscard]] gl::GetProc get_proc() const override { return egl_.get_proc; }
     [[nodiscard]] std::string description() const override { return "EGL " + name_; }
 
  private:

@@ -58,9 +58,7 @@ class OsMesaContext final : public HeadlessContext {
             throw ContextError("OSMesa: the context cannot be made current");
         }
     }
-    [[nodiscard]] gl::GetProc get_proc() const override {
-        return api_.get_proc;
-    }
+    [[nodiscard]] gl::GetProc get_proc() const override { return api_.get_proc; }
     [[nodiscard]] std::string description() const override { return "OSMesa"; }
 
  private:

@@ -6,7 +6,8 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t tile_size = 16;  // pixels along an edge of what a work group shades: shaders/deferred.comp
+constexpr std::uint32_t tile_size =
+    16;  // pixels along an edge of what a work group shades: shaders/deferred.comp
 
 }  // namespace
 
@@ -25,7 +26,8 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
             gl.BindTextureUnit(UNIT_ALBEDO, run.object(gbuffer.albedo));
             gl.BindTextureUnit(UNIT_NORMAL, run.object(gbuffer.normal));
             gl.BindTextureUnit(UNIT_DEPTH, run.object(gbuffer.depth));
-            gl.BindImageTexture(IMAGE_RADIANCE, run.object(radiance), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+            gl.BindImageTexture(IMAGE_RADIANCE, run.object(radiance), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                                GL_RGBA32F);
             bind_view(program, run.value(view), size);
             bind_lighting(gpu, run, program, lighting);
             program.use();

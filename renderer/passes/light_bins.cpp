@@ -115,8 +115,9 @@ void each_cell(const CellRange& range, const CellGrid& grid, Visit visit) {
     }
 }
 
-/// Which lights every cell visits: those without a range, and the widest of the rest until the others' entries
-/// fit. However wide a light is, an entry in a list costs less than the pixels that it may be found not to reach.
+/// Which lights every cell visits: those without a range, and the widest of the rest until the others'
+/// entries fit. However wide a light is, an entry in a list costs less than the pixels that it may be found
+/// not to reach.
 std::vector<bool> choose_global(const LightTable& lights, const std::vector<CellRange>& ranges) {
     std::vector<bool> global(ranges.size(), false);
     std::vector<std::uint32_t> listed;

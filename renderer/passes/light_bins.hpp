@@ -32,8 +32,8 @@ struct CellGrid {
     [[nodiscard]] std::uint32_t cells() const { return tiles.x * tiles.y * slices; }
 };
 
-/// Lights by cell, before the exact tests. A light without a range is visited everywhere; so are the widest of the
-/// others, until the lists fit in their memory.
+/// Lights by cell, before the exact tests. A light without a range is visited everywhere; so are the widest
+/// of the others, until the lists fit in their memory.
 struct LightBins {
     CellGrid grid;
     std::vector<std::uint32_t> first;  ///< by cell, and the end: where its list begins in `entries`

@@ -39,10 +39,10 @@ struct Lighting {
     float geometry_bound = 1.0F;  ///< see `vpl_radius2`
 };
 
-/// Squared radius, in m², of the disc that a VPL stands for. N VPLs share the area A of the scene's surfaces, so each
-/// is a disc of A/N: R² = A / (π N), and its geometry term is at most 1/R², where a form factor of 1 would be. `bound`
-/// scales that bound: at infinity the VPL is a point. The radius shrinks as N grows, and the energy that it costs
-/// vanishes.
+/// Squared radius, in m², of the disc that a VPL stands for. N VPLs share the area A of the scene's surfaces,
+/// so each is a disc of A/N: R² = A / (π N), and its geometry term is at most 1/R², where a form factor of 1
+/// would be. `bound` scales that bound: at infinity the VPL is a point. The radius shrinks as N grows, and
+/// the energy that it costs vanishes.
 [[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
 
 /// Words to define in shaders that include lighting.glsl.

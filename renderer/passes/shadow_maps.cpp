@@ -76,7 +76,7 @@ void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::
 
 void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metrics, float near_plane,
              std::uint32_t resolution) {
-    const float texels = static_cast<float>(resolution);
+    const auto texels = static_cast<float>(resolution);
     const float margin = 1.0F + 4.0F / texels;  // two texels all around, for the filter
     const glm::mat4 view =
         look_along(light.position, light.direction, basis_around(light.direction).bitangent);

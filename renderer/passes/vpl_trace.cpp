@@ -40,7 +40,7 @@ std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
         cumulative += expected;
         const bool last = i + 1 == lights.entries.size();
         const std::uint32_t until =
-            last ? count : std::min(count, static_cast<std::uint32_t>(cumulative + 0.5));
+            last ? count : std::min(count, static_cast<std::uint32_t>(std::llround(cumulative)));
         if (until > given) {
             shares.push_back({i, until - given, expected});
         }

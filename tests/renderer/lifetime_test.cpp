@@ -62,9 +62,13 @@ TEST_SUITE("lifetime") {
         const std::uint64_t memory_before = resident_bytes();
         round(1000, 200);
         CHECK(renderer.device().live() == before);
+#ifndef __SANITIZE_ADDRESS__  // which holds freed memory back, and finds what is lost by itself
         // What an allocator may scatter; a leak of one small object a switch would be lost in it, and is
         // counted above.
         CHECK(resident_bytes() < memory_before + (8U << 20U));
+#else
+        static_cast<void>(memory_before);
+#endif
     }
 
     TEST_CASE_FIXTURE(RenderFixture, "meshes, images and lights that go free what they took") {

@@ -100,7 +100,6 @@ TEST_SUITE("light lists") {
             configuration.path = path;
             configure(configuration);
             static_cast<void>(render(scene, size));
-            MESSAGE("global ", renderer.report().lights.global, " max ", renderer.report().lights.tile_max);
             return renderer.report().lights.tile_mean;
         };
         const double lit = mean_lit(scene, size, renderer.configuration().lists.tile_size);

@@ -1,0 +1,147 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{48, 36};
+
+int creations = 0;  // GL objects and storage made through `counting`
+
+/// Counts the calls of one GL function that makes objects.
+template <int Which, class... Arguments>
+struct Counted {
+    using Function = void (*)(Arguments...);
+    static inline Function driver = nullptr;
+    static void call(Arguments... arguments) {
+        ++creations;
+        driver(arguments...);
+    }
+    static void (*in_place_of(void (*found)()))() {
+        driver = reinterpret_cast<Function>(found);
+        return reinterpret_cast<void (*)()>(&call);
+    }
+};
+
+/// The driver's functions, those that make buffers, textures and framebuffers counted.
+gl::GetProc counting(const gl::GetProc& get_proc) {
+    return [get_proc](const char* name) -> void (*)() {
+        const std::string_view wanted(name);
+        void (*const found)() = get_proc(name);
+        if (wanted == "glCreateBuffers") return Counted<0, GLsizei, GLuint*>::in_place_of(found);
+        if (wanted == "glCreateFramebuffers") return Counted<1, GLsizei, GLuint*>::in_place_of(found);
+        if (wanted == "glCreateTextures") return Counted<2, GLenum, GLsizei, GLuint*>::in_place_of(found);
+        if (wanted == "glNamedBufferStorage") {
+            return Counted<3, GLuint, GLsizeiptr, const void*, GLbitfield>::in_place_of(found);
+        }
+        if (wanted == "glLinkProgram") return Counted<4, GLuint>::in_place_of(found);
+        return found;
+    };
+}
+
+Scene scene_with_lights() {
+    Scene scene = shipped_scene("glass");
+    add(scene.world, looking({1, 2, 1}, {0, 0, 0}), SpotLight{.range = 5.0F});
+    return scene;
+}
+
+Configuration by_path(ShadingPath path) {
+    Configuration configuration = few_vpls();
+    configuration.path = path;
+    return configuration;
+}
+
+}  // namespace
+
+TEST_SUITE("switching") {
+    TEST_CASE_FIXTURE(RenderFixture, "the first frame after a switch is right, and what does not depend on the path stays") {
+        const Scene scene = scene_with_lights();
+        std::map<ShadingPath, Picture> pictures;
+        for (const ShadingPath path : all_shading_paths) {
+            Renderer fresh(context->get_proc());
+            REQUIRE(fresh.configure(by_path(path)).empty());
+            const RenderTarget target(device, size);
+            fresh.render(scene.world, scene.camera, target.target());
+            pictures[path] = target.read();
+        }
+        configure(by_path(ShadingPath::forward));
+        static_cast<void>(render(scene, size));
+        gl::ObjectCounts after_first_round;
+        for (int round = 0; round < 3; ++round) {
+            CAPTURE(round);
+            for (const ShadingPath path : all_shading_paths) {
+                CAPTURE(to_string(path));
+                configure(by_path(path));
+                CHECK(render(scene, size) == pictures[path]);
+                for (const char* pass : {"scene-gather", "scene-upload", "instance-upload", "bvh", "lights", "shadow-maps",
+                                         "light-upload", "vpl-paths", "vpl-trace", "view"}) {
+                    CAPTURE(pass);
+                    CHECK((!ran(pass) || (round == 0 && path == ShadingPath::forward)));
+                }
+            }
+            if (round == 0) after_first_round = renderer.device().live();
+            CHECK(renderer.device().live() == after_first_round);
+        }
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "switching back and forth between any two paths makes no object after the first round") {
+        const Scene scene = scene_with_lights();
+        Renderer renderer(counting(context->get_proc()));
+        const RenderTarget target(device, size);
+        const auto draw = [&](ShadingPath path) {
+            REQUIRE(renderer.configure(by_path(path)).empty());
+            renderer.render(scene.world, scene.camera, target.target());
+        };
+        for (const ShadingPath a : all_shading_paths) {
+            for (const ShadingPath b : all_shading_paths) {
+                CAPTURE(to_string(a));
+                CAPTURE(to_string(b));
+                draw(a);
+                draw(b);
+                const int before = creations;
+                draw(a);
+                draw(b);
+                CHECK(creations == before);
+            }
+        }
+        CHECK(creations > 0);
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "a file's faults are all named, and the present configuration goes on") {
+        const Scene scene = scene_with_lights();
+        configure(by_path(ShadingPath::clustered_forward));
+        const Picture before = render(scene, size);
+
+        const ConfigurationResult read = read_configuration(
+            R"({"path": "tiled", "indirect": 1, "lists": {"tile_size": 24, "slices": "many", "shape": 2},
+                "vpls": {"count": -4}})",
+            renderer.configuration());
+        CHECK_FALSE(read.configuration);
+        std::vector<std::string> places;
+        for (const std::string& fault : read.faults) places.push_back(fault.substr(0, fault.find(':')));
+        std::ranges::sort(places);
+        // Of the size alone a multiple of 16 is asked once the types are right.
+        CHECK(places == std::vector<std::string>{"indirect", "lists.shape", "lists.slices", "path", "vpls.count"});
+
+        for (const std::uint32_t tile_size : {0U, 8U, 24U, 48U, 128U}) {
+            CAPTURE(tile_size);
+            Configuration faulty = by_path(ShadingPath::tiled_deferred);
+            faulty.lists = {.tile_size = tile_size, .slices = 1};
+            const std::vector<std::string> faults = renderer.configure(faulty);
+            CHECK(std::ranges::any_of(faults, [](const auto& f) { return f.starts_with("lists.tile_size: "); }));
+            CHECK(std::ranges::any_of(faults, [](const auto& f) { return f.starts_with("lists.slices: "); }));
+        }
+        CHECK(renderer.configuration() == by_path(ShadingPath::clustered_forward));
+        CHECK(render(scene, size) == before);
+        CHECK_FALSE(ran("forward"));
+    }
+}
