@@ -30,11 +30,12 @@ void draw_group(const Gpu& gpu, const SceneLayout::Group& group);
 /// Clears the bound targets, colour to 0 and reversed depth to "nothing", and turns the depth test on.
 void begin_surfaces(const Gpu& gpu);
 
-/// For targets whose depth a pre-pass has filled: clears colour, and lets only those surfaces through that are seen.
+/// For targets whose depth a pre-pass has filled: clears colour, and lets only those surfaces through that
+/// are seen.
 void begin_visible_surfaces(const Gpu& gpu);
 
-/// Draws all opaque and masked surfaces with their materials; the backs of single-sided ones are culled. Binds what it
-/// needs.
+/// Draws all opaque and masked surfaces with their materials; the backs of single-sided ones are culled.
+/// Binds what it needs.
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program);
 
 }  // namespace candela

@@ -13,7 +13,7 @@ namespace candela {
 /// How the view is cut into cells that have a light list each: tiles of pixels, and for clusters slices of
 /// depth.
 struct ListSettings {
-    std::uint32_t tile_size = 16;  ///< pixels along an edge: 16, 32 or 64
+    std::uint32_t tile_size = 16;  ///< pixels along an edge: a multiple of 16, up to 64
     std::uint32_t slices = 24;     ///< of a cluster grid
     bool operator==(const ListSettings&) const = default;
 };

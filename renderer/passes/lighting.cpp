@@ -37,8 +37,12 @@ float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
 }
 
 std::vector<std::string> lighting_variant(const Lighting& lighting) {
-    if (!lighting.lists) { return {}; }
-    if (lighting.lists->kind == LightList::tile) { return {"LIGHT_LIST_CELLS"}; }
+    if (!lighting.lists) {
+        return {};
+    }
+    if (lighting.lists->kind == LightList::tile) {
+        return {"LIGHT_LIST_CELLS"};
+    }
     return {"LIGHT_LIST_CELLS", "LIGHT_LIST_PER_SURFACE"};
 }
 
@@ -53,7 +57,9 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
         pass.read(lighting.vpls->paths);
         pass.read(lighting.vpls->vpls, Usage::storage);
     }
-    if (lighting.lists) { read_light_lists(pass, *lighting.lists); }
+    if (lighting.lists) {
+        read_light_lists(pass, *lighting.lists);
+    }
     pass.parameter(lighting.show);
     pass.parameter(lighting.geometry_bound);
 }
@@ -68,7 +74,9 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
 
     const auto lights = static_cast<std::uint32_t>(run.value(lighting.lights).entries.size());
     program.set("light_count", lighting.show == Show::indirect ? 0U : lights);
-    if (lighting.lists) { bind_light_lists(gpu, run, program, *lighting.lists); }
+    if (lighting.lists) {
+        bind_light_lists(gpu, run, program, *lighting.lists);
+    }
     const bool indirect = lighting.vpls && lighting.show != Show::direct;
     const std::uint32_t vpls = indirect ? run.value(lighting.vpls->paths).vpl_count : 0U;
     program.set("vpl_count", vpls);

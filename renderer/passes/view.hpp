@@ -18,8 +18,8 @@ struct ViewRequest {
     bool operator==(const ViewRequest&) const = default;
 };
 
-/// Matrices of the viewpoint. Clip space is the GL's with depth in [0, 1], reversed: 1 at the near plane. View space has
-/// the eye at its origin and looks along -z; "depth" in metres is -z there.
+/// Matrices of the viewpoint. Clip space is the GL's with depth in [0, 1], reversed: 1 at the near plane.
+/// View space has the eye at its origin and looks along -z; "depth" in metres is -z there.
 struct CameraView {
     glm::mat4 clip_from_world{1.0F};
     glm::mat4 world_from_clip{1.0F};

@@ -78,15 +78,15 @@ CameraView random_view(Random& random, glm::uvec2 size) {
 glm::vec3 lit_point(Random& random, const gpu::Light& light) {
     const float reach = std::isinf(light.range) ? 20.0F : light.range;
     const float distance = reach * (random.integer(0, 1) == 0 ? 0.9999F : random.number(0.0F, 1.0F));
-    const float cosine =
-        light.kind == gpu::LightKind::spot ? std::min(light.cos_outer + 1e-5F, 1.0F) : -1.0F;
+    const float cosine = light.kind == gpu::LightKind::spot ? std::min(light.cos_outer + 1e-5F, 1.0F) : -1.0F;
     return light.position + distance * random.around(light.direction, cosine);
 }
 
 /// The cell that a point is seen in, in doubles; none outside the picture.
 std::optional<std::uint32_t> cell_of(const CameraView& view, const CellGrid& grid, glm::dvec3 point) {
     const glm::dvec4 clip = glm::dmat4(view.clip_from_world) * glm::dvec4(point, 1.0);
-    if (clip.w <= 0.0 || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w || clip.z > clip.w) return {};
+    if (clip.w <= 0.0 || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w || clip.z > clip.w)
+        return {};
     const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(grid.size);
     const glm::uvec2 tile = glm::uvec2(pixel) / grid.tile_size;
     const double depth = -(glm::dmat4(view.view_from_world) * glm::dvec4(point, 1.0)).z;
@@ -140,7 +140,8 @@ TEST_SUITE("light bins") {
                 }
             }
             CHECK(missing == 0);
-            listed += bins.entries.size() - bins.global_count + std::uint64_t{bins.global_count} * grid.cells();
+            listed +=
+                bins.entries.size() - bins.global_count + std::uint64_t{bins.global_count} * grid.cells();
             possible += lights.entries.size() * grid.cells();
         }
         // Most of what could be listed is not, and most that is tested was seen.
@@ -182,13 +183,15 @@ TEST_SUITE("light bins") {
 
     TEST_CASE("a small light far off is listed where it is seen and hardly elsewhere") {
         const glm::uvec2 size(640, 480);
-        const CameraView view = make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), {.camera = {}, .size = size});
+        const CameraView view =
+            make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), {.camera = {}, .size = size});
         const LightTable lights{{{.entity = {}, .light = {.position = {0.4F, 0.3F, -10.0F}, .range = 0.1F}}}};
         const LightBins tiles = bin_lights(lights, view, tile_grid(size, {}));
         // 0.2 m from 10 m away are 9 of 480 pixels; with a pixel of slack they touch 2 × 2 tiles at most.
         CHECK(tiles.entries.size() >= 1);
         CHECK(tiles.entries.size() <= 4);
-        // In depth it lies in one slice of 0.05 to 50 m or across the border of two, and one more either side.
+        // In depth it lies in one slice of 0.05 to 50 m or across the border of two, and one more either
+        // side.
         const LightBins clusters = bin_lights(lights, view, cluster_grid(size, {}, 0.05F, 50.0F));
         CHECK(clusters.entries.size() <= 4 * tiles.entries.size());
     }
@@ -204,7 +207,8 @@ TEST_SUITE("light bins") {
 
     TEST_CASE("lists that outgrow their memory make the widest lights global") {
         const glm::uvec2 size(1024, 1024);
-        const CameraView view = make_view({.vertical_fov = 1.2F}, glm::mat4(1.0F), {.camera = {}, .size = size});
+        const CameraView view =
+            make_view({.vertical_fov = 1.2F}, glm::mat4(1.0F), {.camera = {}, .size = size});
         const CellGrid grid = cluster_grid(size, {}, 0.1F, 100.0F);
         Random random(3);
         LightTable lights;
@@ -223,7 +227,8 @@ TEST_SUITE("light bins") {
         for (const std::uint32_t i : globals_of(bins)) {
             narrowest_global = std::min(narrowest_global, lights.entries[i].light.range);
         }
-        // What is as large at the same distance touches about as many cells, give or take those on the borders.
+        // What is as large at the same distance touches about as many cells, give or take those on the
+        // borders.
         std::vector<std::uint32_t> listed(bins.entries.begin() + bins.global_count, bins.entries.end());
         float widest_listed = 0.0F;
         for (const std::uint32_t i : listed) {

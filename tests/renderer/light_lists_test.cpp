@@ -16,8 +16,8 @@ using namespace candela;
 
 namespace {
 
-/// Distance along the ray, in lengths of its direction, of the nearest triangle; Möller and Trumbore, "Fast, Minimum
-/// Storage Ray/Triangle Intersection" (1997).
+/// Distance along the ray, in lengths of its direction, of the nearest triangle; Möller and Trumbore, "Fast,
+/// Minimum Storage Ray/Triangle Intersection" (1997).
 std::optional<double> nearest_hit(const std::vector<Triangle>& triangles, const PixelRay& ray) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Triangle& triangle : triangles) {
@@ -63,7 +63,8 @@ std::vector<Reach> reaches_of(const World& world) {
     return reaches;
 }
 
-/// In the mean of all tiles, how many lights send anything to any of the surface points under a tile's pixels.
+/// In the mean of all tiles, how many lights send anything to any of the surface points under a tile's
+/// pixels.
 double mean_lit(const Scene& scene, glm::uvec2 size, std::uint32_t tile_size) {
     const std::vector<Triangle> triangles = world_triangles(scene.world);
     const std::vector<Reach> reaches = reaches_of(scene.world);
@@ -105,8 +106,9 @@ TEST_SUITE("light lists") {
         const double lit = mean_lit(scene, size, renderer.configuration().lists.tile_size);
         const double bound = listed(ShadingPath::forward_plus);
         const double unbound = listed(ShadingPath::tiled_forward);
-        MESSAGE("hall-256 at 320 × 240: in the mean a tile's surfaces are lit by ", lit, " lights; its list holds ",
-                bound, " bound by depth (", bound / lit, " times as many) and ", unbound, " unbound");
+        MESSAGE("hall-256 at 320 × 240: in the mean a tile's surfaces are lit by ", lit,
+                " lights; its list holds ", bound, " bound by depth (", bound / lit, " times as many) and ",
+                unbound, " unbound");
         REQUIRE(lit > 1.0);
         CHECK(bound >= lit);
         CHECK(bound <= 3.0 * lit);

@@ -31,33 +31,42 @@ TEST_SUITE("paths: lights") {
         };
         constexpr glm::vec3 forwards{0, 0, -1};
         const std::vector<Case> cases = {
-            {"around the eye", {},
+            {"around the eye",
+             {},
              [](World& world) {
                  add_point(world, eye, 2.0F);
                  add_point(world, eye + glm::vec3(0.1F, -0.05F, 0.02F), 1.0F);
              }},
-            {"behind the eye", {},
+            {"behind the eye",
+             {},
              [&](World& world) {
                  add_point(world, eye - 0.3F * forwards, 1.2F);
                  add_point(world, eye - 0.4F * forwards, 0.3F);  // does not reach what is seen
              }},
-            {"beside the view, reaching into it", {},
+            {"beside the view, reaching into it",
+             {},
              [](World& world) {
                  add_point(world, {1.9F, 0.0F, 1.4F}, 1.5F);
                  add_point(world, {0.0F, -1.9F, 1.6F}, 2.0F);
              }},
-            {"across the near plane", {.near_plane = 0.5F},
+            {"across the near plane",
+             {.near_plane = 0.5F},
              [&](World& world) {
                  add_point(world, eye + 0.5F * forwards, 0.4F);
                  add_point(world, eye + 0.3F * forwards, 0.5F);
                  add_point(world, eye + 0.8F * forwards, 0.35F);
              }},
-            {"beyond the far plane", {.far_plane = 2.0F},
+            {"beyond the far plane",
+             {.far_plane = 2.0F},
              [&](World& world) {
                  add_point(world, eye + 2.2F * forwards, 1.0F);
                  add_point(world, eye + 3.4F * forwards, 2.0F);
              }},
-            {"reaching across the whole world", {}, [](World& world) { add_point(world, {0, 1, 0}, 1e6F); }},
+            {"reaching across the whole world",
+             {},
+             [](World& world) {
+                 add_point(world, {0, 1, 0}, 1e6F);
+             }},
         };
         for (const Case& each : cases) {
             CAPTURE(each.name);
@@ -102,8 +111,8 @@ TEST_SUITE("paths: lights") {
         add_point(scene.world, eye + glm::vec3(0.2F, 0.3F, 0.05F), 0.4F);
         check_paths(scene, size, direct_only());
 
-        scene.world.set(slab, Transform{.translation = eye + glm::vec3(0.0F, -0.1F, 0.0F),
-                                        .scale = {0.5F, 0.1F, 0.5F}});
+        scene.world.set(
+            slab, Transform{.translation = eye + glm::vec3(0.0F, -0.1F, 0.0F), .scale = {0.5F, 0.1F, 0.5F}});
         check_paths(scene, size, direct_only());
     }
 
@@ -138,7 +147,8 @@ TEST_SUITE("paths: lights") {
                 for (const float range : {0.5F, 3.0F, 1e6F}) {
                     const glm::vec3 from = place();
                     add(scene.world, looking(from, place()),
-                        SpotLight{.intensity = 0.5F, .range = range, .inner_cone = inner, .outer_cone = outer});
+                        SpotLight{
+                            .intensity = 0.5F, .range = range, .inner_cone = inner, .outer_cone = outer});
                 }
             }
         }

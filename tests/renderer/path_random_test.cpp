@@ -117,7 +117,10 @@ void add_light(World& world, const LightPlan& plan) {
 }
 
 std::shared_ptr<const Material> pane() {
-    Material material{.base_colour = {0.4F, 0.6F, 0.8F, 0.5F}, .double_sided = true, .alpha_mode = AlphaMode::blend};
+    Material material;
+    material.base_colour = {0.4F, 0.6F, 0.8F, 0.5F};
+    material.double_sided = true;
+    material.alpha_mode = AlphaMode::blend;
     return std::make_shared<const Material>(std::move(material));
 }
 
@@ -164,12 +167,14 @@ std::ostream& operator<<(std::ostream& out, const ScenePlan& plan) {
             << entry(ranges, l.range) << " cone " << entry(cones, l.cone) << '\n';
     }
     for (const ObjectPlan& o : plan.objects) {
-        out << "object " << o.kind << ' ' << o.place << " towards " << o.towards << " size " << o.size << '\n';
+        out << "object " << o.kind << ' ' << o.place << " towards " << o.towards << " size " << o.size
+            << '\n';
     }
     return out;
 }
 
-/// rc::check with fewer rounds than its hundred, each of which costs a second or so of a software driver's time.
+/// rc::check with fewer rounds than its hundred, each of which costs a second or so of a software driver's
+/// time.
 template <class Property>
 bool holds(int rounds, Property property) {
     rc::detail::TestParams params = rc::detail::configuration().testParams;

@@ -23,27 +23,41 @@ class Stock {
  public:
     explicit Stock(std::vector<detail::Slot>& slots) : slots_(slots) {
         for (std::size_t index = 0; index < slots.size(); ++index) {
-            by_hash_.emplace(hash_of(slots[index]), index);
+            if (slots[index].kept_as.empty()) {
+                by_hash_.emplace(hash_of(slots[index]), index);
+            } else {
+                by_name_.emplace(slots[index].kept_as, index);
+            }
         }
     }
 
-    /// 0 if there is none alike.
-    ObjectId take(const detail::Slot& wanted) {
-        const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
-        for (auto found = first; found != last; ++found) {
-            detail::Slot& slot = slots_[found->second];
-            if (!alike(slot, wanted)) {
-                continue;
+    /// Gives the slot an object if there is one alike; what was kept under its name comes as large as it has
+    /// grown.
+    void provide(detail::Slot& wanted) {
+        if (wanted.kept_as.empty()) {
+            const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
+            const auto found = std::find_if(
+                first, last, [&](const auto& entry) { return alike(slots_[entry.second], wanted); });
+            if (found != last) {
+                take(wanted, found->second);
+                by_hash_.erase(found);
             }
-            by_hash_.erase(found);
-            return std::exchange(slot.object, 0);
+        } else if (const auto found = by_name_.find(wanted.kept_as); found != by_name_.end()) {
+            take(wanted, found->second);
+            by_name_.erase(found);
         }
-        return 0;
     }
 
  private:
+    void take(detail::Slot& wanted, std::size_t index) {
+        wanted.object = std::exchange(slots_[index].object, 0);
+        wanted.texture = slots_[index].texture;
+        wanted.buffer = slots_[index].buffer;
+    }
+
     std::vector<detail::Slot>& slots_;
     std::unordered_multimap<std::size_t, std::size_t> by_hash_;
+    std::unordered_multimap<std::string, std::size_t> by_name_;
 };
 
 }  // namespace
@@ -100,7 +114,7 @@ void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& st
             if (!slot.owned || slot.object != 0) {
                 continue;
             }
-            slot.object = available.take(slot);
+            available.provide(slot);
             if (slot.object != 0) {
                 continue;
             }

@@ -1,11 +1,22 @@
 #include "engine/graph/details/state.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "engine/graph/details/index_table.hpp"
 
 namespace candela::detail {
 namespace {
+
+std::string describe(const TextureDesc& desc) {
+    return fmt::format("{}x{}x{} {} {} {}", desc.size.x, desc.size.y, desc.layers, to_string(desc.format),
+                       static_cast<int>(desc.shape), desc.mips);
+}
+
+std::string describe(const BufferDesc& desc) {
+    return fmt::format("{}x{}", desc.count, desc.stride);
+}
 
 template <class T>
 std::uint32_t size_of(const std::vector<T>& list) {
@@ -109,6 +120,10 @@ class StateMaker {
             }
             if (slot.kind == ResourceKind::buffer) {
                 slot.buffer = declared_.buffer(resource);
+            }
+            if (slot.owned && resource.lifetime == Lifetime::persistent) {
+                slot.kept_as =
+                    fmt::format("{} {} {}", resource.name, describe(slot.texture), describe(slot.buffer));
             }
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {

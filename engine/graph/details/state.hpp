@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct Slot {
     TextureDesc texture;
     BufferDesc buffer;
     std::shared_ptr<void> value;
+    std::string
+        kept_as;  // of what outlasts the frame: its name and what was declared; it may have grown since
 };
 
 template <class T>
