@@ -48,6 +48,7 @@ const gl::Program& Gpu::program(const std::vector<std::string>& stages,
         return found->second;
     }
     std::vector<gl::Define> defines;
+    defines.reserve(defined.size());
     for (const std::string& name : defined) {
         defines.push_back({.name = name, .value = "1"});
     }

@@ -20,7 +20,7 @@ ConfigurationResult read(const Options& options) {
 
 }  // namespace
 
-ConfigWatch::ConfigWatch(const Options& options) : options_(options), seen_(look()), read_(seen_) {}
+ConfigWatch::ConfigWatch(Options options) : options_(std::move(options)), seen_(look()), read_(seen_) {}
 
 std::optional<ConfigurationResult> ConfigWatch::poll(Clock::time_point now) {
     if (now < next_look_) return std::nullopt;

@@ -21,7 +21,7 @@ class ConfigWatch {
 
     /// Knows the file as it is now: to miss no save, make this before the file is first read. Watches nothing
     /// without `options.config`.
-    explicit ConfigWatch(const Options& options);
+    explicit ConfigWatch(Options options);
 
     /// To be called often. Once after each save: the configuration chosen as choose_configuration does, or
     /// what is wrong with it. Throws nothing for files that are missing or faulty.

@@ -127,6 +127,7 @@ void declare(CLI::App& app, Options& options) {
         {{"total", Show::total}, {"direct", Show::direct}, {"indirect", Show::indirect}},
         "what goes into the picture");
     std::vector<std::pair<std::string, ShadingPath>> paths;
+    paths.reserve(all_shading_paths.size());
     for (const ShadingPath path : all_shading_paths) paths.emplace_back(to_string(path), path);
     add_choice<std::optional<ShadingPath>, ShadingPath>(app, "--path", options.path, paths,
                                                         "how visible surfaces meet their lights");
