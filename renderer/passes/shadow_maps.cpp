@@ -220,7 +220,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         pass.read(plan);
         pass.parameter(settings);
         const ShadowPrograms programs{.opaque = gpu.program({"shadow_maps.vert"}),
-                                      .masked = gpu.program({"mesh_surface.vert", "shadow_maps.frag"})};
+                                      .masked = gpu.program({"mesh_surface.vert", "depth_prepass.frag"})};
         const ShadowMaps out{
             .plan = plan,
             .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
