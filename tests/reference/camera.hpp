@@ -1,0 +1,29 @@
+#pragma once
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include "engine/scene/components.hpp"
+#include "tests/reference/geometry.hpp"
+
+namespace candela::reference {
+
+/// A camera's rays. Its pose has no scale: it looks along its -Z, and its up vector is its +Y, made
+/// perpendicular.
+class Viewpoint {
+ public:
+    Viewpoint(const Camera& camera, const glm::mat4& to_world, glm::uvec2 size);
+
+    /// Through the centre of the pixel, row 0 at the top, from the near plane to the far plane. Distances
+    /// along it are depths in metres.
+    [[nodiscard]] Ray through(glm::uvec2 pixel) const;
+
+ private:
+    Camera camera_;
+    glm::dvec2 size_;
+    glm::dvec3 eye_;
+    glm::dvec3 right_, up_, forward_;
+    double half_height_;  ///< of what is seen; perspective: at unit depth
+};
+
+}  // namespace candela::reference

@@ -1,0 +1,262 @@
+#include "tests/reference/closed_forms.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+
+#include "tests/reference/pictures.hpp"
+
+namespace candela::reference {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// What floats leave: a cosine is good to some 3e-7, the ramp of the spot's cone magnifies that by 7.7, and
+/// where the square of the ramp is a hundredth, by 2 / 0.1.
+constexpr double float_tolerance = 1e-4;
+constexpr double standard_errors = 4.0;
+
+using Irradiance = std::function<double(glm::dvec3)>;
+
+/// Lambert's law under a light of 1 cd.
+double lambert(glm::dvec3 light, glm::dvec3 at) {
+    const glm::dvec3 to_light = light - at;
+    return to_light.y / std::pow(glm::length(to_light), 3.0);
+}
+
+template <class LightComponent>
+candela::Scene lit_ground(const Transform& pose, const LightComponent& light) {
+    candela::Scene scene = ground();
+    scene.world.set(scene.light, pose);
+    scene.world.set(scene.light, light);
+    return scene;
+}
+
+bool shows(const candela::Scene& scene, const Irradiance& irradiance, Defect defect) {
+    const glm::uvec2 size(96, 64);
+    const auto radiance = [&](glm::dvec3 at) { return glm::dvec3(0.5 / pi * irradiance(at)); };
+    const sandbox::Picture expected =
+        flipped(expected_picture(scene, size, glm::dvec3(0.0), {0, 1, 0}, radiance));
+    const Estimate estimate =
+        trace(Scene(scene.world), scene.camera, {.size = size, .samples = 2, .bounces = 0, .defect = defect});
+    const auto brighter = [](glm::vec3 a, glm::vec3 b) { return a.r < b.r; };
+    const glm::vec3 peak = *std::max_element(expected.pixels.begin(), expected.pixels.end(), brighter);
+    // Where a falloff runs out to zero its terms cancel: there, relative to a hundredth of the peak.
+    const double floor = 0.01 * static_cast<double>(peak.r);
+    const double error = worst_error(estimate.direct, expected, estimate.hit, floor);
+    MESSAGE("worst error of the plane: ", error);
+    return error < float_tolerance;
+}
+
+constexpr glm::vec3 lamp{0.4F, 1.0F, -0.2F};
+
+Estimate trace_inside(const candela::Scene& scene, glm::uvec2 size, std::uint32_t samples,
+                      std::optional<std::uint32_t> bounces, Defect defect) {
+    return trace(Scene(scene.world), scene.camera,
+                 {.size = size, .samples = samples, .bounces = bounces, .defect = defect});
+}
+
+bool is_within(const NoisyMean& mean, double truth, double tolerance) {
+    MESSAGE("mean ", mean.value, " for ", truth, " with a standard error of ", mean.error);
+    return std::abs(mean.value - truth) < standard_errors * mean.error + tolerance * truth;
+}
+
+/// A sphere of radius 2 m around a light of 3 cd.
+candela::Scene sphere_around_light(double albedo) {
+    candela::Scene scene;
+    const auto material = diffuse(glm::vec3(static_cast<float>(albedo)));
+    add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 5, material)});
+    scene.light = add(scene.world, Transform{}, PointLight{.intensity = 3.0F});
+    scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+    return scene;
+}
+
+/// Discs of radius 1 m, 1 m apart, facing each other. Light comes in between them at a slant, so that the
+/// shadow of the upper one falls beside the lower one, which is lit evenly. The upper one faces away from the
+/// light.
+struct Discs {
+    static constexpr double radius = 1.0;
+    static constexpr double distance = 1.0;
+    static constexpr double lower_albedo = 0.8;
+    static constexpr double upper_albedo = 0.5;
+    static constexpr double illuminance = 4.0;
+    static constexpr double cosine =
+        0.31622776601683794;  // of atan 3: the shadow is 3 m aside, more than 2 radii
+};
+
+/// A disc in the plane y = 0 that faces +Y, as a polygon whose area is that of the circle to 2e-5.
+std::shared_ptr<const Mesh> disc(double albedo) {
+    constexpr std::uint32_t corners = 600;
+    const glm::vec3 up(0, 1, 0);
+    Primitive primitive{.vertices = {{glm::vec3(0.0F), up, {}}},
+                        .indices = {},
+                        .material = diffuse(glm::vec3(static_cast<float>(albedo)))};
+    for (std::uint32_t i = 0; i < corners; ++i) {
+        const double angle = -2.0 * pi * i / corners;
+        const glm::vec3 corner(glm::dvec3(std::cos(angle), 0.0, std::sin(angle)) * Discs::radius);
+        primitive.vertices.push_back({corner, up, {}});
+        primitive.indices.insert(primitive.indices.end(), {0U, 1 + i, 1 + (i + 1) % corners});
+    }
+    return std::make_shared<const Mesh>(Mesh{"disc", {std::move(primitive)}});
+}
+
+candela::Scene two_discs() {
+    candela::Scene scene;
+    add(scene.world, Transform{}, MeshInstance{disc(Discs::lower_albedo)});
+    const glm::quat upside_down = glm::angleAxis(static_cast<float>(pi), glm::vec3(1, 0, 0));
+    const Transform above{.translation = {0, Discs::distance, 0}, .rotation = upside_down};
+    add(scene.world, above, MeshInstance{disc(Discs::upper_albedo)});
+    scene.light = add(scene.world, looking({3, 1, 0}, {0, 0, 0}),
+                      DirectionalLight{.illuminance = static_cast<float>(Discs::illuminance)});
+    scene.camera = add(scene.world, looking({0, 0.5F, 0}, {0, 1, 0}, {0, 0, 1}),
+                       Camera{.projection = Camera::Projection::orthographic,
+                              .half_height = static_cast<float>(Discs::radius),
+                              .near_plane = 0.0F,
+                              .far_plane = 2.0F});
+    return scene;
+}
+
+/// From an element to a parallel disc, `aside` off its axis: Howell, "A Catalog of Radiation Heat Transfer
+/// Configuration Factors", B-13.
+double element_to_disc(double aside) {
+    const double a = aside * aside;
+    const double h = Discs::distance * Discs::distance;
+    const double r = Discs::radius * Discs::radius;
+    return 0.5 * (1.0 - (a + h - r) / std::sqrt(std::pow(a + h + r, 2.0) - 4.0 * r * a));
+}
+
+/// Between two equal discs: the same catalogue, C-41.
+double disc_to_disc() {
+    const double r = Discs::radius / Discs::distance;
+    const double s = 2.0 + 1.0 / (r * r);
+    return 0.5 * (s - std::sqrt(s * s - 4.0));
+}
+
+/// Radiance of the upper disc for a form factor.
+double upper_radiance(double form_factor) {
+    return Discs::upper_albedo / pi * Discs::lower_albedo * Discs::illuminance * Discs::cosine * form_factor;
+}
+
+sandbox::Picture expected_disc(const candela::Scene& scene, glm::uvec2 size) {
+    return flipped(expected_picture(scene, size, {0, Discs::distance, 0}, {0, 1, 0}, [](glm::dvec3 at) {
+        return glm::dvec3(upper_radiance(element_to_disc(std::hypot(at.x, at.z))));
+    }));
+}
+
+constexpr glm::uvec2 disc_pixels{128, 128};
+
+Estimate trace_discs(const candela::Scene& scene, Defect defect) {
+    return trace_inside(scene, disc_pixels, 128, 1, defect);
+}
+
+}  // namespace
+
+bool plane_under_point_light(Defect defect) {
+    const candela::Scene scene = lit_ground(at(lamp), PointLight{.intensity = 3.0F});
+    return shows(
+        scene, [](glm::dvec3 p) { return 3.0 * lambert(lamp, p); }, defect);
+}
+
+bool plane_under_ranged_light(Defect defect) {
+    const candela::Scene scene = lit_ground(at(lamp), PointLight{.intensity = 3.0F, .range = 1.5F});
+    const auto irradiance = [](glm::dvec3 p) {
+        // KHR_lights_punctual: max(min(1 - (r / range)⁴, 1), 0) / r².
+        const double window = 1.0 - std::pow(glm::length(glm::dvec3(lamp) - p) / 1.5, 4.0);
+        return 3.0 * lambert(lamp, p) * std::max(window, 0.0);
+    };
+    return shows(scene, irradiance, defect);
+}
+
+bool plane_under_spot_light(Defect defect) {
+    const Transform pose = looking({0.6F, 1.5F, 0.3F}, {0.1F, 0.0F, -0.3F});
+    const candela::Scene scene =
+        lit_ground(pose, SpotLight{.intensity = 5.0F, .inner_cone = 0.3F, .outer_cone = 0.6F});
+    const glm::dvec3 place(pose.translation);
+    const glm::dvec3 axis = glm::dquat(pose.rotation) * glm::dvec3(0, 0, -1);
+    const auto irradiance = [&](glm::dvec3 p) {
+        // KHR_lights_punctual: the square of a ramp in the cosine between the cones.
+        const double cosine = glm::dot(glm::normalize(p - place), axis);
+        const double ramp = (cosine - std::cos(0.6)) / (std::cos(0.3) - std::cos(0.6));
+        return 5.0 * lambert(place, p) * std::pow(std::clamp(ramp, 0.0, 1.0), 2.0);
+    };
+    return shows(scene, irradiance, defect);
+}
+
+bool plane_under_directional_light(Defect defect) {
+    const glm::vec3 to_light(0.9F, 1.0F, 0.2F);
+    const candela::Scene scene =
+        lit_ground(looking(to_light, {0, 0, 0}), DirectionalLight{.illuminance = 2.0F});
+    const double cosine = glm::normalize(glm::dvec3(to_light)).y;
+    return shows(
+        scene, [&](glm::dvec3) { return 2.0 * cosine; }, defect);
+}
+
+bool sphere_furnace(double albedo, Defect defect) {
+    const candela::Scene scene = sphere_around_light(albedo);
+    const double direct = albedo / pi * 3.0 / 4.0;
+    // Facets' centres are nearer to the light by up to 0.03 %, and light falls on them at up to 1.3°.
+    constexpr double facets = 1e-3;
+    bool agrees = true;
+    double reflected = 0.0;
+    for (const std::uint32_t bounces : {1U, 2U, 3U}) {
+        reflected += direct * std::pow(albedo, bounces);
+        const Estimate estimate = trace_inside(scene, {16, 16}, 32, bounces, defect);
+        agrees = agrees && is_within(mean_indirect(estimate, estimate.hit), reflected, facets);
+    }
+    const Estimate all = trace_inside(scene, {16, 16}, 128, std::nullopt, defect);
+    NoisyMean mean = mean_indirect(all, all.hit);
+    mean.value += static_cast<double>(all.direct.pixels.front().r);
+    return agrees && is_within(mean, direct / (1.0 - albedo), facets);
+}
+
+bool box_furnace(double albedo, Defect defect) {
+    candela::Scene scene = furnace_box(static_cast<float>(albedo));
+    scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                         .half_height = 1.0F,
+                                         .near_plane = 0.0F,
+                                         .far_plane = 4.0F});
+    // Means over the six walls of 2 m × 2 m, each seen head-on.
+    NoisyMean walls{0.0, 0.0};
+    for (const glm::vec3 wall : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0),
+                                 glm::vec3(0, -1, 0), glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)}) {
+        const glm::vec3 up(0, wall.y == 0.0F, wall.y != 0.0F);
+        scene.world.set(scene.camera, looking({0, 0, 0}, wall, up));
+        const Estimate estimate = trace_inside(scene, {32, 32}, 16, std::nullopt, defect);
+        const NoisyMean mean = mean_indirect(estimate, estimate.hit);
+        const double direct = candela::mean(candela::Picture{{32, 32}, estimate.direct.pixels});
+        walls.value += (mean.value + direct) / 6.0;
+        walls.error = std::hypot(walls.error, mean.error / 6.0);
+    }
+    // The light of 1 cd sends out 4π lm, over 24 m². Sums over pixels integrate its irradiance to a
+    // thousandth.
+    const double arriving = 4.0 * pi / 24.0 / (1.0 - albedo);
+    return is_within(walls, albedo / pi * arriving, 1e-3);
+}
+
+bool parallel_discs(Defect defect) {
+    const candela::Scene scene = two_discs();
+    const sandbox::Picture expected = expected_disc(scene, disc_pixels);
+    const Estimate estimate = trace_discs(scene, defect);
+    const double ratio = noise_ratio(estimate, expected, estimate.hit);
+    MESSAGE("squared error of the disc: ", ratio, " times its noise");
+    // 12,900 pixels: the ratio of two sums of squares strays by √(4 / 12900) = 2 %.
+    const bool point_by_point = ratio < 1.1;
+    // 128 × 128 pixels sample the disc to some 1e-4.
+    return point_by_point &&
+           is_within(mean_indirect(estimate, estimate.hit), upper_radiance(disc_to_disc()), 5e-4);
+}
+
+bool noise_of_discs() {
+    const candela::Scene scene = two_discs();
+    const Estimate estimate = trace_discs(scene, Defect::none);
+    const double ratio = noise_ratio(estimate, expected_disc(scene, disc_pixels), estimate.hit);
+    return std::abs(ratio - 1.0) < 0.1;
+}
+
+}  // namespace candela::reference

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/scene/components.hpp"
+
+namespace candela::reference {
+
+/// An image decoded to linear light.
+class Texture {
+ public:
+    explicit Texture(const Image& image);
+    /// Between the centres of texels linear; `uv` has its origin at the image's top left. Not minified: a
+    /// texture finer than the pixels is sampled at their centres, as all else is.
+    [[nodiscard]] glm::vec4 at(glm::vec2 uv) const;
+
+ private:
+    [[nodiscard]] glm::vec4 texel(int x, int y) const;
+
+    glm::ivec2 size_;
+    Wrap wrap_u_;
+    Wrap wrap_v_;
+    std::vector<glm::vec4> texels_;
+};
+
+/// What a surface is made of.
+struct SurfaceMaterial {
+    glm::vec4 base_colour;
+    std::shared_ptr<const Texture> texture;  ///< null: none
+    bool double_sided;
+    AlphaMode alpha_mode;
+    float alpha_cutoff;
+
+    /// Linear, with alpha.
+    [[nodiscard]] glm::vec4 colour(glm::vec2 uv) const {
+        return texture ? base_colour * texture->at(uv) : base_colour;
+    }
+    [[nodiscard]] bool is_hole(glm::vec2 uv) const {
+        return alpha_mode == AlphaMode::mask && colour(uv).a < alpha_cutoff;
+    }
+};
+
+/// The materials of a scene; every image is decoded once.
+class MaterialList {
+ public:
+    /// Place of the material in the list, added if it is new.
+    [[nodiscard]] std::uint32_t index_of(const std::shared_ptr<const Material>& material);
+    [[nodiscard]] std::vector<SurfaceMaterial> take() { return std::move(materials_); }
+
+ private:
+    [[nodiscard]] std::shared_ptr<const Texture> texture_of(const Material& material);
+
+    std::vector<SurfaceMaterial> materials_;
+    std::unordered_map<const Material*, std::uint32_t> index_;
+    std::unordered_map<const Image*, std::shared_ptr<const Texture>> textures_;
+};
+
+}  // namespace candela::reference

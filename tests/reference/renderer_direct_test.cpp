@@ -1,0 +1,108 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/reference/pictures.hpp"
+#include "tests/renderer/path_fixture.hpp"
+#include "tests/study/measures.hpp"
+
+using namespace candela;
+
+namespace {
+
+// A pixel is the mean of so many samples along each side. At a shadow's edge one sample is all or nothing, in
+// either picture, and in a picture that is mostly black one pixel on the wrong side outweighs all others.
+constexpr int samples_across = 4;
+// An even width and an odd height: the creases of rooms run along the diagonals of their pictures and would
+// else meet pixels' centres, where it is up to rounding which of two walls is seen.
+constexpr glm::uvec2 sampled_size{640, 479};
+
+sandbox::Picture shrunk(const sandbox::Picture& picture) {
+    sandbox::Picture small{picture.size / samples_across, {}};
+    small.pixels.assign(static_cast<std::size_t>(small.size.x) * static_cast<std::size_t>(small.size.y),
+                        glm::vec3(0.0F));
+    for (int y = 0; y < small.size.y * samples_across; ++y) {
+        for (int x = 0; x < small.size.x * samples_across; ++x) {
+            const glm::vec3 sample = picture.pixels[static_cast<std::size_t>(y * picture.size.x + x)];
+            small.pixels[static_cast<std::size_t>(y / samples_across * small.size.x + x / samples_across)] +=
+                sample / static_cast<float>(samples_across * samples_across);
+        }
+    }
+    return small;
+}
+
+/// relMSE of the renderer's direct light.
+struct DirectErrors {
+    double samples;  ///< sample by sample, away from edges
+    double pixels;   ///< of pixels, everywhere
+};
+
+class DirectLight : public PathFixture {
+ protected:
+    DirectErrors errors(const Scene& scene, const reference::Estimate& truth, std::uint32_t resolution) {
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::direct;
+        configuration.shadows = {
+            .cube_resolution = resolution, .map_resolution = resolution, .budget_mib = 1024};
+        configure(configuration);
+        renderer.invalidate();
+        const sandbox::Picture picture = reference::flipped(render(scene, sampled_size));
+        CHECK(renderer.report().lights.without_shadow == 0);
+        const std::vector<std::uint8_t> away = reference::without(truth.hit, truth.edge);
+        return {study::measure(picture, truth.direct, away).rel_mse,
+                study::measure(shrunk(picture), shrunk(truth.direct)).rel_mse};
+    }
+
+    /// The bounds that are asked for hold at the last of the resolutions, and the error falls on the way
+    /// there, unless nothing but rounding is left of it.
+    void check_scene(const Scene& scene, const std::vector<std::uint32_t>& resolutions) {
+        const reference::Estimate truth = trace(reference::Scene(scene.world), scene.camera,
+                                                {.size = sampled_size, .samples = 2, .bounces = 0});
+        DirectErrors found{};
+        double last = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t resolution : resolutions) {
+            CAPTURE(resolution);
+            found = errors(scene, truth, resolution);
+            MESSAGE("relMSE of samples ", found.samples, ", of pixels ", found.pixels);
+            CHECK((found.pixels < last || found.pixels < rounding));
+            last = found.pixels;
+        }
+        CHECK(found.samples <= 1e-4);
+        CHECK(found.pixels <= 0.01);
+    }
+
+    /// Albedos are half floats, good to 2⁻¹¹, whose square this is.
+    static constexpr double rounding = 2.4e-7;
+};
+
+}  // namespace
+
+TEST_SUITE("reference: the renderer's direct light") {
+    TEST_CASE_FIXTURE(DirectLight, "boxes and rooms") {
+        for (const std::string name : {"cornell", "corner", "two-rooms", "furnace"}) {
+            CAPTURE(name);
+            check_scene(shipped_scene(name), {256, 512, 1024});
+        }
+    }
+
+    TEST_CASE_FIXTURE(DirectLight, "blended and masked surfaces") {
+        check_scene(shipped_scene("glass"), {128, 256, 512});
+    }
+
+    TEST_CASE_FIXTURE(DirectLight, "many lights in a hall") {
+        check_scene(shipped_scene("hall-256"), {128, 256});
+    }
+
+    TEST_CASE_FIXTURE(DirectLight, "thin fins") {
+        Scene scene = shipped_scene("fins");
+        std::vector<Entity> lights;
+        for (auto [entity, light] : scene.world.view<PointLight>()) lights.push_back(entity);
+        // Every eighth of the 512: the shadow maps of all would take longer than all other tests.
+        for (std::size_t i = 0; i < lights.size(); ++i) {
+            if (i % 8 != 0) scene.world.destroy(lights[i]);
+        }
+        check_scene(scene, {128, 256});
+    }
+}

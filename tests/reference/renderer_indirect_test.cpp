@@ -1,0 +1,105 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "tests/reference/pictures.hpp"
+#include "tests/study/measures.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{32, 32};
+constexpr std::array<std::uint32_t, 4> vpl_counts{64, 256, 1024, 4096};
+constexpr std::uint32_t seeds = 8;
+
+/// Two squares of 2 m × 2 m that face each other, 1 m apart, and a light between them. What a VPL shines on
+/// is at least 1 m away: its own plate lies in its plane.
+Scene facing_plates() {
+    Scene scene;
+    add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse({0.8F, 0.6F, 0.4F}))});
+    const glm::quat upside_down = glm::angleAxis(3.14159265F, glm::vec3(1, 0, 0));
+    add(scene.world, Transform{.translation = {0, 1, 0}, .rotation = upside_down},
+        MeshInstance{square(1.0F, diffuse({0.5F, 0.6F, 0.7F}))});
+    scene.light = add(scene.world, at({0.3F, 0.6F, -0.2F}), PointLight{});
+    scene.camera =
+        add(scene.world, looking({0, 0.9F, 0}, {0, 0, 0}, {0, 0, -1}), Camera{.vertical_fov = 1.4F});
+    return scene;
+}
+
+/// A sphere of radius 2 m around its light; the camera stands off the centre. Seen from the surface, every
+/// other part of it is lit through the same geometry term, 1 / (4 R²), however near it is.
+Scene furnace_sphere() {
+    Scene scene;
+    add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 5, diffuse(glm::vec3(0.6F)))});
+    scene.light = add(scene.world, Transform{}, PointLight{.intensity = 3.0F});
+    scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+    return scene;
+}
+
+/// Slope of the line through the logarithms, by least squares.
+template <std::size_t N>
+double log_slope(const std::array<std::uint32_t, N>& x, const std::array<double, N>& y) {
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+        const double u = std::log(x[i]);
+        const double v = std::log(y[i]);
+        sx += u;
+        sy += v;
+        sxx += u * u;
+        sxy += u * v;
+    }
+    return (N * sxy - sx * sy) / (N * sxx - sx * sx);
+}
+
+class IndirectLight : public RenderFixture {
+ protected:
+    double rel_mse(const Scene& scene, const reference::Estimate& truth, const VplSettings& vpls,
+                   float bound) {
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::indirect;
+        configuration.vpls = vpls;
+        configuration.geometry_bound = bound;
+        configure(configuration);
+        return study::measure(reference::flipped(render(scene, size)), truth.indirect, truth.hit).rel_mse;
+    }
+
+    /// The relMSE, averaged over seeds, falls at least as 1 / N^0.9, whether VPLs are points or stand for
+    /// discs that shrink with their number. Both sides make the same number of bounces.
+    void check_convergence(const Scene& scene, std::uint32_t bounces, std::uint32_t samples) {
+        CAPTURE(bounces);
+        const reference::Estimate truth = trace(reference::Scene(scene.world), scene.camera,
+                                                {.size = size, .samples = samples, .bounces = bounces});
+        const double noise = study::measure(truth.halves[0], truth.halves[1], truth.hit).rel_mse / 4.0;
+        renderer.invalidate();
+        for (const float bound : {std::numeric_limits<float>::infinity(), 1.0F}) {
+            CAPTURE(bound);
+            std::array<double, vpl_counts.size()> errors{};
+            for (std::size_t i = 0; i < errors.size(); ++i) {
+                for (std::uint32_t seed = 0; seed < seeds; ++seed)
+                    errors[i] += rel_mse(scene, truth, {vpl_counts[i], bounces, seed}, bound) / seeds;
+                MESSAGE(vpl_counts[i], " VPLs: relMSE ", errors[i], ", of which the reference's noise ",
+                        noise);
+            }
+            // The reference's own noise adds to each, which can only make the slope less steep.
+            CHECK(noise < 0.5 * errors.back());
+            CHECK(log_slope(vpl_counts, errors) <= -0.9);
+            MESSAGE("slope ", log_slope(vpl_counts, errors));
+        }
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("reference: the renderer's indirect light") {
+    TEST_CASE_FIXTURE(IndirectLight, "between two facing plates it converges to the reference") {
+        check_convergence(facing_plates(), 1, 4096);
+        check_convergence(facing_plates(), 2, 4096);
+    }
+
+    TEST_CASE_FIXTURE(IndirectLight, "in a sphere lit from its centre it converges to the reference") {
+        check_convergence(furnace_sphere(), 1, 512);
+    }
+}

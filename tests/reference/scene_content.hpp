@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/scene/components.hpp"
+#include "tests/reference/emission.hpp"
+#include "tests/reference/geometry.hpp"
+#include "tests/reference/lights.hpp"
+
+namespace candela::reference {
+
+struct PlacedCamera {
+    Entity entity;
+    Camera camera;
+    glm::mat4 to_world;
+};
+
+/// What a Scene holds.
+struct SceneContent {
+    explicit SceneContent(const World& world);
+
+    Geometry geometry;
+    std::vector<Light> lights;
+    Emission emission;
+    std::vector<PlacedCamera> cameras;
+};
+
+}  // namespace candela::reference
