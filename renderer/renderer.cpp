@@ -59,6 +59,20 @@ glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
     return glm::sqrt(squares * n / (n - 1.0));
 }
 
+/// A path traces a ray for each of its hits, and one more where it left the scene. What was hit has a normal.
+std::uint32_t count_rays(const std::vector<gpu::Path>& paths, const std::vector<gpu::Vpl>& vpls) {
+    std::uint32_t rays = 0;
+    for (const gpu::Path& path : paths) {
+        const auto first = vpls.begin() + path.first_vpl;
+        const auto hits =
+            static_cast<std::uint32_t>(std::count_if(first, first + path.vpl_count, [](const gpu::Vpl& vpl) {
+                return vpl.normal != glm::vec3(0.0F);
+            }));
+        rays += std::min(hits + 1, path.vpl_count);
+    }
+    return rays;
+}
+
 EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
     EnergyAccount total;
     std::vector<glm::dvec3> roulette;
@@ -192,6 +206,7 @@ VplReport Renderer::report_vpls(const Vpls& vpls) const {
     return {.requested = configuration_.vpls.count,
             .alive = static_cast<std::uint32_t>(alive),
             .paths = static_cast<std::uint32_t>(plan.paths.size()),
+            .rays = count_rays(plan.paths, placed),
             .flux = sum_up(accounts)};
 }
 

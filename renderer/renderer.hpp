@@ -53,6 +53,7 @@ struct VplReport {
     std::uint32_t requested = 0;
     std::uint32_t alive = 0;
     std::uint32_t paths = 0;
+    std::uint32_t rays = 0;  ///< segments of the paths, those that hit nothing included
     EnergyAccount flux;
 };
 

@@ -14,7 +14,8 @@ namespace candela {
 namespace {
 
 constexpr std::uint32_t cube_faces = 6;
-constexpr float slope_offset = 1.0F;  // texels: shaders/shadow.glsl counts on it
+constexpr std::uint32_t most_layers = 2048;  // of an array texture, on every driver (OpenGL 4.5, table 23.53)
+constexpr float slope_offset = 1.0F;         // texels: shaders/shadow.glsl counts on it
 constexpr std::uint64_t bytes_per_depth = 4;
 // Beyond this half angle a flat map wastes most of its texels on the rim.
 constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
@@ -186,7 +187,8 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
         const bool cube = needs_cube(entry.light);
         const std::uint64_t cost =
             cube ? bytes(settings.cube_resolution, cube_faces) : bytes(settings.map_resolution, 1);
-        if (cost > budget) {
+        const bool no_layer = cube ? (plan.cubes + 1) * cube_faces > most_layers : plan.maps == most_layers;
+        if (cost > budget || no_layer) {
             ++plan.lights_without;
             continue;
         }

@@ -68,6 +68,7 @@ TEST_SUITE("energy") {
                 CHECK(relative_error(flux.roulette + flux.emitted, flux.emitted) < 1e-4);
                 const double left = std::pow(static_cast<double>(albedo), bounces);
                 CHECK(relative_error(flux.truncated, left * flux.emitted) < 1e-3);
+                CHECK(vpls.rays == vpls.alive);  // every ray meets a wall
             }
         }
     }
@@ -77,7 +78,10 @@ TEST_SUITE("energy") {
         Scene scene = ground();
         scene.world.set(scene.light, at({0, 0.1F, 0}));
         scene.world.set(scene.light, PointLight{.intensity = 2.0F});
-        const EnergyAccount flux = trace(scene, {.count = 4000, .bounces = 1}).flux;
+        const VplReport vpls = trace(scene, {.count = 4000, .bounces = 1});
+        const EnergyAccount& flux = vpls.flux;
+        CHECK(vpls.rays == 4000);
+        CHECK(vpls.alive < 2000);
         CHECK(relative_error(flux.emitted, glm::dvec3(8.0 * pi)) < 1e-4);
         CHECK(relative_error(accounted(flux), flux.emitted) < 1e-3);
         // Solid angle of a square of half width a at height h: 4 asin(a² / (a² + h²)).

@@ -219,4 +219,14 @@ TEST_SUITE("shadow maps") {
         shadows(true, 128);
         CHECK(picture(occluded_) != with);
     }
+
+    TEST_CASE_FIXTURE(ShadowMapTests, "lights beyond the layers of a texture go without a shadow") {
+        Scene scene = ground();
+        for (int i = 0; i < 400; ++i) add(scene.world, at({0, 1, 0}), PointLight{.intensity = 0.1F});
+        shadows(true, 16);
+        static_cast<void>(picture(scene));
+        // 2,048 layers, six for each cube.
+        CHECK(renderer.report().lights.with_shadow == 341);
+        CHECK(renderer.report().lights.without_shadow == 59);
+    }
 }
