@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cerrno>
 #include <cstddef>
 #include <cstdlib>
@@ -73,6 +74,63 @@ std::array<std::vector<float>, 3> planes_bgr(const Picture& picture) {
     return planes;
 }
 
+void write_float_map(const fs::path& path, std::string_view kind, glm::ivec2 size,
+                     std::span<const std::byte> rows) {
+    std::string file = fmt::format("{}\n{} {}\n-1.0\n", kind, size.x, size.y);
+    const std::size_t row_length = rows.size() / static_cast<std::size_t>(size.y);
+    for (std::size_t end = rows.size(); end > 0; end -= row_length) {
+        const auto row = rows.subspan(end - row_length, row_length);
+        file.append(reinterpret_cast<const char*>(row.data()), row.size());
+    }
+    write_file(path, std::as_bytes(std::span(file)));
+}
+
+/// The bytes in reverse order.
+std::uint32_t swapped(std::uint32_t bits) {
+    return bits << 24 | (bits & 0xff00U) << 8 | (bits >> 8 & 0xff00U) | bits >> 24;
+}
+
+struct FloatMapHeader {
+    std::size_t channels = 0;
+    glm::ivec2 size{0};
+    bool big_endian = false;
+    std::size_t length = 0;  ///< bytes up to the pixels
+};
+
+FloatMapHeader read_float_map_header(const fs::path& path, const std::string& file) {
+    std::istringstream stream(file);
+    std::string kind;
+    FloatMapHeader header;
+    float scale = 0.0F;
+    stream >> kind >> header.size.x >> header.size.y >> scale;
+    // One white-space character, then the pixels.
+    const bool ends = stream && std::isspace(stream.get()) != 0;
+    if (!ends || (kind != "PF" && kind != "Pf") || header.size.x <= 0 || header.size.y <= 0 ||
+        scale == 0.0F) {
+        fail(path, "is no PFM picture");
+    }
+    header.channels = kind == "PF" ? 3 : 1;
+    header.big_endian = scale > 0.0F;
+    header.length = static_cast<std::size_t>(stream.tellg());
+    return header;
+}
+
+/// The floats of a PFM in the file's order.
+std::vector<float> floats_of(const fs::path& path, const std::string& file, const FloatMapHeader& header) {
+    const std::size_t length = file.size() - header.length;
+    const std::size_t pixel_length = header.channels * sizeof(float);
+    if (length % pixel_length != 0 || length / pixel_length != pixel_count(header.size)) {
+        fail(path, fmt::format("does not hold the {}x{} pixels that its header announces", header.size.x,
+                               header.size.y));
+    }
+    std::vector<std::uint32_t> bits(length / sizeof(float));
+    std::memcpy(bits.data(), file.data() + header.length, length);
+    if (header.big_endian) std::transform(bits.begin(), bits.end(), bits.begin(), swapped);
+    std::vector<float> floats(bits.size());
+    std::memcpy(floats.data(), bits.data(), length);
+    return floats;
+}
+
 }  // namespace
 
 void write_png(const fs::path& path, glm::ivec2 size, std::span<const std::uint8_t> rgb) {
@@ -124,13 +182,12 @@ void write_exr(const fs::path& path, const Picture& picture) {
 
 void write_pfm(const fs::path& path, const Picture& picture) {
     require_size(path, picture.size, picture.pixels.size());
-    std::string file = fmt::format("PF\n{} {}\n-1.0\n", picture.size.x, picture.size.y);
-    const auto row_length = static_cast<std::size_t>(picture.size.x);
-    for (std::size_t row = picture.pixels.size(); row > 0; row -= row_length) {
-        const auto* floats = reinterpret_cast<const char*>(&picture.pixels[row - row_length]);
-        file.append(floats, row_length * sizeof(glm::vec3));
-    }
-    write_file(path, std::as_bytes(std::span(file)));
+    write_float_map(path, "PF", picture.size, std::as_bytes(std::span(picture.pixels)));
+}
+
+void write_grey_pfm(const fs::path& path, glm::ivec2 size, std::span<const float> values) {
+    require_size(path, size, values.size());
+    write_float_map(path, "Pf", size, std::as_bytes(values));
 }
 
 Picture read_exr(const fs::path& path) {
@@ -153,28 +210,16 @@ Picture read_exr(const fs::path& path) {
 
 Picture read_pfm(const fs::path& path) {
     const std::string file = read_bytes(path);
-    std::istringstream header(file);
-    std::string magic;
-    Picture picture;
-    float scale = 0.0F;
-    header >> magic >> picture.size.x >> picture.size.y >> scale;
-    if (!header || magic != "PF" || picture.size.x <= 0 || picture.size.y <= 0)
-        fail(path, "is no PFM picture in colour");
-    if (scale >= 0.0F) fail(path, "is a big-endian PFM; only little-endian ones are read");
-
-    // One white-space character, then the pixels to the end.
-    const auto start = static_cast<std::size_t>(header.tellg()) + 1;
-    const std::size_t length = file.size() - std::min(start, file.size());
-    if (length % sizeof(glm::vec3) != 0 || length / sizeof(glm::vec3) != pixel_count(picture.size)) {
-        fail(path, fmt::format("does not hold the {}x{} pixels that its header announces", picture.size.x,
-                               picture.size.y));
-    }
-    picture.pixels.resize(pixel_count(picture.size));
-    const auto row_length = static_cast<std::size_t>(picture.size.x);
-    const char* source = file.data() + start;
-    for (std::size_t row = picture.pixels.size(); row > 0; row -= row_length) {
-        std::memcpy(&picture.pixels[row - row_length], source, row_length * sizeof(glm::vec3));
-        source += row_length * sizeof(glm::vec3);
+    const FloatMapHeader header = read_float_map_header(path, file);
+    const std::vector<float> floats = floats_of(path, file, header);
+    Picture picture{header.size, {}};
+    picture.pixels.reserve(pixel_count(header.size));
+    const std::size_t row_length = static_cast<std::size_t>(header.size.x) * header.channels;
+    for (std::size_t row = floats.size(); row > 0; row -= row_length) {
+        for (std::size_t i = row - row_length; i < row; i += header.channels) {
+            const std::size_t last = header.channels - 1;  // 0 in grey, where all three are one
+            picture.pixels.emplace_back(floats[i], floats[i + last / 2], floats[i + last]);
+        }
     }
     return picture;
 }

@@ -16,7 +16,8 @@ struct Picture {
     std::vector<glm::vec3> pixels;
 };
 
-// Writers leave a whole file or none; all throw std::runtime_error that names the file and the fault.
+// Readers and writers keep every bit of a float: negative numbers, denormals, infinities and NaN pass as they
+// are. Writers leave a whole file or none; all throw std::runtime_error that names the file and the fault.
 
 /// `rgb` is tone-mapped and sRGB-encoded: three bytes a pixel, row 0 at the top, no padding.
 void write_png(const std::filesystem::path& path, glm::ivec2 size, std::span<const std::uint8_t> rgb);
@@ -26,11 +27,14 @@ void write_exr(const std::filesystem::path& path, const Picture& picture);
 
 /// Portable float map: "PF", little-endian, rows from the bottom up.
 void write_pfm(const std::filesystem::path& path, const Picture& picture);
+/// The same in grey ("Pf"): one value a pixel, row 0 at the top.
+void write_grey_pfm(const std::filesystem::path& path, glm::ivec2 size, std::span<const float> values);
 
 /// Channels R, G and B of a scan-line or tiled OpenEXR file, of half or full floats.
 [[nodiscard]] Picture read_exr(const std::filesystem::path& path);
 
-/// Portable float map in colour ("PF") and little-endian.
+/// Portable float map in colour ("PF") or grey ("Pf", then all channels hold its value), little- or
+/// big-endian. The header's scale tells no more than the order of bytes.
 [[nodiscard]] Picture read_pfm(const std::filesystem::path& path);
 
 }  // namespace candela::sandbox

@@ -68,8 +68,8 @@ bool names(const std::string& fault, const fs::path& path) {
 TEST_SUITE("picture") {
     TEST_CASE("EXR and PFM keep every bit at every shape") {
         const TemporaryFolder folder;
-        for (const glm::ivec2 size :
-             {glm::ivec2(1, 1), glm::ivec2(7, 3), glm::ivec2(3, 70), glm::ivec2(4096, 1)}) {
+        for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(7, 3), glm::ivec2(3, 70),
+                                      glm::ivec2(4096, 1), glm::ivec2(1, 4097)}) {
             CAPTURE(size.x);
             const Picture picture = gradient(size);
             write_exr(folder / "a.exr", picture);
@@ -103,6 +103,49 @@ TEST_SUITE("picture") {
         CHECK(file.starts_with(header));
         CHECK(file.substr(header.size(), 4) == std::string("\x00\x00\x80\x40", 4));
         CHECK(file.substr(header.size() + 12, 4) == std::string("\x00\x00\x80\x3f", 4));
+    }
+
+    TEST_CASE("a PFM may be big-endian, which its positive scale says") {
+        const TemporaryFolder folder;
+        // 1 is 0x3f800000, -2 is 0xc0000000, the least denormal is 0x00000001.
+        write(folder / "a.pfm",
+              std::string("PF\n1 1\n1.0\n") + std::string("\x3f\x80\0\0\xc0\0\0\0\0\0\0\1", 12));
+        const Picture expected{{1, 1}, {{1.0F, -2.0F, std::numeric_limits<float>::denorm_min()}}};
+        CHECK(same_bits(read_pfm(folder / "a.pfm"), expected));
+    }
+
+    TEST_CASE("a PFM may be grey, then all channels hold its value") {
+        const TemporaryFolder folder;
+        const std::vector<float> values{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, -0.0F};
+        write_grey_pfm(folder / "a.pfm", {2, 3}, values);
+        // Rows go from the bottom up: -0 is 0x80000000 and ends the first one.
+        const std::string header = "Pf\n2 3\n-1.0\n";
+        const std::string file = read(folder / "a.pfm");
+        REQUIRE(file.size() == header.size() + 24);
+        CHECK(file.starts_with(header));
+        CHECK(file.substr(header.size() + 4, 4) == std::string("\0\0\0\x80", 4));
+        Picture expected{{2, 3}, {}};
+        for (const float value : values) expected.pixels.emplace_back(value);
+        CHECK(same_bits(read_pfm(folder / "a.pfm"), expected));
+        CHECK(names(fault_of([&] { write_grey_pfm(folder / "b.pfm", {2, 2}, values); }), folder / "b.pfm"));
+    }
+
+    TEST_CASE("a file that was cut short is refused at every length") {
+        const TemporaryFolder folder;
+        write_pfm(folder / "a.pfm", gradient({5, 3}));
+        write_exr(folder / "a.exr", gradient({5, 3}));
+        const std::string pfm = read(folder / "a.pfm");
+        const std::string exr = read(folder / "a.exr");
+        const fs::path cut = folder / "cut";
+        for (std::size_t length = 0; length < pfm.size(); ++length) {
+            write(cut, pfm.substr(0, length));
+            CHECK(names(fault_of([&] { (void)read_pfm(cut); }), cut));
+        }
+        for (std::size_t length = 0; length < exr.size(); ++length) {
+            CAPTURE(length);
+            write(cut, exr.substr(0, length));
+            CHECK(names(fault_of([&] { (void)read_exr(cut); }), cut));
+        }
     }
 
     TEST_CASE("a PNG holds the bytes that were given, from the top") {
@@ -167,10 +210,11 @@ TEST_SUITE("picture") {
         const fs::path path = folder / "a.pfm";
         CHECK(names(fault_of([&] { (void)read_pfm(path); }), path));
         for (const char* text :
-             {"", "PF", "Pf\n1 1\n-1.0\n0000", "PF\n0 0\n-1.0\n", "PF\n-1 -1\n-1.0\n000000000000",
-              "PF\n1 1\n1.0\n000000000000", "PF\n1 1\n-1.0\n00000000000", "PF\n1 1\n-1.0\n0000000000000",
-              "PF\n2147483647 2147483647\n-1.0\n000000000000", "PF\n1 1\n-1.0",
-              "PF\n99999999999 1\n-1.0\n"}) {
+             {"", "PF", "Pg\n1 1\n-1.0\n000000000000", "Pf\n1 1\n-1.0\n000000000000", "PF\n0 0\n-1.0\n",
+              "PF\n-1 -1\n-1.0\n000000000000", "PF\n1 1\n0.0\n000000000000", "PF\n1 1\nnan\n000000000000",
+              "PF\n1 1\n-1.0\n00000000000", "PF\n1 1\n-1.0\n0000000000000",
+              "PF\n2147483647 2147483647\n-1.0\n000000000000", "PF\n1 1\n-1.0", "PF\n1 1\n-1.00",
+              "PF\n1 1\n-1.0x000000000000", "PF\n99999999999 1\n-1.0\n"}) {
             CAPTURE(text);
             write(path, text);
             CHECK(names(fault_of([&] { (void)read_pfm(path); }), path));
