@@ -1,22 +1,21 @@
+#include "tests/study/bench.hpp"
+
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
 
-#include "engine/scene/components.hpp"
-#include "tests/study/study.hpp"
+#include "sandbox/scene.hpp"
 
 namespace candela::study {
-namespace {
 
 Entity first_camera(const World& world) {
-    for (const auto& [entity, camera] : world.view<Camera>()) {
-        return entity;
+    const std::vector<Entity> cameras = sandbox::cameras(world);
+    if (cameras.empty()) {
+        throw std::invalid_argument("the scene has no camera");
     }
-    throw std::invalid_argument("the scene has no camera");
+    return cameras.front();
 }
-
-}  // namespace
 
 Bench::Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size)
     : world_(&world),
@@ -43,10 +42,45 @@ double Bench::frame(glm::vec2 jitter) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+sandbox::Picture Bench::picture() const {
+    const glm::uvec2 size = target_.desc().size;
+    const std::vector<float> rgba = target_.read_floats();
+    sandbox::Picture picture{glm::ivec2(size), {}};
+    picture.pixels.reserve(rgba.size() / 4);
+    // The GL's row 0 is at the bottom.
+    for (std::size_t row = size.y; row-- > 0;) {
+        for (std::size_t i = 4 * row * size.x; i < 4 * (row + 1) * size.x; i += 4) {
+            picture.pixels.emplace_back(rgba[i], rgba[i + 1], rgba[i + 2]);
+        }
+    }
+    return picture;
+}
+
+std::size_t Bench::covered_pixels() const {
+    const std::vector<float> rgba = target_.read_floats();
+    std::size_t count = 0;
+    for (std::size_t alpha = 3; alpha < rgba.size(); alpha += 4) {
+        count += rgba[alpha] > 0.0F ? 1 : 0;
+    }
+    return count;
+}
+
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
+}
+
+Errors mean(std::span<const Errors> errors) {
+    const auto count = static_cast<double>(errors.size());
+    Errors mean;
+    for (const Errors& each : errors) {
+        mean.rel_mse += each.rel_mse / count;
+        mean.rmse += each.rmse / count;
+        mean.bias += each.bias / count;
+        mean.spikes += each.spikes / count;
+    }
+    return mean;
 }
 
 }  // namespace candela::study

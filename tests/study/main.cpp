@@ -1,21 +1,20 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <string_view>
+#include <iterator>
+#include <memory>
+#include <stdexcept>
+#include <string>
 
+#include "tests/study/compare.hpp"
 #include "tests/study/study.hpp"
 
 namespace {
 
 using namespace candela;
 using namespace candela::study;
-
-struct Choice {
-    std::filesystem::path scene;
-    PathStudy path_study;
-    std::vector<std::string> path_names;
-};
 
 void add_scene(CLI::App& part, std::filesystem::path& scene) {
     part.add_option("SCENE", scene, "a .gltf or .glb file with a camera")
@@ -32,64 +31,149 @@ ShadingPath path_named(const std::string& name) {
     throw std::invalid_argument(fmt::format("--paths: '{}' is no shading path", name));
 }
 
-void add_path_flags(CLI::App& part, Choice& choice) {
-    part.add_option("--width", choice.path_study.size.x, "pixels")->check(CLI::Range(1, 16384));
-    part.add_option("--height", choice.path_study.size.y, "pixels")->check(CLI::Range(1, 16384));
-    part.add_option("--rounds", choice.path_study.rounds, "after a first one that does not count")
-        ->check(CLI::Range(1, 1000));
-    part.add_option("--vpls", choice.path_study.vpls, "0: direct light only");
-    part.add_option("--paths", choice.path_names, "in this order; default: all")->delimiter(',');
-    part.add_option("--csv", choice.path_study.csv, "append the figures to this file");
+std::vector<ShadingPath> paths_named(const std::vector<std::string>& names) {
+    std::vector<ShadingPath> named;
+    named.reserve(names.size());
+    std::transform(names.begin(), names.end(), std::back_inserter(named), path_named);
+    return named;
 }
 
-int run_paths(Choice& choice) {
-    choice.path_study.scene = choice.scene;
-    if (!choice.path_names.empty()) {
-        choice.path_study.paths.clear();
-        for (const std::string& name : choice.path_names) {
-            choice.path_study.paths.push_back(path_named(name));
-        }
+/// "640x480".
+glm::uvec2 size_named(const std::string& text) {
+    glm::uvec2 size(0);
+    int length = 0;
+    const int read = std::sscanf(text.c_str(), "%5ux%5u%n", &size.x, &size.y, &length);
+    const bool fits = size.x > 0 && size.y > 0 && size.x <= 16384 && size.y <= 16384;
+    if (read != 2 || static_cast<std::size_t>(length) != text.size() || !fits) {
+        throw std::invalid_argument(fmt::format("--size: '{}' is no size from 1x1 to 16384x16384", text));
     }
-    return paths(choice.path_study);
+    return size;
+}
+
+// Each of these adds a part, which puts its exit status into `status` when the command line asks for it.
+
+void add_graph(CLI::App& app, int& status, int count, char** arguments) {
+    app.add_subcommand("graph", "declaring, compiling and running frame graphs (Google Benchmark's flags)")
+        ->prefix_command()
+        ->callback([=, &status] { status = graph(count - 1, arguments + 1); });
+}
+
+void add_shading(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("shading", "forward against deferred, and a still frame");
+    const auto scene = std::make_shared<std::filesystem::path>();
+    add_scene(part, *scene);
+    part.callback([=, &status] { status = shading(*scene); });
+}
+
+void add_paths(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("paths", "all shading paths, and what their lists cost");
+    const auto study = std::make_shared<PathStudy>();
+    const auto names = std::make_shared<std::vector<std::string>>();
+    add_scene(part, study->scene);
+    part.add_option("--width", study->size.x, "pixels")->check(CLI::Range(1, 16384));
+    part.add_option("--height", study->size.y, "pixels")->check(CLI::Range(1, 16384));
+    part.add_option("--rounds", study->rounds, "after a first one that does not count")
+        ->check(CLI::Range(1, 1000));
+    part.add_option("--vpls", study->vpls, "0: direct light only");
+    part.add_option("--paths", *names, "in this order; default: all")->delimiter(',');
+    part.add_option("--csv", study->csv, "append the figures to this file");
+    part.callback([=, &status] {
+        if (!names->empty()) {
+            study->paths = paths_named(*names);
+        }
+        status = paths(*study);
+    });
+}
+
+void add_reference(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("reference", "trace what pictures are measured against");
+    const auto study = std::make_shared<ReferenceStudy>();
+    const auto size = std::make_shared<std::string>();
+    add_scene(part, study->scene);
+    part.add_option("--size", *size, "WxH, pixels")->required();
+    part.add_option("--samples", study->samples, "paths a pixel, even")->required();
+    part.add_option("--bounces", study->bounces, "of indirect light; default: any");
+    part.add_option("--seed", study->seed);
+    part.add_option("--out", study->out, "the folder; left alone if it holds the same already")->required();
+    part.callback([=, &status] {
+        study->size = size_named(*size);
+        status = reference(*study);
+    });
+}
+
+void add_baseline(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("baseline", "error and time of the path tracer itself");
+    const auto study = std::make_shared<BaselineStudy>();
+    add_scene(part, study->scene);
+    part.add_option("--reference", study->reference, "a folder that `reference` made")->required();
+    part.add_option("--samples", study->samples, "paths a pixel: 1,4,16")->required()->delimiter(',');
+    part.add_option("--rounds", study->rounds, "each with a seed of its own")->check(CLI::Range(1, 1000));
+    part.callback([=, &status] { status = baseline(*study); });
+}
+
+void add_measure(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("measure", "error, work, memory and time of configurations");
+    const auto study = std::make_shared<MeasureStudy>();
+    add_scene(part, study->scene);
+    part.add_option("--reference", study->reference, "a folder that `reference` made")->required();
+    part.add_option("--points", study->points, R"(a file: [{"id": "...", "config": {...}, "seeds": [0]}])")
+        ->required();
+    part.add_option("--pictures", study->pictures, "the folder that pictures and heat maps go to")
+        ->required();
+    part.add_option("--rounds", study->rounds, "of times; 0: errors only")->check(CLI::Range(0, 1000));
+    const auto context = std::make_shared<std::string>("egl");
+    part.add_option("--context", *context, "default: egl")->check(CLI::IsMember({"egl", "osmesa"}));
+    part.callback([=, &status] {
+        study->context = *context == "egl" ? ContextKind::egl : ContextKind::osmesa;
+        status = measure(*study);
+    });
+}
+
+void add_compare(CLI::App& app) {
+    CLI::App& part =
+        *app.add_subcommand("compare", "error of a picture against its reference, by every measure");
+    const auto comparison = std::make_shared<Comparison>();
+    part.add_option("PICTURE", comparison->picture, "linear radiance, .pfm or .exr")->required();
+    part.add_option("REFERENCE", comparison->reference, "the same view, as it should be")->required();
+    part.add_option("--mask", comparison->mask, ".pfm or .exr: pixels count where it is not 0");
+    CLI::Option* const heat =
+        part.add_option("--heat", comparison->heat, "write the pixels' relative errors as a .png");
+    part.add_option("--scale", comparison->scale,
+                    "the relative error that is brightest in the heat map; default: the largest")
+        ->needs(heat);
+    part.callback([=] { fmt::print("{}", compare(*comparison)); });
 }
 
 int run(int count, char** arguments) {
     CLI::App app("What Candela costs, and how far its light is from right", "candela-study");
     app.require_subcommand(1);
-    Choice choice;
-    CLI::App* const graph_part =
-        app.add_subcommand("graph",
-                           "declaring, compiling and running frame graphs (Google Benchmark's flags)")
-            ->prefix_command();
-    CLI::App* const shading_part =
-        app.add_subcommand("shading", "forward against deferred, and a still frame");
-    CLI::App* const bound_part =
-        app.add_subcommand("bound", "error and bias for bounds of the geometry term");
-    CLI::App* const paths_part = app.add_subcommand("paths", "all shading paths, and what their lists cost");
-    add_scene(*shading_part, choice.scene);
-    add_scene(*bound_part, choice.scene);
-    add_scene(*paths_part, choice.scene);
-    add_path_flags(*paths_part, choice);
-    CLI11_PARSE(app, count, arguments);
-    if (graph_part->parsed()) {
-        return graph(count - 1, arguments + 1);
+    int status = 0;
+    add_graph(app, status, count, arguments);
+    add_shading(app, status);
+    add_paths(app, status);
+    add_reference(app, status);
+    add_baseline(app, status);
+    add_measure(app, status);
+    add_compare(app);
+    try {
+        app.parse(count, arguments);
+    } catch (const CLI::Success& text) {
+        return app.exit(text);
     }
-    if (shading_part->parsed()) {
-        return shading(choice.scene);
-    }
-    if (bound_part->parsed()) {
-        return bound(choice.scene);
-    }
-    return run_paths(choice);
+    return status;
 }
 
 }  // namespace
 
+/// Exit status 2: bad input, or a fault on the way; 3: no driver.
 int main(int count, char** arguments) {
     try {
         return run(count, arguments);
+    } catch (const ContextError& error) {
+        fmt::print(stderr, "candela-study: {}\n", error.what());
+        return 3;
     } catch (const std::exception& error) {
         fmt::print(stderr, "candela-study: {}\n", error.what());
-        return 1;
+        return 2;
     }
 }

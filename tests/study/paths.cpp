@@ -6,6 +6,7 @@
 
 #include "engine/scene/gltf.hpp"
 #include "renderer/context/headless.hpp"
+#include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 
 namespace candela::study {

@@ -4,6 +4,7 @@
 
 #include "engine/scene/gltf.hpp"
 #include "renderer/context/headless.hpp"
+#include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 
 namespace candela::study {
@@ -18,15 +19,6 @@ struct Candidate {
     std::vector<double> full;   // ms, all that depends on the view
     std::vector<double> still;  // ms, nothing changed
 };
-
-/// Pixels at which there is something to shade.
-std::size_t covered(const std::vector<float>& pixels) {
-    std::size_t count = 0;
-    for (std::size_t i = 3; i < pixels.size(); i += 4) {
-        count += pixels[i] > 0.0F ? 1 : 0;
-    }
-    return count;
-}
 
 void print_passes(std::string_view title, const Renderer& renderer) {
     fmt::print("{}:", title);
@@ -68,7 +60,7 @@ int shading(const std::filesystem::path& scene) {
     }
     print_passes("still frame", candidates[1].bench.renderer());
 
-    const std::size_t pixels = covered(candidates[0].bench.pixels());
+    const std::size_t pixels = candidates[0].bench.covered_pixels();
     const VplReport vpls = candidates[0].bench.renderer().report().vpls.value();
     const double evaluations = static_cast<double>(pixels) * vpls.alive;
     fmt::print("{} x {}, {} of {} VPLs alive, {} pixels covered, medians of {} interleaved rounds\n", size.x,

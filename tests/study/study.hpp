@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
+#include <optional>
 #include <vector>
 
-#include "renderer/renderer.hpp"
+#include "renderer/configuration/configuration.hpp"
+#include "renderer/context/headless.hpp"
 
 namespace candela::study {
 
@@ -13,8 +17,6 @@ namespace candela::study {
 int graph(int count, char** arguments);
 /// Forward against deferred shading, and a frame in which nothing changed.
 int shading(const std::filesystem::path& scene);
-/// Error, bias and spikes of the indirect light for several bounds of the geometry term.
-int bound(const std::filesystem::path& scene);
 
 /// Which shading paths are timed on what.
 struct PathStudy {
@@ -29,29 +31,38 @@ struct PathStudy {
 /// Frame times of shading paths, interleaved, with the share that goes into building lists.
 int paths(const PathStudy& study);
 
-/// Renders linear radiance of one scene through its first camera.
-class Bench {
- public:
-    /// The world and the context outlive the bench; the context is current.
-    Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size);
-
-    /// Throws std::invalid_argument with the faults. Tone mapping is off whatever is asked.
-    void configure(Configuration configuration);
-    /// One frame, finished on the GPU: milliseconds of wall time. Another `jitter` than the last makes all
-    /// that depends on the view run.
-    double frame(glm::vec2 jitter);
-    /// Four floats a pixel, row 0 at the bottom.
-    [[nodiscard]] std::vector<float> pixels() const { return target_.read_floats(); }
-    [[nodiscard]] Renderer& renderer() { return renderer_; }
-
- private:
-    const World* world_;
-    Entity camera_;
-    Renderer renderer_;
-    gl::Texture target_;
-    gl::Framebuffer framebuffer_;
+/// How `reference` traces: see reference::Settings.
+struct ReferenceStudy {
+    std::filesystem::path scene;
+    glm::uvec2 size{1};  ///< pixels
+    std::uint32_t samples = 0;
+    std::optional<std::uint32_t> bounces;
+    std::uint32_t seed = 0;
+    std::filesystem::path out;  ///< the folder; left alone if it holds the same already
 };
+/// Traces what the renderer's pictures are measured against.
+int reference(const ReferenceStudy& study);
 
-[[nodiscard]] double median(std::vector<double> values);
+/// What the path tracer is asked for in the place of the renderer.
+struct BaselineStudy {
+    std::filesystem::path scene;
+    std::filesystem::path reference;  ///< the folder
+    std::vector<std::uint32_t> samples;
+    std::uint32_t rounds = 3;
+};
+/// Error and time of the path tracer itself: a line of JSON for each number of samples a pixel.
+int baseline(const BaselineStudy& study);
+
+/// Which points are measured against which reference.
+struct MeasureStudy {
+    std::filesystem::path scene;
+    std::filesystem::path reference;  ///< the folder
+    std::filesystem::path points;     ///< see read_points
+    std::filesystem::path pictures;   ///< the folder that pictures and heat maps go to
+    std::uint32_t rounds = 3;         ///< of times; 0: errors only
+    ContextKind context = ContextKind::egl;
+};
+/// Error, work, memory and times of configurations, a line of JSON as each is known.
+int measure(const MeasureStudy& study);
 
 }  // namespace candela::study

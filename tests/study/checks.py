@@ -1,0 +1,138 @@
+"""What must hold on any machine: the checks of --quick. Times are no part of it."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import analysis
+import matrix
+from analysis import Row, select
+
+Check = tuple[str, bool, str]  # what must hold, whether it does, the figures
+
+# Where light reaches everything, so that all that is left is the VPLs' noise and what bounding takes away.
+OPEN = ("plates", "sphere", "corner", "furnace")
+# The light's room shines through its wall into the dark one, tens of times as bright as what is there.
+LEAKY = ("two-rooms",)
+
+# N independent samples leave a variance of 1/N: a slope of -1. Those of VPLs and of the path tracer are spread evenly,
+# by scrambled nets, whose variance falls as N^-3 at best (Owen, "Scrambled net variance for integrals of smooth
+# functions", 1997). What is flatter tends to another integral than the reference's. For VPLs that holds where nothing
+# hides anything and no two surfaces that light each other touch.
+SLOPES = (-3.0, -0.9)
+# At 64 samples a reference of 1,024 adds a sixteenth to the error, which flattens the slope by 0.02.
+TRACER_SLOPES = (-3.0, -0.85)
+# At 1,024 VPLs the plates have a relMSE of 0.004. Even if all of that were one shift of the whole picture, four seeds
+# would leave it a standard deviation of √0.004 / 2 = 0.03.
+UNBIASED = 0.03
+# Bounding takes light away where surfaces meet: in the furnace and the corner less than this with 1,024 VPLs.
+BOUNDED_BIAS = (-0.15, 0.03)
+# One evaluator, and G-buffers that hold what it needs: what differs is rounding.
+PATHS_AGREE = 1e-3
+# Shadow maps are right away from shadows' edges; what is left of direct light is rounding, of positions above all.
+DIRECT_OFF_EDGES = 1e-4
+# Between 256 and 1,024 VPLs an error that is all leak changes by what bounding still takes away.
+SETTLED = 0.1
+# The share of the emitted flux that the account may be off by: sums of thousands of 32-bit floats.
+ENERGY = 1e-3
+
+
+def series(rows: Sequence[Row], scene: str, bound: float | str) -> list[Row]:
+    chosen = select(rows, scene=scene, path=matrix.DEFAULT_PATH, bound=bound)
+    return sorted(chosen, key=lambda row: row["vpls"])
+
+
+def figures(values: Sequence[float]) -> str:
+    return ", ".join(f"{value:.3g}" for value in values)
+
+
+def all_measured(rows: Sequence[Row]) -> Iterator[Check]:
+    for scene in names(rows):
+        failed = [f"{row['id']}: {row['failed']}" for row in rows if row["scene"] == scene and row["failed"]]
+        yield f"{scene}: every point is measured", not failed, "; ".join(failed)
+    strange = [f"{row['id']}: {name}" for row in rows for name, value in row.items() if not is_finite(value)]
+    yield "no figure is NaN or infinite", not strange, ", ".join(strange)
+
+
+def is_finite(value: object) -> bool:
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+def names(rows: Sequence[Row]) -> list[str]:
+    return list(dict.fromkeys(row["scene"] for row in rows))
+
+
+def errors_fall(rows: Sequence[Row]) -> Iterator[Check]:
+    """Bounded as by default. Where some light shines through walls, that comes on top: only the ends are compared."""
+    for scene in [name for name in names(rows) if name not in LEAKY]:
+        errors = [row["indirect_rel_mse"] for row in series(rows, scene, matrix.DEFAULT_BOUND)]
+        looked_at = errors if scene in OPEN else errors[:: max(len(errors) - 1, 1)]
+        falls = len(errors) > 1 and all(after < before for before, after in zip(looked_at, looked_at[1:]))
+        yield f"{scene}: the indirect light's error falls as VPLs rise", falls, figures(errors)
+
+
+def leaks_settle(rows: Sequence[Row]) -> Iterator[Check]:
+    for scene in [name for name in names(rows) if name in LEAKY]:
+        errors = [row["indirect_rel_mse"] for row in series(rows, scene, matrix.DEFAULT_BOUND)]
+        settled = len(errors) > 1 and abs(errors[-1] / errors[-2] - 1) <= SETTLED
+        yield f"{scene}: the error settles at what shines through the wall", settled, figures(errors)
+
+
+def direct_light_right(rows: Sequence[Row]) -> Iterator[Check]:
+    for scene in names(rows):
+        errors = [row["direct_off_edges_rel_mse"] for row in select(rows, scene=scene)]
+        holds = max(errors, default=1) <= DIRECT_OFF_EDGES
+        yield f"{scene}: direct light is right off edges", holds, figures(errors[:1])
+
+
+def energy_accounted(rows: Sequence[Row]) -> Iterator[Check]:
+    for scene in names(rows):
+        sums = [sum(row[f"{end}_share"] for end in analysis.ENDS) for row in select(rows, scene=scene)]
+        worst = max((abs(share - 1) for share in sums), default=1.0)
+        yield f"{scene}: emitted light is accounted for", worst <= ENERGY, f"off by {worst:.2g}"
+
+
+def slopes_in_band(rows: Sequence[Row]) -> Iterator[Check]:
+    for bound in (matrix.DEFAULT_BOUND, matrix.UNBOUNDED) if "plates" in names(rows) else ():
+        chosen = series(rows, "plates", bound)
+        found = analysis.slope_above(chosen, chosen[0]["reference_noise"]) if chosen else None
+        holds = found is not None and SLOPES[0] <= found <= SLOPES[1]
+        yield f"plates, bound {bound}: the slope is from {SLOPES[0]} to {SLOPES[1]}", holds, str(found)
+
+
+def tracer_slopes(tracer: Sequence[Row]) -> Iterator[Check]:
+    for scene in names(tracer):
+        chosen = [row for row in tracer if row["scene"] == scene]
+        found = analysis.slope([row["samples"] for row in chosen], [row["indirect_rel_mse"] for row in chosen])
+        least, most = TRACER_SLOPES
+        yield f"{scene}: the path tracer's slope is from {least} to {most}", least <= found <= most, figures([found])
+
+
+def biases_bounded(rows: Sequence[Row]) -> Iterator[Check]:
+    bands = {matrix.UNBOUNDED: (-UNBIASED, UNBIASED), matrix.DEFAULT_BOUND: BOUNDED_BIAS}
+    for scene in [name for name in names(rows) if name in OPEN]:
+        for bound, (least, most) in bands.items():
+            bias = [row["indirect_bias"] for row in series(rows, scene, bound)][-1:]
+            holds = bool(bias) and least <= bias[0] <= most
+            yield f"{scene}, bound {bound}: bias from {least} to {most}", holds, figures(bias)
+
+
+def paths_agree(rows: Sequence[Row]) -> Iterator[Check]:
+    for scene in names(rows):
+        chosen = select(rows, scene=scene, vpls=256, bound=matrix.DEFAULT_BOUND)
+        errors = {row["path"]: row["total_rel_mse"] for row in chosen}
+        holds = len(errors) == len(matrix.PATHS) and max(errors.values()) <= min(errors.values()) * (1 + PATHS_AGREE)
+        yield f"{scene}: all paths have one error", holds, figures(list(errors.values()))
+
+
+def run(rows: Sequence[Row], tracer: Sequence[Row]) -> int:
+    """Prints what does not hold, and how many checks passed. Returns the exit status."""
+    found: list[Check] = []
+    makers = (all_measured, errors_fall, leaks_settle, slopes_in_band, biases_bounded, paths_agree, direct_light_right)
+    for make in (*makers, energy_accounted):
+        found += make(rows)
+    found += tracer_slopes(tracer)
+    failed = [check for check in found if not check[1]]
+    for what, _, seen in failed:
+        print(f"study: FAILED {what} ({seen})")
+    print(f"study: {len(found) - len(failed)} checks passed" + (f", {len(failed)} failed" if failed else ""))
+    return 1 if failed else 0

@@ -1,0 +1,98 @@
+#include "tests/study/compare.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "sandbox/output_file.hpp"
+#include "sandbox/picture.hpp"
+#include "tests/study/flip.hpp"
+#include "tests/study/heat.hpp"
+#include "tests/study/measures.hpp"
+
+namespace candela::study {
+namespace {
+
+using sandbox::Picture;
+using Path = std::filesystem::path;
+
+[[noreturn]] void fail(const Path& path, std::string_view fault) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), fault));
+}
+
+Picture read_by_extension(const Path& path) {
+    const std::string extension = sandbox::lower_extension(path);
+    if (extension == ".pfm") return sandbox::read_pfm(path);
+    if (extension == ".exr") return sandbox::read_exr(path);
+    fail(path, "is named neither .pfm nor .exr");
+}
+
+Picture read_finite(const Path& path) {
+    Picture picture = read_by_extension(path);
+    if (const auto pixel = first_not_finite(picture)) {
+        fail(path, fmt::format("pixel ({}, {}) is not finite", pixel->x, pixel->y));
+    }
+    return picture;
+}
+
+/// Read, finite and as large as the picture it goes with.
+Picture read_matching(const Path& path, glm::ivec2 size) {
+    Picture picture = read_finite(path);
+    if (picture.size == size) return picture;
+    fail(path, fmt::format("is {}x{}, not {}x{} as the picture to compare", picture.size.x, picture.size.y,
+                           size.x, size.y));
+}
+
+/// Empty, which stands for all pixels, without a file.
+Mask read_mask(const std::optional<Path>& path, glm::ivec2 size) {
+    if (!path) return {};
+    const Picture picture = read_matching(*path, size);
+    Mask mask;
+    mask.reserve(picture.pixels.size());
+    for (const glm::vec3& pixel : picture.pixels) mask.push_back(pixel != glm::vec3(0.0F) ? 1 : 0);
+    if (std::none_of(mask.begin(), mask.end(), [](std::uint8_t hit) { return hit != 0; })) {
+        fail(*path, "masks every pixel");
+    }
+    return mask;
+}
+
+void check_flags(const Comparison& comparison) {
+    if (comparison.scale && !(*comparison.scale > 0.0 && std::isfinite(*comparison.scale))) {
+        throw std::runtime_error(fmt::format("--scale: {} is no relative error above 0", *comparison.scale));
+    }
+    if (comparison.heat && sandbox::lower_extension(*comparison.heat) != ".png") {
+        fail(*comparison.heat, "a heat map is a PNG picture, and is to be named .png");
+    }
+}
+
+}  // namespace
+
+std::string compare(const Comparison& comparison) {
+    check_flags(comparison);
+    const Picture picture = read_finite(comparison.picture);
+    const Picture reference = read_matching(comparison.reference, picture.size);
+    const Mask hit = read_mask(comparison.mask, picture.size);
+
+    const Errors errors = measure(picture, reference, hit);
+    std::string text;
+    const auto add = [&](std::string_view name, double value) {
+        text += fmt::format("{:<8} {:.6g}\n", name, value);
+    };
+    add("relMSE", errors.rel_mse);
+    add("RMSE", errors.rmse);
+    add("bias", errors.bias);
+    add("spikes", errors.spikes);
+    add("FLIP", flip(picture, reference, hit).mean);
+    if (!comparison.heat) return text;
+    const HeatMap heat = heat_map(picture, reference, hit, comparison.scale);
+    sandbox::write_png(*comparison.heat, heat.size, heat.rgb);
+    add("heat", heat.scale);
+    return text;
+}
+
+}  // namespace candela::study

@@ -1,0 +1,42 @@
+"""The journal of a study: JSON lines in the order they were measured. It lets a study that was interrupted go on."""
+
+import json
+import pathlib
+from typing import Any
+
+Line = dict[str, Any]
+Record = dict[str, Any]  # "errors": a line, or "failed": a line; "times": lines
+
+
+def append(path: pathlib.Path, line: Line) -> None:
+    """On a line of its own even after one that was cut short."""
+    with path.open("a", encoding="utf-8") as file:
+        file.write("\n" + json.dumps(line))
+
+
+def read(path: pathlib.Path) -> list[Line]:
+    """All lines; one that was cut short when the study was interrupted is left out."""
+    lines = []
+    for text in path.read_text(encoding="utf-8").splitlines() if path.exists() else []:
+        try:
+            lines.append(json.loads(text))
+        except json.JSONDecodeError:
+            continue
+    return lines
+
+
+def fold(lines: list[Line]) -> dict[str, Record]:
+    """By key, what was last measured. Errors begin a point anew: times from before them belong to an earlier run."""
+    records: dict[str, Record] = {}
+    for line in lines:
+        kind, key = line["kind"], line["key"]
+        if kind == "time":
+            records.setdefault(key, {"times": []})["times"].append(line)
+        else:
+            records[key] = {kind: line, "times": []}
+    return records
+
+
+def is_done(record: Record | None, rounds: int) -> bool:
+    """Whether nothing is left to measure. What failed is tried again."""
+    return record is not None and "errors" in record and len(record["times"]) >= rounds

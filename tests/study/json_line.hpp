@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/study/measures.hpp"
+
+namespace candela::study {
+
+/// Members stay in the order in which they were written.
+using Json = nlohmann::ordered_json;
+
+/// JSON without line breaks. Throws std::domain_error that names the member where a number is NaN or
+/// infinite, for which JSON would have nothing but null.
+[[nodiscard]] std::string to_line(const Json& json);
+
+/// Prints the line and flushes it, so that what is finished outlives a crash.
+void print_line(const Json& json);
+
+/// Throws std::runtime_error that names the file if it cannot be read or is no JSON.
+[[nodiscard]] Json read_json(const std::filesystem::path& path);
+
+[[nodiscard]] Json to_json(const Errors& errors);
+
+}  // namespace candela::study

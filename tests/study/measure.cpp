@@ -1,0 +1,284 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "renderer/context/headless.hpp"
+#include "sandbox/capture.hpp"
+#include "sandbox/scene.hpp"
+#include "tests/study/bench.hpp"
+#include "tests/study/flip.hpp"
+#include "tests/study/heat.hpp"
+#include "tests/study/points.hpp"
+#include "tests/study/reference_files.hpp"
+#include "tests/study/study.hpp"
+
+namespace candela::study {
+namespace {
+
+using sandbox::Picture;
+
+/// Relative error that heat maps show in their brightest colour: the same in all, so that they compare.
+constexpr double heat_scale = 0.5;
+
+/// Writes pictures as the app shows them by default, whatever is being measured.
+class Darkroom {
+ public:
+    Darkroom(const gl::GetProc& get_proc, glm::uvec2 size, std::filesystem::path folder)
+        : renderer_(get_proc), capture_(renderer_, glm::ivec2(size)), folder_(std::move(folder)) {
+        std::filesystem::create_directories(folder_);
+    }
+    /// Gives the file's name within the folder.
+    std::string develop(const std::string& name, const Picture& picture) {
+        capture_.write(folder_ / (name + ".png"), picture);
+        return name + ".png";
+    }
+    std::string heat(const std::string& name, const Picture& picture, const Picture& reference,
+                     const Mask& hit) {
+        const HeatMap map = heat_map(picture, reference, hit, heat_scale);
+        sandbox::write_png(folder_ / (name + "-heat.png"), map.size, map.rgb);
+        return name + "-heat.png";
+    }
+
+ private:
+    Renderer renderer_;
+    sandbox::Capture capture_;
+    std::filesystem::path folder_;
+};
+
+/// The reference, and what follows from it.
+struct Truth {
+    Picture direct;
+    Picture indirect;
+    Picture total;
+    Mask hit;
+    Mask off_edges;  ///< of `hit`, what lies away from the edges of shadows and silhouettes
+};
+
+Truth truth_of(Reference reference) {
+    reference::Estimate& estimate = reference.estimate;
+    Truth truth{std::move(estimate.direct), std::move(estimate.indirect), {}, std::move(estimate.hit), {}};
+    truth.total = sum(truth.direct, truth.indirect);
+    truth.off_edges = truth.hit;
+    for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {
+        truth.off_edges[i] = estimate.edge[i] != 0 ? 0 : truth.off_edges[i];
+    }
+    return truth;
+}
+
+Configuration configuration_of(const Point& point) {
+    const ConfigurationResult result = read_configuration(point.request);
+    if (!result.configuration) {
+        throw std::invalid_argument(fmt::format("{}", fmt::join(result.faults, "; ")));
+    }
+    Configuration configuration = *result.configuration;
+    configuration.show = Show::total;
+    configuration.vpls.seed = point.seeds.front();
+    return configuration;
+}
+
+/// One frame with this part of the light in it. Throws std::runtime_error where a pixel is not finite.
+Picture render(Bench& bench, Configuration configuration, Show show) {
+    configuration.show = show;
+    bench.configure(configuration);
+    bench.frame({});
+    Picture picture = bench.picture();
+    if (const auto pixel = first_not_finite(picture)) {
+        throw std::runtime_error(fmt::format("the {} light of seed {} is NaN or infinite at pixel ({}, {})",
+                                             to_string(show), configuration.vpls.seed, pixel->x, pixel->y));
+    }
+    return picture;
+}
+
+/// What depends on the seed of the VPLs.
+struct Seeds {
+    std::vector<Errors> indirect;
+    std::vector<Errors> total;
+    std::vector<double> flip;
+    Picture first;  ///< all light of the first seed
+};
+
+/// Direct light does not depend on the seed, and the total is the sum: a frame a seed will do.
+Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector<std::uint32_t>& seeds,
+                    const Picture& direct, const Truth& truth) {
+    Seeds result;
+    for (const std::uint32_t seed : seeds) {
+        configuration.vpls.seed = seed;
+        const Picture indirect = render(bench, configuration, Show::indirect);
+        Picture total = sum(direct, indirect);
+        result.indirect.push_back(measure(indirect, truth.indirect, truth.hit));
+        result.total.push_back(measure(total, truth.total, truth.hit));
+        result.flip.push_back(flip(total, truth.total, truth.hit).mean);
+        if (result.first.pixels.empty()) {
+            result.first = std::move(total);
+        }
+    }
+    return result;
+}
+
+/// Leaves the renderer with the frame that a user would get, whose state is reported. Its picture must be the
+/// sum of its parts, as `measure_seeds` takes it to be, but for the rounding of floats.
+void render_whole(Bench& bench, const Configuration& configuration, const Picture& parts) {
+    const Picture whole = render(bench, configuration, Show::total);
+    const double difference = measure(whole, parts).rel_mse;
+    if (difference > 1e-10) {
+        throw std::runtime_error(
+            fmt::format("direct and indirect light do not add up to the total: relMSE {:.1e}", difference));
+    }
+}
+
+/// Null where edges are everywhere.
+Json off_edges_json(const Picture& direct, const Truth& truth) {
+    const bool none = std::count(truth.off_edges.begin(), truth.off_edges.end(), 0) ==
+                      static_cast<std::ptrdiff_t>(truth.off_edges.size());
+    return none ? Json(nullptr) : to_json(measure(direct, truth.direct, truth.off_edges));
+}
+
+Json errors_json(const Picture& direct, const Seeds& seeds, const Truth& truth) {
+    return {{"direct", to_json(measure(direct, truth.direct, truth.hit))},
+            {"direct_off_edges", off_edges_json(direct, truth)},
+            {"indirect", to_json(mean(seeds.indirect))},
+            {"total", to_json(mean(seeds.total))}};
+}
+
+Json per_seed_json(const Point& point, const Seeds& seeds) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < point.seeds.size(); ++i) {
+        list.push_back({{"seed", point.seeds[i]},
+                        {"indirect", to_json(seeds.indirect[i])},
+                        {"total", to_json(seeds.total[i])},
+                        {"flip", seeds.flip[i]}});
+    }
+    return list;
+}
+
+Json to_json(const glm::dvec3& rgb) {
+    return {rgb.r, rgb.g, rgb.b};
+}
+
+Json to_json(const EnergyAccount& flux) {
+    return {{"emitted", to_json(flux.emitted)},   {"absorbed", to_json(flux.absorbed)},
+            {"escaped", to_json(flux.escaped)},   {"truncated", to_json(flux.truncated)},
+            {"roulette", to_json(flux.roulette)}, {"roulette_error", to_json(flux.roulette_error)}};
+}
+
+Json to_json(const std::optional<VplReport>& vpls) {
+    if (!vpls) {
+        return nullptr;
+    }
+    return {{"requested", vpls->requested},
+            {"alive", vpls->alive},
+            {"paths", vpls->paths},
+            {"flux", to_json(vpls->flux)}};
+}
+
+/// Counts, which no machine's mood changes. `rays` are those of the VPLs' paths; `lists` says how many lights
+/// a tile or cluster visits.
+Json work_json(const Report& report, std::size_t pixels) {
+    const VplReport vpls = report.vpls.value_or(VplReport{});
+    Json work = {{"pixels", pixels},
+                 {"vpl_pixels", static_cast<std::uint64_t>(pixels) * vpls.alive},
+                 {"rays", vpls.rays},
+                 {"triangles", report.triangles},
+                 {"lights", report.lights.count},
+                 {"shadows", report.lights.with_shadow},
+                 {"lists", nullptr}};
+    if (report.lights.tile_max > 0) {
+        work["lists"] = {{"global", report.lights.global},
+                         {"longest", report.lights.tile_max},
+                         {"mean", report.lights.tile_mean}};
+    }
+    return work;
+}
+
+/// Without what is only kept for a return to the configuration before.
+Json memory_json(const MemoryUse& memory) {
+    return {{"bytes", memory.texture_bytes + memory.buffer_bytes - memory.spare_bytes},
+            {"texture_bytes", memory.texture_bytes},
+            {"buffer_bytes", memory.buffer_bytes},
+            {"spare_bytes", memory.spare_bytes},
+            {"shared_by_aliasing_bytes", memory.shared_by_aliasing_bytes}};
+}
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+Json measure_point(Bench bench, Darkroom& darkroom, const Truth& truth, const Point& point) {
+    const Configuration configuration = configuration_of(point);
+    const Picture direct = render(bench, configuration, Show::direct);
+    const Seeds seeds = measure_seeds(bench, configuration, point.seeds, direct, truth);
+    render_whole(bench, configuration, seeds.first);
+    const Report report = bench.renderer().report();
+    return {{"id", point.id},
+            {"kind", "errors"},
+            {"config", Json::parse(write_configuration(configuration))},
+            {"gl_renderer", report.gl_renderer},
+            {"seeds", point.seeds},
+            {"errors", errors_json(direct, seeds, truth)},
+            {"flip", mean(seeds.flip)},
+            {"per_seed", per_seed_json(point, seeds)},
+            {"vpls", to_json(report.vpls)},
+            {"work", work_json(report, bench.covered_pixels())},
+            {"memory", memory_json(report.memory)},
+            {"picture", darkroom.develop(point.id, seeds.first)},
+            {"heat", darkroom.heat(point.id, seeds.first, truth.total, truth.hit)},
+            {"heat_scale", heat_scale}};
+}
+
+/// A first frame pays for what the switch of configuration made anew, and for pages that nobody has touched
+/// yet; then one frame is timed of which only the view is new, and one that does everything anew.
+Json time_point(Bench& bench, const Point& point, std::uint32_t round) {
+    bench.configure(configuration_of(point));
+    bench.frame({});
+    static_cast<void>(bench.renderer().take_frames(true));
+    const double frame_ms = bench.frame(sandbox::pixel_jitter(static_cast<int>(2 * round - 1)));
+    const FrameReport frame = bench.renderer().take_frames(true).back();
+    bench.renderer().invalidate();
+    const double full_ms = bench.frame(sandbox::pixel_jitter(static_cast<int>(2 * round)));
+    return {{"id", point.id},         {"kind", "time"},         {"round", round},    {"frame_ms", frame_ms},
+            {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"full_ms", full_ms}};
+}
+
+/// Prints what `make_line` gives, or that the point failed; true if it did not.
+template <class MakeLine>
+bool attempt(const Point& point, MakeLine make_line) {
+    try {
+        print_line(make_line());
+        return true;
+    } catch (const std::exception& error) {
+        print_line({{"id", point.id}, {"kind", "failed"}, {"message", error.what()}});
+        return false;
+    }
+}
+
+}  // namespace
+
+int measure(const MeasureStudy& study) {
+    std::vector<Point> points = read_points(read_json(study.points), study.points.string());
+    const Reference reference = read_reference_of(study.scene, study.reference);
+    const Truth truth = truth_of(reference);
+    const sandbox::Scene scene = sandbox::load_scene(study.scene);
+    const auto context = HeadlessContext::create(study.context);
+    context->make_current();
+    Darkroom darkroom(context->get_proc(), reference.request.size, study.pictures);
+    darkroom.develop("reference", truth.total);
+    const auto fresh_bench = [&] { return Bench(context->get_proc(), scene.world, reference.request.size); };
+
+    // A renderer of its own for each point: what one leaves behind is not counted among another's memory.
+    std::erase_if(points, [&](const Point& point) {
+        return !attempt(point, [&] { return measure_point(fresh_bench(), darkroom, truth, point); });
+    });
+    // One for all times, so that many points need not be in memory at once.
+    Bench bench = fresh_bench();
+    for (std::uint32_t round = 1; round <= study.rounds; ++round) {
+        std::erase_if(points, [&](const Point& point) {
+            return !attempt(point, [&] { return time_point(bench, point, round); });
+        });
+    }
+    return 0;
+}
+
+}  // namespace candela::study

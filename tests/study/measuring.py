@@ -1,0 +1,114 @@
+"""Measures what the journal does not have yet, and writes it down as it comes."""
+
+import json
+import sys
+import time
+from typing import Any
+
+import program
+import progress
+from matrix import Group, Point
+from session import STUDY, Study, pictures_of
+
+
+def expect(study: Study, group: Group) -> None:
+    """Adds what the group will cost to the forecast."""
+    points = study.missing(group)
+    if (points or study.misses_tracer(group)) and not study.reference(group).exists():
+        study.forecast.expect("reference", progress.tracer_units(group, group.reference.samples))
+    if study.misses_tracer(group):
+        study.forecast.expect("tracer", progress.tracer_units(group, sum(group.tracer_samples)))
+    for one in points:
+        study.forecast.expect("errors", progress.errors_units(group, one))
+        study.forecast.expect("time", progress.time_units(group, one))
+
+
+def prepare_reference(study: Study, group: Group) -> None:
+    if study.reference(group).exists():
+        return
+    started = time.monotonic()
+    study.bar.show(f"{group.name}: reference")
+    program.make_reference(str(STUDY), study.scene(group), group, study.reference(group))
+    units = progress.tracer_units(group, group.reference.samples)
+    study.forecast.record("reference", units, time.monotonic() - started)
+
+
+def noise_of(study: Study, group: Group) -> dict[str, float]:
+    """The reference's own relMSE of each part of the light, as its two halves tell."""
+    return json.loads((study.reference(group) / "reference.json").read_text(encoding="utf-8"))["noise"]
+
+
+def trace_baseline(study: Study, group: Group) -> None:
+    started, lines = time.monotonic(), []
+    study.bar.show(f"{group.name}: path tracer")
+    fault = program.trace_baseline(
+        str(STUDY), study.scene(group), study.reference(group), group.tracer_samples, lines.append
+    )
+    units = progress.tracer_units(group, sum(group.tracer_samples))
+    study.forecast.record("tracer", units, time.monotonic() - started)
+    if fault:
+        study.bar.clear()
+        print(f"study: {group.name}: the path tracer's own points failed: {fault}", file=sys.stderr)
+    kind = {"kind": "failed", "message": fault} if fault else {"kind": "tracer", "lines": lines}
+    study.note({"key": study.keys(group)["tracer"], "group": group.name, "id": "tracer", **kind})
+
+
+def measure_points(study: Study, group: Group, points: list[Point]) -> None:
+    keys, by_id, noise = study.keys(group), {one.id: one for one in points}, noise_of(study, group)
+    last = time.monotonic()
+
+    def take(line: dict[str, Any]) -> None:
+        nonlocal last
+        now, one = time.monotonic(), by_id[line["id"]]
+        study.note({**line, "key": keys[one.id], "group": group.name, "noise": noise})
+        if line["kind"] == "time":
+            units = progress.time_units(group, one) / group.rounds
+            study.forecast.record("time", units, now - last)
+        else:
+            study.forecast.record("errors", progress.errors_units(group, one), now - last)
+        if line["kind"] == "failed":
+            study.forecast.forget("time", progress.time_units(group, one))
+        last = now
+        announce_once(study)
+        study.bar.show(f"{group.name} {one.id}")
+
+    folders = study.reference(group), pictures_of(group)
+    program.measure(str(STUDY), study.scene(group), *folders, group, points, take)
+
+
+def announce_once(study: Study) -> None:
+    """The estimate for the whole study, once the first seconds of pictures have told what this machine can do."""
+    if not study.announced and study.forecast.took["errors"] > 5.0:
+        study.announced = True
+        left = progress.clock(study.forecast.seconds_left())
+        study.bar.clear()
+        print(f"study: about {left} min left, going by the first points", file=sys.stderr)
+
+
+def measure(study: Study, groups: list[Group]) -> None:
+    for group in groups:
+        expect(study, group)
+    if study.forecast.seconds_left() > 0:
+        left = progress.clock(study.forecast.seconds_left())
+        print(f"study: about {left} min, a guess until the first points are measured", file=sys.stderr)
+    for group in groups:
+        points = study.missing(group)
+        if not points and not study.misses_tracer(group):
+            continue
+        try:
+            prepare_reference(study, group)
+            if study.misses_tracer(group):
+                trace_baseline(study, group)
+            measure_points(study, group, points)
+        except RuntimeError as error:
+            fail_all(study, group, points, str(error))
+    study.bar.clear()
+
+
+def fail_all(study: Study, group: Group, points: list[Point], message: str) -> None:
+    """Without a reference no point of the group can be measured; the other groups can."""
+    keys = study.keys(group)
+    for one in points:
+        study.note({"id": one.id, "kind": "failed", "message": message, "key": keys[one.id], "group": group.name})
+        study.forecast.forget("errors", progress.errors_units(group, one))
+        study.forecast.forget("time", progress.time_units(group, one))

@@ -1,0 +1,70 @@
+#include "tests/study/points.hpp"
+
+#include <doctest/doctest.h>
+
+#include <stdexcept>
+
+using namespace candela::study;
+
+namespace {
+
+std::vector<Point> points_of(const char* text) {
+    return read_points(Json::parse(text), "points.json");
+}
+
+std::string fault_of(const char* text) {
+    try {
+        static_cast<void>(points_of(text));
+    } catch (const std::invalid_argument& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+}  // namespace
+
+TEST_SUITE("points") {
+    TEST_CASE("a point has a name, a part of a configuration, and seeds") {
+        const auto points = points_of(
+            R"([{"id": "a", "config": {"path": "forward"}, "seeds": [3, 4294967295]}, {"id": "forward+-16"}])");
+        REQUIRE(points.size() == 2);
+        CHECK(points[0].id == "a");
+        CHECK(Json::parse(points[0].request) == Json({{"path", "forward"}}));
+        CHECK(points[0].seeds == std::vector<std::uint32_t>{3, 4294967295U});
+        CHECK(points[1].id == "forward+-16");
+        CHECK(points[1].request == "{}");
+        CHECK(points[1].seeds == std::vector<std::uint32_t>{0});
+    }
+
+    TEST_CASE("the configuration is handed on as it is, known to the renderer or not") {
+        CHECK(points_of(R"([{"id": "a", "config": {"lever": {"x": 1}}}])")[0].request ==
+              R"({"lever":{"x":1}})");
+    }
+
+    TEST_CASE("faults name the list, the point and the fault") {
+        CHECK(fault_of("{}") == "points.json: is not a list of points");
+        CHECK(fault_of("[1]") == "points.json: point 0: is not an object");
+        CHECK(fault_of(R"([{"id": "a"}, {}])") == "points.json: point 1: \"id\" is not a text");
+        CHECK(fault_of(R"([{"id": "a"}, {"id": "a"}])") == "points.json: \"a\" is the id of two points");
+        CHECK(fault_of(R"([{"id": "a", "sedes": [1]}])") == "points.json: point 0: \"sedes\" is unknown");
+        CHECK(fault_of(R"([{"id": "a", "config": "x"}])") ==
+              "points.json: point 0: \"config\" is not an object");
+    }
+
+    TEST_CASE("an id that is no name for a file is a fault") {
+        for (const char* text :
+             {R"([{"id": ""}])", R"([{"id": "../a"}])", R"([{"id": "a/b"}])", R"([{"id": ".a"}])"}) {
+            CAPTURE(text);
+            CHECK(fault_of(text).starts_with("points.json: point 0: \"id\""));
+        }
+    }
+
+    TEST_CASE("seeds are whole numbers of 32 bits, and at least one") {
+        for (const char* text : {R"([{"id": "a", "seeds": []}])", R"([{"id": "a", "seeds": 1}])",
+                                 R"([{"id": "a", "seeds": [-1]}])", R"([{"id": "a", "seeds": [0.5]}])",
+                                 R"([{"id": "a", "seeds": [4294967296]}])"}) {
+            CAPTURE(text);
+            CHECK(fault_of(text).starts_with("points.json: point 0: \"seeds\""));
+        }
+    }
+}

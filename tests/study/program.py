@@ -1,0 +1,147 @@
+"""Runs candela-study, which prints JSON lines, and copes with its ending badly."""
+
+import json
+import pathlib
+import signal
+import subprocess
+import tempfile
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from matrix import Group, Point
+
+Line = dict[str, Any]
+OnLine = Callable[[Line], None]
+
+# Seconds without a line after which the program counts as hanging. The longest step is a reference.
+SILENCE = 600.0
+
+
+@dataclass(frozen=True)
+class End:
+    """How the program ended: `fault` is empty where all went well; `crashed` tells a crash from a refusal."""
+
+    fault: str
+    crashed: bool
+
+
+def end_of(status: int, stderr: str) -> End:
+    if status == 0:
+        return End("", crashed=False)
+    if status == -signal.SIGKILL:
+        return End(f"killed: silent for {SILENCE:.0f} s, or too large for the memory", crashed=True)
+    if status < 0:
+        return End(f"crashed: {signal.Signals(-status).name}", crashed=True)
+    said = stderr.strip().splitlines()[-1:] or [f"exit status {status}"]
+    return End(said[0], crashed=False)
+
+
+def lines_of(process: subprocess.Popen[str]) -> Iterator[str]:
+    """What the process prints, line by line; one that is silent for too long is killed."""
+    while True:
+        watch = threading.Timer(SILENCE, process.kill)
+        watch.start()
+        try:
+            text = process.stdout.readline()
+        finally:
+            watch.cancel()
+        if not text:
+            return
+        yield text
+
+
+def stream(command: Sequence[str], on_line: OnLine) -> End:
+    """Runs a command and hands on each of its lines as it comes. Lines that are no JSON objects are left out."""
+    with tempfile.TemporaryFile("w+") as errors:
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True) as process:
+            try:
+                for text in lines_of(process):
+                    if text.startswith("{"):
+                        on_line(json.loads(text))
+            except BaseException:
+                process.kill()
+                raise
+        errors.seek(0)
+        return end_of(process.returncode, errors.read())
+
+
+def make_reference(program: str, scene: pathlib.Path, group: Group, folder: pathlib.Path) -> None:
+    """Throws RuntimeError with what the program says."""
+    wanted = group.reference
+    bounces = [] if wanted.bounces is None else ["--bounces", str(wanted.bounces)]
+    size = f"{group.size[0]}x{group.size[1]}"
+    options = ["--size", size, "--samples", str(wanted.samples), "--seed", str(wanted.seed), *bounces]
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    end = stream([program, "reference", str(scene), *options, "--out", str(folder)], lambda line: None)
+    if end.fault:
+        raise RuntimeError(f"no reference for {group.name}: {end.fault}")
+
+
+def trace_baseline(
+    program: str, scene: pathlib.Path, reference: pathlib.Path, samples: Sequence[int], on_line: OnLine
+) -> str:
+    """The path tracer itself, few samples several times over. Returns what went wrong, empty where nothing did."""
+    command = [program, "baseline", str(scene), "--reference", str(reference)]
+    few = [count for count in samples if count <= 64]
+    many = [count for count in samples if count > 64]
+    for counts, rounds in ((few, 3), (many, 1)):
+        listed = ",".join(str(count) for count in counts)
+        end = stream([*command, "--samples", listed, "--rounds", str(rounds)], on_line) if counts else End("", False)
+        if end.fault:
+            return end.fault
+    return ""
+
+
+def running(order: Sequence[str], lines: Sequence[Line]) -> str:
+    """Which point the program was at when it ended: errors come first, point by point, then rounds of times."""
+    told = {line["id"] for line in lines if line["kind"] != "time"}
+    failed = {line["id"] for line in lines if line["kind"] == "failed"}
+    untold = [name for name in order if name not in told]
+    if untold:
+        return untold[0]
+    timed = [name for name in order if name not in failed] or list(order)
+    times = [line["id"] for line in lines if line["kind"] == "time"]
+    return timed[(timed.index(times[-1]) + 1) % len(timed)] if times else timed[0]
+
+
+def is_finished(name: str, lines: Sequence[Line], rounds: int) -> bool:
+    kinds = [line["kind"] for line in lines if line["id"] == name]
+    return "failed" in kinds or ("errors" in kinds and kinds.count("time") >= rounds)
+
+
+def measure(
+    program: str,
+    scene: pathlib.Path,
+    reference: pathlib.Path,
+    pictures: pathlib.Path,
+    group: Group,
+    points: Sequence[Point],
+    on_line: OnLine,
+) -> None:
+    """Measures the points. Where the program crashes, the point that it was at fails and the rest go on; where it
+    refuses what is asked, all that is left fails with its words."""
+    waiting = list(points)
+    pictures.mkdir(parents=True, exist_ok=True)
+    while waiting:
+        seen: list[Line] = []
+
+        def take(line: Line, seen: list[Line] = seen) -> None:
+            seen.append(line)
+            on_line(line)
+
+        request = pictures / "points.json"
+        request.write_text(
+            json.dumps([{"id": one.id, "config": one.config, "seeds": one.seeds} for one in waiting]), encoding="utf-8"
+        )
+        command = [program, "measure", str(scene), "--reference", str(reference), "--points", str(request)]
+        end = stream([*command, "--rounds", str(group.rounds), "--pictures", str(pictures)], take)
+        left = [one for one in waiting if not is_finished(one.id, seen, group.rounds)]
+        lost = left
+        if end.crashed:
+            culprit = running([one.id for one in waiting], seen)
+            lost = [one for one in waiting if one.id == culprit]
+        for one in lost:
+            on_line({"id": one.id, "kind": "failed", "message": end.fault or "was not measured"})
+        waiting = [one for one in left if one not in lost]

@@ -1,0 +1,94 @@
+"""How long the rest of a study takes: a model of costs that learns from what it sees, and a bar that shows it."""
+
+import sys
+import time
+from dataclasses import dataclass, field
+
+from matrix import Group, Point
+
+# Seconds for a unit of each kind of work, until it has been seen: what four cores of a server do.
+GUESSES = {"reference": 2e-7, "tracer": 2e-7, "errors": 1.0, "time": 1.0}
+FRAME_OVERHEAD = 0.012  # s, of a frame that shades nothing
+SECONDS_PER_EVALUATION = {"forward": 3.5e-9, "deferred": 1.0e-9}  # one VPL on one pixel
+
+
+def frame_seconds(group: Group, one: Point) -> float:
+    """What a frame may take; only its proportions matter once frames have been seen."""
+    each = SECONDS_PER_EVALUATION["deferred" if "deferred" in one.axes["path"] else "forward"]
+    return FRAME_OVERHEAD + group.size[0] * group.size[1] * one.axes["vpls"] * each
+
+
+def errors_units(group: Group, one: Point) -> float:
+    """Direct and indirect light, for every seed."""
+    return 2 * len(one.seeds) * frame_seconds(group, one)
+
+
+def time_units(group: Group, one: Point) -> float:
+    """In every round, and in one to warm up, a frame from another view and one with everything made anew."""
+    return 2 * (group.rounds + 1) * frame_seconds(group, one) if group.rounds else 0.0
+
+
+def tracer_units(group: Group, samples: int) -> float:
+    return float(group.size[0] * group.size[1] * samples)
+
+
+@dataclass
+class Forecast:
+    """Units of work left of each kind, and what those done took."""
+
+    left: dict[str, float] = field(default_factory=lambda: dict.fromkeys(GUESSES, 0.0))
+    done: dict[str, float] = field(default_factory=lambda: dict.fromkeys(GUESSES, 0.0))
+    took: dict[str, float] = field(default_factory=lambda: dict.fromkeys(GUESSES, 0.0))
+
+    def expect(self, kind: str, units: float) -> None:
+        self.left[kind] += units
+
+    def record(self, kind: str, units: float, seconds: float) -> None:
+        self.left[kind] = max(self.left[kind] - units, 0.0)
+        self.done[kind] += units
+        self.took[kind] += seconds
+
+    def forget(self, kind: str, units: float) -> None:
+        """Work that will not be done after all."""
+        self.left[kind] = max(self.left[kind] - units, 0.0)
+
+    def rate(self, kind: str) -> float:
+        """Seconds a unit. Of frames, those of one kind tell about the other."""
+        seen = [kind] if self.done[kind] > 0 else ["errors", "time"] if kind in ("errors", "time") else []
+        done = sum(self.done[each] for each in seen)
+        return sum(self.took[each] for each in seen) / done if done > 0 else GUESSES[kind]
+
+    def seconds_left(self) -> float:
+        return sum(units * self.rate(kind) for kind, units in self.left.items())
+
+    def share_done(self) -> float:
+        took = sum(self.took.values())
+        return took / max(took + self.seconds_left(), 1e-9)
+
+
+def clock(seconds: float) -> str:
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02}"
+
+
+@dataclass
+class Bar:
+    """On a terminal one line that is drawn over; elsewhere a line now and then."""
+
+    forecast: Forecast
+    started: float = field(default_factory=time.monotonic)
+    shown: float = 0.0
+
+    def show(self, doing: str) -> None:
+        now, terminal = time.monotonic(), sys.stderr.isatty()
+        if now - self.shown < (0.2 if terminal else 15.0):
+            return
+        self.shown = now
+        share = self.forecast.share_done()
+        left = clock(self.forecast.seconds_left())
+        filled = "#" * round(24 * share)
+        line = f"[{filled:<24}] {share:4.0%}  {clock(now - self.started)} so far, about {left} left  {doing}"
+        print(f"\r\033[K{line[:110]}" if terminal else line, end="" if terminal else "\n", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        if sys.stderr.isatty():
+            print("\r\033[K", end="", file=sys.stderr, flush=True)

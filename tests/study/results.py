@@ -1,0 +1,181 @@
+"""What was measured, as rows, tables and files."""
+
+import csv
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+from typing import Any
+
+import analysis
+import journal
+import machine
+import matrix
+from analysis import Row
+from matrix import Group, Point
+from session import APP, STUDY, Study, pictures_of
+
+FILES = ("picture", "heat")  # columns that name files of the build folder
+
+
+def flat(prefix: str, values: dict[str, Any]) -> Row:
+    """Numbers of a JSON object as columns; nested ones joined by _."""
+    row: Row = {}
+    for name, value in values.items():
+        if isinstance(value, dict):
+            row.update(flat(f"{prefix}{name}_", value))
+        elif isinstance(value, (int, float, str)) and not isinstance(value, bool):
+            row[prefix + name] = value
+    return row
+
+
+def shares(flux: dict[str, list[float]]) -> Row:
+    """Where the light went, as shares of what the traced paths emitted; colours summed."""
+    emitted = sum(flux.get("emitted", [0.0]))
+    return {f"{name}_share": sum(flux[name]) / emitted for name in flux if name != "emitted" and emitted > 0}
+
+
+def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
+    row: Row = {"suite": group.suite, "scene": group.scene, "width": group.size[0], "height": group.size[1]}
+    row.update({"id": one.id, **one.axes, "seeds": len(one.seeds), "failed": ""})
+    row.update({"reference_samples": group.reference.samples, "reference_bounces": group.reference.bounces})
+    if not journal.is_done(record, group.rounds):
+        return {**row, "failed": (record or {}).get("failed", {}).get("message", "was not measured")}
+    line = record["errors"]
+    row["reference_noise"] = line["noise"]["indirect"]
+    for part, errors in line["errors"].items():
+        row.update(flat(f"{part}_", errors))
+    row.update(flat("", {name: line[name] for name in ("flip", "work", "memory")}))
+    vpls = line.get("vpls") or {"alive": 0, "paths": 0, "flux": {}}
+    row.update({"alive": vpls["alive"], "paths": vpls["paths"], **shares(vpls["flux"])})
+    for name in ("frame_ms", "full_ms", "cpu_ms", "gpu_ms") if record["times"] else ():
+        row[name] = statistics.median(each[name] for each in record["times"])
+    row["rounds"] = len(record["times"])
+    return {**row, **{kind: str(pictures_of(group) / line[kind]) for kind in ("picture", "heat")}}
+
+
+def ratio_to_forward(one: Point, records: dict[str, journal.Record | None]) -> Row:
+    """Frame times over those of the same configuration on the path `forward`, round by round: what a machine is busy
+    with besides falls on both."""
+    forward = records.get(matrix.point_id({**one.axes, "path": "forward"})) or {"times": []}
+    times = {line["round"]: line["frame_ms"] for line in forward["times"]}
+    mine = (records[one.id] or {"times": []})["times"]
+    ratios = [line["frame_ms"] / times[line["round"]] for line in mine if line["round"] in times]
+    return {"frame_to_forward": statistics.median(ratios)} if ratios else {}
+
+
+def rows_of(study: Study, groups: list[Group]) -> list[Row]:
+    study.records = journal.fold(journal.read(study.journal))
+    rows = []
+    for group in groups:
+        keys = study.keys(group)
+        records = {one.id: study.records.get(keys[one.id]) for one in group.points}
+        for one in group.points:
+            rows.append({**row_of(group, one, records[one.id]), **ratio_to_forward(one, records)})
+    return rows
+
+
+def tracer_rows(study: Study, groups: list[Group]) -> list[Row]:
+    """The path tracer's own points."""
+    rows = []
+    for group in groups:
+        record = study.records.get(study.keys(group)["tracer"], {}) if group.tracer_samples else {}
+        for line in record.get("tracer", {}).get("lines", []):
+            row = {"suite": group.suite, "scene": group.scene, "samples": line["samples"], "ms": line["ms"]}
+            errors = {f"{part}_rel_mse": line["errors"][part]["rel_mse"] for part in ("indirect", "total")}
+            rows.append({**row, **errors})
+    return rows
+
+
+def rounded(value: Any) -> Any:
+    """Floats to five digits, which is more than repeats."""
+    if isinstance(value, float):
+        return float(f"{value:.5g}")
+    if isinstance(value, dict):
+        return {name: rounded(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [rounded(item) for item in value]
+    return value
+
+
+def columns(rows: list[Row]) -> list[str]:
+    return list(dict.fromkeys(name for row in rows for name in row if name not in FILES))
+
+
+def write_csv(path: pathlib.Path, rows: list[Row]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns(rows), extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rounded(row) for row in rows)
+
+
+def describe(group: Group) -> dict[str, Any]:
+    reference = vars(group.reference)
+    points = {one.id: {"config": one.config, "seeds": one.seeds} for one in group.points}
+    shape = {"suite": group.suite, "scene": group.scene, "size": group.size, "rounds": group.rounds}
+    return {**shape, "reference": reference, "points": points}
+
+
+def app_default() -> dict[str, Any]:
+    """What the app does when no flag is given."""
+    printed = subprocess.run([APP, "--print-config"], check=True, capture_output=True, text=True)
+    return json.loads(printed.stdout)
+
+
+def is_app_default(best: Row, default: dict[str, Any], points: tuple[Point, ...]) -> bool:
+    """Whether the chosen point sets nothing but what the app does anyway."""
+    config = next(one.config for one in points if one.id == best["id"])
+    return same(matrix.merged(default, config), default)
+
+
+def same(a: Any, b: Any) -> bool:
+    """Configurations, whose numbers the app holds in single precision."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
+    if isinstance(a, float) and isinstance(b, float):
+        return math.isclose(a, b, rel_tol=1e-6)
+    return a == b
+
+
+def choice(rows: list[Row], groups: list[Group]) -> dict[str, Any] | None:
+    """The best default on the front, in words as well."""
+    best = analysis.best_default(rows)
+    points = tuple(one for group in groups if group.suite == "matrix" for one in group.points)
+    if best is None:
+        return None
+    agrees = is_app_default(best, app_default(), points)
+    reason = (
+        f"of the configurations on the front of error and cost over {best['scenes']} scenes it has the least relMSE of"
+        f" the total light, {best['error']:.3g} in the geometric mean, among those that cost at most"
+        f" {analysis.COST_FACTOR:g} times what 256 unbounded VPLs do, deferred and without visibility:"
+        f" {best['frame_ms']:.2f} times after a move of the camera, {best['full_ms']:.2f} with everything made anew"
+    )
+    return {"id": best["id"], "reason": reason, "is_default_of_app": agrees}
+
+
+def write_results(study: Study, groups: list[Group], rows: list[Row], extra: dict[str, Any]) -> None:
+    write_csv(study.out / "results.csv", rows)
+    renderers = {record["errors"]["gl_renderer"] for record in study.records.values() if "errors" in record}
+    names = columns(rows)
+    content = {
+        "machine": study.machine,
+        "gl_renderer": sorted(renderers),
+        **machine.provenance(STUDY),
+        "tracer_sources": study.tracer,
+        **extra,
+        "groups": [describe(group) for group in groups],
+        "columns": names,
+        "points": [[rounded(row.get(name)) for name in names] for row in rows],
+    }
+    (study.out / "results.json").write_text(by_lines(content) + "\n", encoding="utf-8")
+
+
+def by_lines(content: dict[str, Any]) -> str:
+    """JSON with a line for each member, and for each item of a member that is a list."""
+    members = []
+    for name, value in content.items():
+        items = [json.dumps(item, separators=(",", ":")) for item in value] if isinstance(value, list) else []
+        text = "[\n" + ",\n".join(items) + "\n]" if items else json.dumps(value, separators=(",", ":"))
+        members.append(f"{json.dumps(name)}: {text}")
+    return "{\n" + ",\n".join(members) + "\n}"

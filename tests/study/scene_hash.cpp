@@ -1,0 +1,50 @@
+#include "tests/study/scene_hash.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/scene/gltf_document.hpp"
+#include "engine/scene/scene_error.hpp"
+
+namespace candela::study {
+namespace {
+
+/// Preceded by the length, so that bytes cannot move from one content to the next unnoticed.
+std::uint64_t add(std::uint64_t state, const std::vector<unsigned char>& content) {
+    state = fnv1a(fmt::format("{};", content.size()), state);
+    return fnv1a({reinterpret_cast<const char*>(content.data()), content.size()}, state);
+}
+
+std::uint64_t hash_contents(const std::filesystem::path& scene) {
+    const std::vector<unsigned char> bytes = gltf::read_file(scene, "the file");
+    const std::filesystem::path folder = scene.parent_path();
+    const gltf::Document document = gltf::read_document(bytes, folder);
+    std::uint64_t state = add(fnv1a_basis, bytes);
+    for (const tinygltf::Buffer& buffer : document.model.buffers) {
+        state = add(state, buffer.data);
+    }
+    for (const tinygltf::Image& image : document.model.images) {
+        if (!image.uri.empty()) {
+            state = add(state, gltf::read_uri(image.uri, folder));
+        }
+    }
+    return state;
+}
+
+}  // namespace
+
+std::uint64_t fnv1a(std::string_view bytes, std::uint64_t state) {
+    for (const char byte : bytes) {
+        state = (state ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
+    }
+    return state;
+}
+
+std::string scene_hash(const std::filesystem::path& scene) {
+    try {
+        return fmt::format("{:016x}", hash_contents(scene));
+    } catch (const SceneError& error) {
+        throw SceneError(fmt::format("{}: {}", scene.string(), error.what()));
+    }
+}
+
+}  // namespace candela::study

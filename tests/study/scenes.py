@@ -1,0 +1,132 @@
+"""Where the study's scenes come from: those shipped with the sandbox, those that its generator writes on demand, and
+plain ones of the study's own, each of which lets one thing vary or makes one error vanish."""
+
+import functools
+import hashlib
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHIPPED = ROOT / "sandbox" / "scenes"
+sys.path.append(str(SHIPPED))
+sys.dont_write_bytecode = True  # or modules would leave files among the sources
+
+from gltf_writer import Scene  # noqa: E402
+from shapes import Surface, flat, looking  # noqa: E402
+
+DAYLIGHT = [1.0, 0.92, 0.8]
+
+
+def plates() -> Scene:
+    """Two squares of 2 m that face each other 1 m apart, with a light between: nothing hides anything, and no two
+    surfaces that light each other come closer than 1 m, so that light gathered from VPLs has no singularity."""
+    scene = Scene()
+    white, rose = scene.material("white", [0.7, 0.7, 0.7]), scene.material("rose", [0.75, 0.4, 0.35])
+    below = [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]
+    above = [(x, 1, z) for x, _, z in reversed(below)]
+    scene.place("lower plate", flat([below]), white)
+    scene.place("upper plate", flat([above]), rose)
+    scene.light("light", "point", DAYLIGHT, 1.0, translation=[0.3, 0.4, -0.2])
+    scene.camera(40, 0.01, **looking((0.0, 0.6, 3.0), (0.0, 0.45, 0.0)))
+    return scene
+
+
+def sphere_inwards(radius: float, rings: int) -> Surface:
+    """A sphere seen from inside, its normals smooth; twice as many segments as rings."""
+    surface, segments = Surface(), 2 * rings
+    for ring in range(rings + 1):
+        polar = math.pi * ring / rings
+        for segment in range(segments + 1):
+            angle = 2 * math.pi * segment / segments
+            out = (math.sin(polar) * math.sin(angle), math.cos(polar), math.sin(polar) * math.cos(angle))
+            surface.positions.append(tuple(radius * x for x in out))
+            surface.normals.append(tuple(-x for x in out))
+    row = segments + 1
+    for ring in range(rings):
+        for segment in range(segments):
+            a = ring * row + segment
+            upper, lower = [a, a + row + 1, a + 1], [a, a + row, a + row + 1]
+            surface.indices += (upper if ring > 0 else []) + (lower if ring < rings - 1 else [])
+    surface.indices = [i for a, b, c in zip(*[iter(surface.indices)] * 3) for i in (a, c, b)]
+    return surface
+
+
+def sphere() -> Scene:
+    """A furnace of one albedo in which every point sees every other under the same geometry term, 1 / (4 R²)."""
+    scene = Scene()
+    grey = scene.material("grey", [0.5, 0.5, 0.5])
+    scene.place("sphere", sphere_inwards(2.0, 64), grey)
+    scene.light("light", "point", [1.0, 1.0, 1.0], 3.0, translation=[0.6, 0.3, -0.4])
+    scene.camera(75, 0.01, **looking((0.5, 0.3, 1.0), (0.0, 0.0, 0.0)))
+    return scene
+
+
+def hills(cells: int) -> Scene:
+    """A hilly square of 4 m cut into cells × cells quads, the same hills however fine the mesh."""
+    scene, surface = Scene(), Surface()
+    height = lambda x, z: 0.25 * math.sin(2.1 * x) * math.cos(1.7 * z)  # noqa: E731
+    for row in range(cells + 1):
+        for column in range(cells + 1):
+            x, z = 4 * column / cells - 2, 4 * row / cells - 2
+            slope = (0.525 * math.cos(2.1 * x) * math.cos(1.7 * z), -0.425 * math.sin(2.1 * x) * math.sin(1.7 * z))
+            length = math.hypot(*slope, 1.0)
+            surface.positions.append((x, height(x, z), z))
+            surface.normals.append((-slope[0] / length, 1 / length, -slope[1] / length))
+    for row in range(cells):
+        for column in range(cells):
+            corner = row * (cells + 1) + column
+            surface.indices += [corner + i for i in (0, cells + 1, 1, 1, cells + 1, cells + 2)]
+    scene.place("hills", surface, scene.material("earth", [0.6, 0.5, 0.4]))
+    scene.light("light", "point", DAYLIGHT, 6.0, translation=[0.5, 1.5, 0.3])
+    scene.camera(45, 0.01, **looking((0.0, 2.2, 4.0), (0.0, 0.0, 0.0)))
+    return scene
+
+
+OWN = {"plates": plates, "sphere": sphere}
+
+
+@functools.cache
+def generators_hash() -> str:
+    """Of the sources that scenes are written by."""
+    sources = [*sorted(SHIPPED.glob("*.py")), pathlib.Path(__file__)]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
+
+
+def generate(name: str, folder: pathlib.Path) -> None:
+    """Writes a scene that is not shipped. `hills-N` has N cells a side, `hall-N` N lights."""
+    kind, _, number = name.partition("-")
+    if name in OWN or kind == "hills":
+        scene = OWN[name]() if name in OWN else hills(int(number))
+        (folder / f"{name}.gltf").write_text(scene.text(), encoding="utf-8")
+        return
+    asked = ["hall", "--lights", number] if kind == "hall" else [name]
+    subprocess.run([sys.executable, SHIPPED / "generate.py", "--out", folder, *asked], check=True, capture_output=True)
+
+
+def find(name: str, folder: pathlib.Path) -> pathlib.Path:
+    """The scene's file. One that is not shipped is written to `folder`, unless these sources have done so before."""
+    shipped, written = SHIPPED / f"{name}.gltf", folder / generators_hash() / f"{name}.gltf"
+    if shipped.exists():
+        return shipped
+    if not written.exists():
+        written.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=written.parent) as scratch:
+            generate(name, pathlib.Path(scratch))
+            (pathlib.Path(scratch) / written.name).rename(written)
+    return written
+
+
+@functools.cache
+def content_hash(path: pathlib.Path) -> str:
+    """Of the file and of all files beside it that it names."""
+    digest = hashlib.sha256(path.read_bytes())
+    document = json.loads(path.read_text(encoding="utf-8"))
+    for item in document.get("buffers", []) + document.get("images", []):
+        uri = item.get("uri", "data:")
+        if not uri.startswith("data:"):
+            digest.update((path.parent / uri).read_bytes())
+    return digest.hexdigest()[:16]

@@ -1,0 +1,67 @@
+"""One run of the study: what is measured where, and what is known so far."""
+
+import pathlib
+from typing import Any
+
+import journal
+import machine
+import matrix
+import progress
+import scenes
+from matrix import Group, Point
+
+BUILD = scenes.ROOT / "build"
+STUDY = BUILD / "release" / "candela-study"
+APP = BUILD / "release" / "candela"
+SCENES = BUILD / "study" / "scenes"  # those that are not shipped
+
+
+def pictures_of(group: Group) -> pathlib.Path:
+    """Where the group's pictures and heat maps go; those that the page shows are copied from there."""
+    return BUILD / "study" / "pictures" / group.name.replace("/", "-")
+
+
+class Study:
+    """`out` holds the journal; what it knows of this machine and this program counts as measured."""
+
+    def __init__(self, out: pathlib.Path) -> None:
+        self.out = out
+        self.journal = out / "journal.jsonl"
+        self.records = journal.fold(journal.read(self.journal))
+        self.forecast = progress.Forecast()
+        self.bar = progress.Bar(self.forecast)
+        self.machine = machine.machine()
+        self.tracer = machine.sources_hash(scenes.ROOT / "tests" / "reference")
+        self.program = machine.file_hash(STUDY)
+        self.announced = False
+
+    def scene(self, group: Group) -> pathlib.Path:
+        return scenes.find(group.scene, SCENES)
+
+    def circumstances(self, group: Group) -> dict[str, Any]:
+        content = scenes.content_hash(self.scene(group))
+        return {"scene": content, "machine": self.machine, "program": self.program}
+
+    def keys(self, group: Group) -> dict[str, str]:
+        """Of the group's points and, as 'tracer', of its baseline."""
+        circumstances = self.circumstances(group)
+        keys = {one.id: matrix.key_of(group, one, circumstances) for one in group.points}
+        samples = Point({}, {"tracer": group.tracer_samples}, ())
+        return {**keys, "tracer": matrix.key_of(group, samples, circumstances)}
+
+    def reference(self, group: Group) -> pathlib.Path:
+        """The folder of the group's reference: named by all that goes into it."""
+        request = {**vars(group.reference), "size": group.size, "tracer": self.tracer}
+        name = matrix.digest({**request, "scene": scenes.content_hash(self.scene(group))})
+        return BUILD / "study" / "references" / name
+
+    def missing(self, group: Group) -> list[Point]:
+        keys = self.keys(group)
+        return [one for one in group.points if not journal.is_done(self.records.get(keys[one.id]), group.rounds)]
+
+    def misses_tracer(self, group: Group) -> bool:
+        found = self.records.get(self.keys(group)["tracer"], {})
+        return bool(group.tracer_samples) and "tracer" not in found
+
+    def note(self, line: dict[str, Any]) -> None:
+        journal.append(self.journal, line)

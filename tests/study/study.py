@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""Speed against accuracy: measures a matrix of configurations against references and writes tables, charts and a page.
+
+Called by tests/study/run, which builds candela-study first. What was measured is written down line by line in the
+output folder's journal.jsonl; a study that is started again measures only what is missing there.
+"""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+
+import checks
+import growth
+import journal
+import machine
+import matrix
+import results
+import scenes
+from analysis import Row
+from matrix import Group
+from measuring import measure
+from session import BUILD, SCENES, STUDY, Study
+
+SUITES = ["matrix", "table", "growth"]
+PROGRAM_PARTS = ["graph", "shading", "paths"]
+RESULTS = scenes.ROOT / "tests" / "study" / "results"
+
+
+def names(text: str) -> list[str]:
+    """Of an argument that is a list."""
+    return text.split(",")
+
+
+def arguments() -> argparse.Namespace:
+    parts, where = SUITES + PROGRAM_PARTS, "default: tests/study/results for a whole study, else build/study"
+    parser = argparse.ArgumentParser(prog="tests/study/run", description="Charts Candela's speed against its accuracy.")
+    parser.add_argument("--quick", action="store_true", help="a small matrix, and checks of what must hold anywhere")
+    parser.add_argument("--scenes", metavar="A,B", type=names, help="only these")
+    parser.add_argument("--out", metavar="DIR", type=pathlib.Path, help=where)
+    parser.add_argument("--part", metavar="A,B", type=names, help=f"only these of {', '.join(parts)}; default: all")
+    given = parser.parse_args()
+    if given.quick and given.part:
+        parser.error("--quick is a part by itself")
+    require_known(parser, "--part", given.part, parts)
+    require_known(parser, "--scenes", given.scenes, [group.scene for group in planned(given.quick, given.part, None)])
+    whole = not (given.quick or given.part or given.scenes)
+    given.out = (given.out or (RESULTS if whole else BUILD / "study")).resolve()
+    return given
+
+
+def require_known(parser: argparse.ArgumentParser, flag: str, given: list[str] | None, known: list[str]) -> None:
+    for name in given or []:
+        if name not in known:
+            parser.error(f"{flag}: '{name}' is none of {', '.join(dict.fromkeys(known))}")
+
+
+def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Group]:
+    """All groups to measure, in order."""
+    groups = {
+        "matrix": matrix.matrix_groups() + matrix.convergence_groups(),
+        "table": matrix.table_groups(),
+        "growth": matrix.growth_groups(),
+    }
+    wanted = parts or SUITES
+    chosen = matrix.quick_groups() if quick else [group for name in SUITES if name in wanted for group in groups[name]]
+    return [group for group in chosen if only is None or group.scene in only]
+
+
+def lights_rows(study: Study) -> list[Row]:
+    """Frame times as lights grow, measured where the journal does not have them."""
+    rows = []
+    for lights in growth.LIGHTS:
+        key = matrix.digest({"lights": lights, "machine": study.machine, "program": study.program})
+        if key not in study.records:
+            print(f"study: timing {lights} lights", file=sys.stderr)
+            study.note({"kind": "lights", "key": key, "rows": growth.measure(STUDY, lights, SCENES)})
+            study.records = journal.fold(journal.read(study.journal))
+        rows += study.records[key]["lights"]["rows"]
+    return rows
+
+
+def run_program_part(part: str) -> None:
+    """The parts that only print a table."""
+    cornell, hall = scenes.SHIPPED / "cornell.gltf", scenes.SHIPPED / "hall-256.gltf"
+    large = scenes.find("hall-4096", SCENES) if part == "paths" else hall
+    commands = {
+        "graph": [["graph", "--benchmark_counters_tabular=true"]],
+        "shading": [["shading", cornell]],
+        "paths": [
+            ["paths", cornell, "--vpls", "256"],
+            ["paths", hall, "--rounds", "3"],
+            ["paths", scenes.SHIPPED / "fins.gltf", "--rounds", "3"],
+            ["paths", large, "--rounds", "1"],
+        ],
+    }
+    for command in commands[part]:
+        subprocess.run([STUDY, *command], check=True)
+
+
+def report(study: Study, groups: list[Group], lights: list[Row]) -> None:
+    """Tables, charts and the page. Matplotlib is needed here and nowhere else."""
+    import charts
+    import page
+
+    rows, tracer = results.rows_of(study, groups), results.tracer_rows(study, groups)
+    best = results.choice(rows, groups)
+    results.write_results(study, groups, rows, {"tracer": results.rounded(tracer), "lights": lights, "best": best})
+    made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
+    page.write(study.out, rows, made, best, study.machine, machine.provenance(STUDY))
+    print(f"study: {study.out / 'index.html'}")
+    if best:
+        same = "what the app does by default" if best["is_default_of_app"] else "NOT what the app does by default"
+        print(f"study: the best default is {best['id']}, {same}: {best['reason']}")
+
+
+def main() -> int:
+    given = arguments()
+    given.out.mkdir(parents=True, exist_ok=True)
+    study = Study(given.out)
+    groups = planned(given.quick, given.part, given.scenes)
+    measured = given.quick or not given.part or any(part in SUITES for part in given.part)
+    if measured:
+        measure(study, groups)
+    if given.quick:
+        rows, tracer = results.rows_of(study, groups), results.tracer_rows(study, groups)
+        results.write_results(study, groups, rows, {"tracer": tracer})
+        return checks.run(rows, tracer)
+    if measured:
+        whole = given.scenes is None and (not given.part or "growth" in given.part)
+        report(study, groups, lights_rows(study) if whole else [])
+    for part in PROGRAM_PARTS:
+        if not given.part or part in given.part:
+            run_program_part(part)
+    failed = [row for row in results.rows_of(study, groups) if row["failed"]] if measured else []
+    for row in failed:
+        print(f"study: {row['scene']} {row['id']} failed: {row['failed']}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit("study: interrupted; started again, it goes on where it was")

@@ -1,0 +1,319 @@
+"""Tests of the study's own arithmetic and bookkeeping; nothing here renders. Run with `python3 -m unittest`."""
+
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.dont_write_bytecode = True
+
+import analysis  # noqa: E402
+import checks  # noqa: E402
+import journal  # noqa: E402
+import matrix  # noqa: E402
+import program  # noqa: E402
+import progress  # noqa: E402
+import results  # noqa: E402
+import scenes  # noqa: E402
+
+
+def front_of(pairs: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    return analysis.pareto_front(pairs, lambda pair: pair[0], lambda pair: pair[1])
+
+
+class ParetoFront(unittest.TestCase):
+    def test_leaves_out_what_is_beaten(self) -> None:
+        self.assertEqual(front_of([(3, 3), (1, 5), (2, 2), (4, 1), (5, 1)]), [(1, 5), (2, 2), (4, 1)])
+
+    def test_of_one_cost_keeps_the_least_error(self) -> None:
+        self.assertEqual(front_of([(1, 5), (1, 4), (1, 6)]), [(1, 4)])
+
+    def test_is_what_comparing_all_pairs_finds(self) -> None:
+        pairs = [((17 * i) % 101, (i * i * 7) % 97) for i in range(60)]
+        beaten = {b for a in pairs for b in pairs if a != b and a[0] <= b[0] and a[1] <= b[1]}
+        self.assertEqual(front_of(pairs), sorted(set(pairs) - beaten))
+
+    def test_of_nothing_is_empty(self) -> None:
+        self.assertEqual(front_of([]), [])
+
+
+class Slopes(unittest.TestCase):
+    def test_of_a_power_law_is_its_exponent(self) -> None:
+        for exponent in (-1.0, -0.5, 2.0):
+            self.assertAlmostEqual(analysis.slope([16, 64, 256], [3 * n**exponent for n in (16, 64, 256)]), exponent)
+
+    def test_of_one_place_is_refused(self) -> None:
+        with self.assertRaises(ValueError):
+            analysis.slope([16, 16], [1, 2])
+
+    def test_leaves_out_what_the_references_noise_hides(self) -> None:
+        floor = 1e-3
+        rows = [{"vpls": 4**i, "indirect_rel_mse": 1 / 4**i + floor / 100} for i in range(3)]
+        rows += [{"vpls": 4**i, "indirect_rel_mse": floor} for i in range(6, 9)]
+        self.assertAlmostEqual(analysis.slope_above(rows, floor), -1.0, delta=0.01)
+        self.assertIsNone(analysis.slope_above(rows[3:], floor))
+
+
+def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
+    base = {"path": "deferred", "vpls": 256, "bounces": 3, "bound": 1.0, "lever": "none"}
+    figures = {"frame_ms": cost, "full_ms": cost, "total_rel_mse": error}
+    return {"suite": "matrix", "scene": scene, "id": name, "failed": "", **base, **figures, **axes}
+
+
+class BestDefault(unittest.TestCase):
+    def rows(self, scene: str, scale: float) -> list[dict[str, object]]:
+        return [
+            row(scene, "yardstick", 10 * scale, 0.5, bound="infinity"),
+            row(scene, "good", 15 * scale, 0.1),
+            row(scene, "cheap", 5 * scale, 0.4),
+            row(scene, "dear", 21 * scale, 0.01),
+        ]
+
+    def test_is_the_least_error_within_the_cost(self) -> None:
+        best = analysis.best_default(self.rows("a", 1.0) + self.rows("b", 7.0))
+        self.assertEqual(best["id"], "good")
+        self.assertAlmostEqual(best["cost"], 1.5)
+
+    def test_counts_the_dearer_of_both_frames(self) -> None:
+        rows = self.rows("a", 1.0)
+        rows[1]["full_ms"] = 21.0
+        self.assertEqual(analysis.best_default(rows)["id"], "cheap")
+
+    def test_passes_over_what_was_not_measured_everywhere(self) -> None:
+        rows = self.rows("a", 1.0) + self.rows("b", 1.0)
+        rows[5]["failed"] = "crashed"
+        self.assertEqual(analysis.best_default(rows)["id"], "cheap")
+
+    def test_of_nothing_is_none(self) -> None:
+        self.assertIsNone(analysis.best_default([]))
+
+
+class Matrix(unittest.TestCase):
+    def groups(self) -> list[matrix.Group]:
+        made = (matrix.matrix_groups, matrix.convergence_groups, matrix.table_groups, matrix.growth_groups)
+        return [group for make in made for group in make()] + matrix.quick_groups()
+
+    def test_ids_are_distinct_and_fit_for_files(self) -> None:
+        for group in self.groups():
+            names = [one.id for one in group.points]
+            self.assertEqual(len(names), len(set(names)), group.name)
+            for name in names:
+                self.assertRegex(name, r"^[a-z][a-z0-9.-]*$")
+
+    def test_groups_are_distinct(self) -> None:
+        names = [group.name for group in self.groups()]
+        self.assertEqual(len(names), len(set(names)))
+
+    def test_sweep_has_every_axis(self) -> None:
+        axes = [one.axes for one in matrix.sweep(matrix.COUNTS)]
+        for name, values in (
+            ("path", matrix.PATHS),
+            ("vpls", matrix.COUNTS),
+            ("bound", matrix.BOUNDS),
+            ("bounces", matrix.BOUNCES),
+            ("lever", matrix.LEVERS),
+        ):
+            self.assertEqual({each[name] for each in axes}, set(values))
+
+    def test_has_the_yardstick(self) -> None:
+        self.assertIn(analysis.YARDSTICK, [one.axes for one in matrix.sweep([256])])
+
+    def test_levers_join_the_rest_of_their_group(self) -> None:
+        base = {"vpls": {"count": 1}, "path": "forward"}
+        change = {"vpls": {"bounces": 2}, "show": "direct"}
+        expected = {"vpls": {"count": 1, "bounces": 2}, "path": "forward", "show": "direct"}
+        self.assertEqual(matrix.merged(base, change), expected)
+        self.assertEqual(base, {"vpls": {"count": 1}, "path": "forward"})
+
+    def test_keys_tell_circumstances_apart(self) -> None:
+        group = matrix.table_groups()[0]
+        one, other = group.points[:2]
+        key = matrix.key_of(group, one, {"scene": "a"})
+        self.assertEqual(key, matrix.key_of(group, one, {"scene": "a"}))
+        self.assertNotEqual(key, matrix.key_of(group, one, {"scene": "b"}))
+        self.assertNotEqual(key, matrix.key_of(group, other, {"scene": "a"}))
+
+
+class Journal(unittest.TestCase):
+    def written(self, *texts: str) -> dict[str, journal.Record]:
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "journal.jsonl"
+            path.write_text("".join(texts), encoding="utf-8")
+            return journal.fold(journal.read(path))
+
+    def line(self, kind: str, key: str = "k", end: str = "\n") -> str:
+        return json.dumps({"kind": kind, "key": key}) + end
+
+    def test_appends_what_it_reads(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "journal.jsonl"
+            self.assertEqual(journal.read(path), [])
+            journal.append(path, {"kind": "errors", "key": "a"})
+            journal.append(path, {"kind": "time", "key": "a"})
+            self.assertEqual([line["kind"] for line in journal.read(path)], ["errors", "time"])
+
+    def test_a_point_is_done_with_its_last_round(self) -> None:
+        record = self.written(self.line("errors"), self.line("time"), self.line("time"))["k"]
+        self.assertTrue(journal.is_done(record, 2))
+        self.assertFalse(journal.is_done(record, 3))
+        self.assertFalse(journal.is_done(None, 0))
+
+    def test_a_line_cut_short_does_not_count(self) -> None:
+        record = self.written(self.line("errors"), self.line("time"), '{"kind": "ti')["k"]
+        self.assertEqual(len(record["times"]), 1)
+
+    def test_what_is_appended_after_a_cut_line_counts(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "journal.jsonl"
+            path.write_text('{"kind": "ti', encoding="utf-8")
+            journal.append(path, {"kind": "errors", "key": "a"})
+            self.assertEqual(journal.read(path), [{"kind": "errors", "key": "a"}])
+
+    def test_errors_begin_a_point_anew(self) -> None:
+        record = self.written(self.line("errors"), self.line("time"), self.line("errors"))["k"]
+        self.assertEqual(record["times"], [])
+
+    def test_what_failed_is_tried_again(self) -> None:
+        record = self.written(self.line("errors"), self.line("failed"))["k"]
+        self.assertFalse(journal.is_done(record, 0))
+        again = self.written(self.line("failed"), self.line("errors"))["k"]
+        self.assertTrue(journal.is_done(again, 0))
+
+
+# Stands for candela-study: measures what it is asked for, crashes at the points whose names say so.
+FAKE = """#!{python}
+import json, os, sys
+points = json.load(open(sys.argv[sys.argv.index("--points") + 1]))
+rounds = int(sys.argv[sys.argv.index("--rounds") + 1])
+if any("refuse" in point["id"] for point in points):
+    sys.exit("fake: refused")
+for point in points:
+    if "crash-at-errors" in point["id"]:
+        os.abort()
+    kind = "failed" if "fail" in point["id"] else "errors"
+    print(json.dumps({{"id": point["id"], "kind": kind, "message": "its own words"}}), flush=True)
+for round in range(rounds):
+    for point in points:
+        if "fail" in point["id"]:
+            continue
+        if "crash-at-time" in point["id"] and round == 1:
+            os.abort()
+        print(json.dumps({{"id": point["id"], "kind": "time", "round": round}}), flush=True)
+"""
+
+
+class Program(unittest.TestCase):
+    def measured(self, *names: str) -> dict[str, list[str]]:
+        """By point, the kinds of its lines, or a failure's words."""
+        axes = [{"path": name, "vpls": 1, "bounces": 1, "bound": 1, "lever": "none"} for name in names]
+        points = tuple(matrix.Point(each, {}, (0,)) for each in axes)
+        group = matrix.Group("suite", "scene", (4, 4), matrix.Reference(2), 2, points)
+        found: dict[str, list[str]] = {name: [] for name in names}
+
+        def take(line: dict[str, str]) -> None:
+            told = line["message"] if line["kind"] == "failed" else line["kind"]
+            found[line["id"].removesuffix("-v1-b1-g1")].append(told)
+
+        with tempfile.TemporaryDirectory() as folder:
+            fake = pathlib.Path(folder) / "fake"
+            fake.write_text(FAKE.format(python=sys.executable), encoding="utf-8")
+            fake.chmod(0o755)
+            paths = pathlib.Path("scene"), pathlib.Path("reference"), pathlib.Path(folder)
+            program.measure(str(fake), *paths, group, points, take)
+        return found
+
+    def test_all_is_measured(self) -> None:
+        self.assertEqual(self.measured("a", "b"), {name: ["errors", "time", "time"] for name in ("a", "b")})
+
+    def test_a_point_that_fails_leaves_the_others_alone(self) -> None:
+        found = self.measured("a", "fail", "b")
+        self.assertEqual(found["fail"], ["its own words"])
+        self.assertEqual(found["b"], ["errors", "time", "time"])
+
+    def test_a_crash_costs_the_point_that_was_running(self) -> None:
+        for name in ("crash-at-errors", "crash-at-time"):
+            found = self.measured("a", name, "b")
+            self.assertEqual(found[name][-1], "crashed: SIGABRT")
+            for other in ("a", "b"):
+                self.assertEqual(found[other][-3:], ["errors", "time", "time"])
+
+    def test_a_refusal_is_told_for_all_that_is_left(self) -> None:
+        self.assertEqual(self.measured("a", "refuse"), {"a": ["fake: refused"], "refuse": ["fake: refused"]})
+
+
+class Forecast(unittest.TestCase):
+    def test_learns_what_a_unit_takes(self) -> None:
+        forecast = progress.Forecast()
+        forecast.expect("errors", 10.0)
+        forecast.record("errors", 2.0, 6.0)
+        self.assertAlmostEqual(forecast.seconds_left(), 24.0)
+        self.assertAlmostEqual(forecast.share_done(), 0.2)
+
+    def test_is_done_when_nothing_is_left(self) -> None:
+        forecast = progress.Forecast()
+        forecast.expect("time", 1.0)
+        forecast.forget("time", 0.5)
+        forecast.record("time", 0.5, 3.0)
+        self.assertEqual(forecast.seconds_left(), 0.0)
+        self.assertEqual(forecast.share_done(), 1.0)
+
+
+class Configurations(unittest.TestCase):
+    def test_numbers_in_single_precision_are_the_same(self) -> None:
+        default = {"vpls": {"geometry_bound": 0.30000001192092896, "count": 256}, "path": "deferred"}
+        self.assertTrue(results.same(matrix.merged(default, {"vpls": {"geometry_bound": 0.3}}), default))
+        self.assertFalse(results.same(matrix.merged(default, {"vpls": {"geometry_bound": 0.31}}), default))
+        self.assertFalse(results.same(matrix.merged(default, {"vpls": {"geometry_bound": "infinity"}}), default))
+        self.assertFalse(results.same(matrix.merged(default, {"vpls": {"count": 255}}), default))
+
+
+class Checks(unittest.TestCase):
+    def test_nan_is_noticed(self) -> None:
+        for value in (math.nan, math.inf):
+            found = list(checks.all_measured([row("a", "p", 1.0, value)]))
+            self.assertEqual([holds for _, holds, _ in found], [True, False])
+
+    def test_a_failed_point_is_noticed(self) -> None:
+        found = list(checks.all_measured([row("a", "p", 1.0, 0.5, failed="crashed")]))
+        self.assertFalse(found[0][1])
+
+    def test_a_path_that_strays_is_noticed(self) -> None:
+        rows = [row("a", path, 1.0, 0.5, path=path) for path in matrix.PATHS]
+        self.assertTrue(all(holds for _, holds, _ in checks.paths_agree(rows)))
+        rows[2]["total_rel_mse"] = 0.52
+        self.assertFalse(all(holds for _, holds, _ in checks.paths_agree(rows)))
+        self.assertFalse(all(holds for _, holds, _ in checks.paths_agree(rows[:5])))
+
+
+class OwnScenes(unittest.TestCase):
+    def test_spheres_face_inwards_and_are_closed(self) -> None:
+        surface = scenes.sphere_inwards(2.0, 8)
+        edges: dict[tuple[tuple[float, ...], ...], int] = {}
+        for triangle in zip(*[iter(surface.indices)] * 3):
+            a, b, c = (surface.positions[i] for i in triangle)
+            u, v = ([q - p for p, q in zip(a, end)] for end in (b, c))
+            cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+            self.assertLess(sum(x * y for x, y in zip(cross, a)), 0.0)
+            for start, end in ((a, b), (b, c), (c, a)):
+                key = tuple(tuple(round(x, 9) + 0.0 for x in each) for each in (start, end))
+                edges[key] = edges.get(key, 0) + 1
+        for (start, end), count in edges.items():
+            self.assertEqual(count, edges.get((end, start)))
+
+    def test_content_of_named_files_counts(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            path, data = pathlib.Path(folder) / "a.gltf", pathlib.Path(folder) / "a.bin"
+            path.write_text(json.dumps({"buffers": [{"uri": "a.bin"}]}), encoding="utf-8")
+            hashes = set()
+            for content in (b"1", b"2"):
+                data.write_bytes(content)
+                scenes.content_hash.cache_clear()
+                hashes.add(scenes.content_hash(path))
+            self.assertEqual(len(hashes), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
