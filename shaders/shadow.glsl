@@ -16,6 +16,11 @@ float normal_offset(float texel, float cos_axis) {
     return texel * (0.7072 * sqrt(max(0.0, 1.0 - cos_axis * cos_axis)) + 0.1);
 }
 
+// A surface that meets the receiver in a crease and lies square to the map's axis has no slope and so no offset: in the
+// crease only rounding decides. This share of the depth, some ten times the rounding of positions found from the
+// camera's depth, decides for the light.
+const float crease_bias = 1e-5;
+
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
 float cube_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) {
@@ -23,7 +28,7 @@ float cube_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position
     float depth = largest(from_light);
     vec3 major = mix(vec3(0.0), vec3(1.0), equal(abs(from_light), vec3(depth)));
     vec3 lifted = from_light + normal * normal_offset(shadow.texel * depth, dot(normal, major));
-    float reference = min(shadow.near_plane / largest(lifted), 1.0);
+    float reference = min(shadow.near_plane / largest(lifted) * (1.0 + crease_bias), 1.0);
     return texture(shadow_cubes, vec4(lifted, float(shadow.layer)), reference);
 }
 
@@ -33,7 +38,9 @@ float map_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position)
     vec4 clip = shadow.from_world * vec4(lifted, 1.0);
     if (clip.w <= 0.0) return 1.0;
     vec3 at = clip.xyz / clip.w;
-    return texture(shadow_maps, vec4(at.xy * 0.5 + 0.5, float(shadow.layer), clamp(at.z, 0.0, 1.0)));
+    // Perspective depth falls off as 1 / distance, orthographic depth is a share of the scene.
+    float bias = crease_bias * (shadow.kind == SHADOW_PERSPECTIVE ? at.z : 1.0);
+    return texture(shadow_maps, vec4(at.xy * 0.5 + 0.5, float(shadow.layer), clamp(at.z + bias, 0.0, 1.0)));
 }
 
 // Share of the light that reaches the position, in [0, 1]. `normal` faces the light.
