@@ -22,6 +22,7 @@ struct Box {
         lower = glm::min(lower, box.lower);
         upper = glm::max(upper, box.upper);
     }
+    bool operator==(const Box&) const = default;
 };
 
 [[nodiscard]] inline Box bounds(const Triangle& triangle) {

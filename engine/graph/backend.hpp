@@ -31,6 +31,7 @@ enum class Barrier : std::uint32_t {
 [[nodiscard]] constexpr Barrier operator&(Barrier a, Barrier b) {
     return static_cast<Barrier>(static_cast<std::uint32_t>(a) & static_cast<std::uint32_t>(b));
 }
+inline constexpr auto all_barriers = static_cast<Barrier>((1U << 10U) - 1);
 /// "texture fetch + storage"; "none" for none.
 [[nodiscard]] std::string to_string(Barrier bits);
 
@@ -54,6 +55,10 @@ class Backend {
     /// for passes without attachments and lasts until end_pass. end_pass follows also when the pass throws.
     virtual void begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) = 0;
     virtual void end_pass() = 0;
+    /// A number that tells the whole content of an object that this back end made: equal for equal content,
+    /// and else almost surely another. Called between passes; may wait for the GPU.
+    [[nodiscard]] virtual std::uint64_t texture_digest(ObjectId texture) = 0;
+    [[nodiscard]] virtual std::uint64_t buffer_digest(ObjectId buffer) = 0;
 };
 
 }  // namespace candela

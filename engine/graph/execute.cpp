@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -47,9 +48,8 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
     }
     require_imports();
     notice_world(world);
-    mark_dirty(world);
-    while (mark_missing()) {
-    }
+    mark(world, 0);
+    bool marked_too_many = false;  // readers of a pass that was to change something, and has not
 
     record_.frame = frame_;
     std::fill(state_.turned.begin(), state_.turned.end(), std::uint8_t{0});
@@ -58,19 +58,25 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
     for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
         const detail::Step& step = state_.steps[position];
         PassRecord& record = record_.passes[position];
-        record.ran = false;
+        record.ran = record.verified = false;
         record.cpu_ms = 0;
         carried_ = carried_ | step.barrier;
         if (state_.need[position] == nothing) {
             continue;
         }
         const bool changed = dirty(step, world);
+        if (!changed && marked_too_many) {
+            mark(world, position);
+            marked_too_many = false;
+        }
         if (!changed && (state_.need[position] & certain) == 0) {
+            marked_too_many = true;
             continue;
         }
 
         execution.position_ = position;
         run_step(execution, changed);
+        marked_too_many |= !renewed_results(step);
         record.ran = true;
         if (timing == Timing::on) {
             const Clock::time_point now = Clock::now();
@@ -126,9 +132,23 @@ bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
     return false;
 }
 
+/// Marks what a frame may have to run from a position on. Everything before is done, and what that has left
+/// clean no longer makes others run.
+void GraphRuntime::mark(const World& world, std::uint32_t from) {
+    for (const std::uint32_t held : state_.holds) {
+        if (held != none) {
+            state_.versions[held].present = true;
+        }
+    }
+    std::fill_n(state_.need.begin(), from, std::uint8_t{nothing});
+    mark_dirty(world, from);
+    while (mark_missing(from)) {
+    }
+}
+
 /// Forward: a pass may change if it is dirty now, or reads from one that may change.
-void GraphRuntime::mark_dirty(const World& world) {
-    for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
+void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
+    for (std::uint32_t position = from; position < state_.step_count(); ++position) {
         const detail::Step& step = state_.steps[position];
         const detail::Step& next = state_.steps[position + 1];
         std::uint8_t need = step.writes_import ? certain : nothing;
@@ -148,9 +168,9 @@ void GraphRuntime::mark_dirty(const World& world) {
 /// Backward: whoever makes what a running pass lacks must run as well. A run also takes the place of what a
 /// later pass has put into the same object, be it a later version or another resource. Gives whether that has
 /// taken something away which readers seen before may lack, so that another round is due.
-bool GraphRuntime::mark_missing() {
+bool GraphRuntime::mark_missing(std::uint32_t from) {
     bool again = false;
-    for (std::uint32_t position = state_.step_count(); position-- > 0;) {
+    for (std::uint32_t position = state_.step_count(); position-- > from;) {
         if (state_.need[position] == nothing) {
             continue;
         }
@@ -176,6 +196,7 @@ bool GraphRuntime::mark_missing() {
 
 void GraphRuntime::run_step(Execution& execution, bool changed) {
     detail::Step& step = state_.steps[execution.position_];
+    execution.anew_ = repeating_ || !step.has_run || !has_results(step);
     step.has_run = false;
     begin_outputs(step);
     if (carried_ != Barrier::none) {
@@ -192,12 +213,28 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
     keep_record(step, execution.world(), changed);
 }
 
+bool GraphRuntime::has_results(const detail::Step& step) const {
+    const auto outputs =
+        std::span(state_.outputs).subspan(step.first_output, (&step + 1)->first_output - step.first_output);
+    return std::ranges::all_of(
+        outputs, [&](const detail::Output& output) { return state_.versions[output.version].present; });
+}
+
+/// Whether all that the step has just made is new to its readers.
+bool GraphRuntime::renewed_results(const detail::Step& step) const {
+    const auto outputs =
+        std::span(state_.outputs).subspan(step.first_output, (&step + 1)->first_output - step.first_output);
+    return std::ranges::all_of(outputs, [&](const detail::Output& output) {
+        return state_.versions[output.version].stamp == clock_;
+    });
+}
+
 /// Nothing holds while the pass runs, lest an exception leave half a result behind.
 void GraphRuntime::begin_outputs(const detail::Step& step) {
     const detail::Step& next = *(&step + 1);
     for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
         const detail::Output& output = state_.outputs[at];
-        if (output.turns_over) {
+        if (output.turns_over && !repeating_) {
             turn_over(output.slot);
         }
         if (output.value) {
@@ -268,6 +305,9 @@ void GraphRuntime::keep_record(detail::Step& step, const World& world, bool chan
         if (changed && (!output.value || state_.slots[output.slot].changed)) {
             version.stamp = clock_;
         }
+    }
+    if (verifying_) {
+        note_contents(step, changed);
     }
     step.has_run = true;
 }
@@ -357,6 +397,20 @@ detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
 const void* Execution::content(ResourceHandle value) const {
     (void)slot(value, false);
     return runtime_.content(value);
+}
+
+bool Execution::changed(ResourceHandle read) const {
+    const detail::Resource& resource = runtime_.resource(read);
+    const detail::State& state = runtime_.state_;
+    const std::uint32_t version = runtime_.graph_->plan().version(read.resource, read.version);
+    const detail::Step& step = state.steps[position_];
+    for (std::uint32_t at = step.first_input; at < (&step + 1)->first_input; ++at) {
+        if (state.inputs[at] == version) {
+            return anew_ || state.versions[version].stamp != state.input_stamps[at];
+        }
+    }
+    throw GraphError(fmt::format("pass '{}' asks whether {} '{}' has changed without having declared it",
+                                 step.name, to_string(resource.kind), resource.name));
 }
 
 bool Execution::valid(ResourceHandle history) const {

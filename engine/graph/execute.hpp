@@ -21,7 +21,8 @@ namespace candela {
 struct PassRecord {
     std::string_view name;  ///< lasts until the next graph is adopted
     bool ran = false;
-    double cpu_ms = 0.0;  ///< milliseconds on the CPU; 0 without timing
+    bool verified = false;  ///< ran again after the frame, with the same result
+    double cpu_ms = 0.0;    ///< milliseconds on the CPU; 0 without timing
 };
 
 struct FrameRecord {
@@ -76,6 +77,12 @@ class Execution {
         return static_cast<const T*>(slot(value, false).value.get());
     }
 
+    /// Whether what the pass reads has changed since it ran last, for passes that keep parts of their last
+    /// result. Everything has where there is no last result to keep: in the first run, after
+    /// GraphRuntime::invalidate, where the result was overwritten or the pass threw, and in verification,
+    /// which thus compares parts with the whole.
+    [[nodiscard]] bool changed(ResourceHandle read) const;
+
     /// Sets a value that the pass writes. One that equals the present (where T compares) leaves its readers
     /// clean.
     template <class T>
@@ -111,6 +118,7 @@ class Execution {
     GraphRuntime& runtime_;
     const World& world_;
     std::uint32_t position_ = 0;
+    bool anew_ = true;  // the running pass has no last result to keep
 };
 
 /// Runs compiled graphs, one at a time, and owns what must outlast a frame: the objects of the graph's
@@ -161,6 +169,26 @@ class GraphRuntime {
     /// content of the world at one address by that of another.
     const FrameRecord& run(const World& world, Timing timing = Timing::off);
 
+    /// Whether frames are noted for `verify`, and can be: off at first. While it is on, the content of what a
+    /// pass writes is read back each time that it runs; while it is off, it costs nothing.
+    void set_verification(bool on);
+    [[nodiscard]] bool verifies() const { return verifying_; }
+    /// Runs the last frame's passes again, clean ones too, and compares what they write with what they wrote
+    /// when they ran before: textures and buffers by the back end's digests of their content, values where
+    /// their type compares. GraphError names the first pass, in the order of the graph, and the resource that
+    /// differ: the pass depends on what it did not declare, or on chance. It then counts as not having run.
+    ///
+    /// Call it after `run`, with the same world, unchanged. Each pass reads what the passes before it have
+    /// just made again, so that versions which later passes have changed in place, and transients whose
+    /// object has another user by then, are compared like all others. Not run again are passes with side
+    /// effects and those that write imports (they have run in this frame), passes that remember (a history,
+    /// or their own last result), passes that would overwrite what one of those has made, and passes that
+    /// lack what only those could bring back. `reserve` finds the room that it made before. A pass that a
+    /// frame runs only to bring back what another lacks is compared in that frame already.
+    /// The frame's record stays as it is, but for `PassRecord::verified`; of transients that share objects
+    /// others may be there for the next frame than without verification.
+    void verify(const World& world);
+
     /// All passes run in the next frame.
     void invalidate();
     /// The next frame finds no valid history: for camera cuts.
@@ -182,13 +210,19 @@ class GraphRuntime {
     friend Execution;
     void require_imports() const;
     void notice_world(const World& world);
-    void mark_dirty(const World& world);
-    [[nodiscard]] bool mark_missing();
+    void mark(const World& world, std::uint32_t from);
+    void mark_dirty(const World& world, std::uint32_t from);
+    [[nodiscard]] bool mark_missing(std::uint32_t from);
     [[nodiscard]] bool dirty(const detail::Step& step, const World& world) const;
     void run_step(Execution& execution, bool changed);
     void begin_outputs(const detail::Step& step);
     void begin_pass(std::uint32_t position);
     void keep_record(detail::Step& step, const World& world, bool changed);
+    [[nodiscard]] bool has_results(const detail::Step& step) const;
+    [[nodiscard]] bool renewed_results(const detail::Step& step) const;
+    void note_contents(const detail::Step& step, bool changed);
+    [[nodiscard]] detail::Content content_of(const detail::Slot& slot) const;
+    [[noreturn]] void report_difference(const detail::Step& step, std::uint32_t version) const;
     void release(std::uint32_t slot);
     void turn_over(std::uint32_t slot);
 
@@ -214,6 +248,8 @@ class GraphRuntime {
     detail::Stamp clock_ = 0;
     Barrier carried_ = Barrier::none;  // owed by passes that were skipped
     bool cut_ = false;
+    bool verifying_ = false;
+    bool repeating_ = false;  // within verify
 };
 
 template <class T>
@@ -222,7 +258,7 @@ void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
     if (detail::holds_equal<T>(target, content)) {
         return;
     }
-    target.value = std::make_shared<T>(std::move(content));
+    detail::put_value<T>(target, std::move(content));
     target.changed = true;
 }
 
@@ -232,7 +268,7 @@ void GraphRuntime::set(ValueHandle<T> imported, std::type_identity_t<T> value) {
     if (!target || detail::holds_equal<T>(*target, value)) {
         return;
     }
-    target->value = std::make_shared<T>(std::move(value));
+    detail::put_value<T>(*target, std::move(value));
     touch(imported);
 }
 

@@ -73,6 +73,11 @@ class Pass {
     /// Never culled, and runs in every frame.
     void side_effect() { declared_.passes.back().side_effect = true; }
 
+    /// The result depends on the pass's own last one (`Execution::find`), so that running twice is not
+    /// running once. A pass that reads a history does without saying. Verification leaves such passes alone;
+    /// nothing else about them differs.
+    void remembers() { declared_.passes.back().remembers = true; }
+
     /// An order that no data states: this pass runs after the named one, which may be declared later. It
     /// keeps nobody alive. Unknown names are faults.
     void after(std::string_view pass) { declared_.after(pass); }

@@ -2,9 +2,34 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <span>
 #include <utility>
 
 namespace candela::gl {
+namespace {
+
+constexpr std::uint64_t golden = 0x9e37'79b9'7f4a'7c15U;  // 2^64 divided by the golden ratio
+
+std::uint64_t mix(std::uint64_t digest, std::uint64_t word) {
+    digest = (digest ^ word) * golden;
+    return digest ^ (digest >> 29U);
+}
+
+std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t digest) {
+    std::uint64_t word = 0;
+    while (bytes.size() >= sizeof(word)) {
+        std::memcpy(&word, bytes.data(), sizeof(word));
+        digest = mix(digest, word);
+        bytes = bytes.subspan(sizeof(word));
+    }
+    for (const std::byte byte : bytes) {
+        digest = mix(digest, std::to_integer<std::uint64_t>(byte));
+    }
+    return digest;
+}
+
+}  // namespace
 
 ObjectId GraphBackend::create_texture(std::string_view name, const TextureDesc& desc) {
     Texture texture(*device_, name, desc);
@@ -45,6 +70,8 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
     gl.Disable(GL_DEPTH_TEST);
     gl.Disable(GL_CULL_FACE);
     gl.Disable(GL_BLEND);
+    gl.BlendFunc(GL_ONE,
+                 GL_ZERO);  // Mesa refuses several targets while a second source is set up, used or not
     gl.FrontFace(GL_CCW);
     gl.DepthFunc(GL_GREATER);
     gl.DepthMask(GL_TRUE);
@@ -53,6 +80,21 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
 void GraphBackend::end_pass() {
     timer_.end_pass();
     device_->gl().PopDebugGroup();
+}
+
+std::uint64_t GraphBackend::texture_digest(ObjectId texture) {
+    const Texture& read = textures_.at(texture);
+    std::uint64_t digest = golden;
+    for (std::uint32_t level = 0; level < read.desc().mips; ++level) {
+        for (std::uint32_t layer = 0; layer < read.desc().layers; ++layer) {
+            digest = digest_of(read.read(level, layer), digest);
+        }
+    }
+    return digest;
+}
+
+std::uint64_t GraphBackend::buffer_digest(ObjectId buffer) {
+    return digest_of(buffers_.at(buffer).download<std::byte>(), golden);
 }
 
 void GraphBackend::bind_targets(const PassTargets& targets) {

@@ -29,6 +29,8 @@ class GraphBackend final : public Backend {
     void barrier(Barrier bits) override;
     void begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) override;
     void end_pass() override;
+    std::uint64_t texture_digest(ObjectId texture) override;
+    std::uint64_t buffer_digest(ObjectId buffer) override;
 
     /// GPU times of the passes between `begin_frame` and `end_frame` of its frames.
     [[nodiscard]] Timer& timer() { return timer_; }

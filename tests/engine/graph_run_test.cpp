@@ -205,6 +205,34 @@ TEST_CASE_FIXTURE(GraphFixture,
 }
 
 TEST_CASE_FIXTURE(GraphFixture,
+                  "graph run: what is changed in place is not made again for who turns out to be clean") {
+    const auto knob = graph.import_value<int>("knob");
+    const auto half = graph.add("halve", [&](Pass& pass) {
+        pass.read(knob);
+        const auto written = pass.write(graph.value<int>("half"));
+        pass.run([=](Execution& run) { run.set(written, run.value(knob) / 2); });
+        return written;
+    });
+    const TextureHandle first = draw("clear", {}, texture("lit", Lifetime::persistent));
+    const TextureHandle both = graph.add("light", [&](Pass& pass) {
+        pass.read(half);
+        return pass.write(first, Usage::colour_target);
+    });
+    graph.add("show", [&](Pass& pass) {
+        pass.read(both, Usage::sampled);
+        pass.side_effect();
+    });
+    adopt();
+    runtime.set(knob, 2);
+    CHECK(run() == "halve clear light show");
+    runtime.set(knob, 3);
+    CHECK(run() == "halve show");
+    runtime.set(knob, 4);
+    CHECK(run() == "halve clear light show");
+    CHECK(run() == "show");
+}
+
+TEST_CASE_FIXTURE(GraphFixture,
                   "graph run: history is what the last frame left, and invalid until there is some") {
     std::vector<std::uint64_t> seen;
     const auto knob = graph.import_value<int>("knob");

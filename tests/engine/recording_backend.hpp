@@ -52,6 +52,8 @@ class RecordingBackend final : public Backend {
         log.push_back("end");
         --open_passes;
     }
+    std::uint64_t texture_digest(ObjectId texture) override { return digest(texture, true); }
+    std::uint64_t buffer_digest(ObjectId buffer) override { return digest(buffer, false); }
 
     std::map<ObjectId, Object> objects;
     std::vector<std::string> log;  // barriers and passes
@@ -59,7 +61,8 @@ class RecordingBackend final : public Backend {
     std::size_t created = 0;
     std::size_t creations_left = static_cast<std::size_t>(-1);  // until creating fails
     int open_passes = 0;
-    std::string misuse;  // what the graph did wrong, if anything
+    std::size_t digests = 0;  // asked for
+    std::string misuse;       // what the graph did wrong, if anything
 
  private:
     ObjectId create(Object object) {
@@ -70,6 +73,16 @@ class RecordingBackend final : public Backend {
         ++created;
         objects.emplace(next_, std::move(object));
         return next_++;
+    }
+
+    std::uint64_t digest(ObjectId id, bool texture) {
+        ++digests;
+        const auto found = objects.find(id);
+        if (found == objects.end() || found->second.texture != texture) {
+            misuse = fmt::format("object {} is read back, but is none", id);
+            return 0;
+        }
+        return found->second.content;
     }
 
     void destroy(ObjectId id, bool texture) {

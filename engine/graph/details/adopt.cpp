@@ -8,8 +8,6 @@
 namespace candela {
 namespace {
 
-constexpr Barrier all_barriers = static_cast<Barrier>((1U << 10U) - 1);
-
 std::size_t hash_of(const detail::Slot& slot) {
     return slot.kind == ResourceKind::texture ? detail::hash_of(slot.texture) : detail::hash_of(slot.buffer);
 }
@@ -74,6 +72,9 @@ void GraphRuntime::adopt(CompiledGraph graph) {
     std::vector<PassRecord> passes;
     for (std::uint32_t position = 0; position < state.step_count(); ++position) {
         passes.push_back({state.steps[position].name});
+    }
+    if (verifying_) {
+        state.contents.resize(state.versions.size());
     }
     std::vector<detail::Slot> stock = spare_;
     if (graph_) {

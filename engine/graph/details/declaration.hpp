@@ -64,6 +64,7 @@ struct PassNode {
     std::uint32_t first_parameter = 0;
     std::uint32_t first_after = 0;
     bool side_effect = false;
+    bool remembers = false;
 };
 
 /// Owns objects of any type, and text, until it is destroyed. They never move.

@@ -61,12 +61,14 @@ class StateMaker {
         step.name = node.name;
         step.barrier = plan_.barrier[position];
         step.side_effect = node.side_effect;
+        step.remembers = node.remembers;
         for (const Access& access : declared_.accesses_of(pass)) {
             const Resource& resource = declared_.resources[access.resource];
             if (access.write) {
                 add_output(access, position);
                 step.writes_import |= resource.lifetime == Lifetime::imported;
             }
+            step.remembers |= resource.history_of != none;
             add_input(access, pass);
             add_target(access);
         }
@@ -243,6 +245,9 @@ class Heir {
         old_version_[version] = old_version;
         new_version_[old_version] = version;
         state_.versions[version].stamp = old_.versions[old_version].stamp;
+        if (!state_.contents.empty() && !old_.contents.empty()) {
+            state_.contents[version] = old_.contents[old_version];
+        }
     }
 
     void take_records() {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/ecs/world.hpp"
@@ -31,6 +32,7 @@ struct Slot {
     TextureDesc texture;
     BufferDesc buffer;
     std::shared_ptr<void> value;
+    bool (*equal)(const void*, const void*) = nullptr;  // of values of its type; null if they do not compare
     std::string
         kept_as;  // of what outlasts the frame: its name and what was declared; it may have grown since
 };
@@ -44,11 +46,30 @@ bool holds_equal(const Slot& slot, const T& content) {
     }
 }
 
+template <class T>
+void put_value(Slot& slot, T content) {
+    slot.value = std::make_shared<T>(std::move(content));
+    if constexpr (std::equality_comparable<T>) {
+        slot.equal = [](const void* a, const void* b) {
+            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+        };
+    }
+}
+
 /// One version of one resource.
 struct Version {
     Stamp stamp = 0;
     std::uint32_t producer = 0;  // the step that makes it; the number of steps for what comes from outside
     bool present = true;         // in its slot, and not about to be overwritten
+};
+
+/// What a version held when it was last made, for verification. The value is shared, not copied: values are
+/// replaced, never changed.
+struct Content {
+    bool known = false;
+    bool drifted = false;  // made again differently by a pass that remembers: its readers have not seen it
+    std::uint64_t digest = 0;
+    std::shared_ptr<void> value;
 };
 
 struct Output {
@@ -80,6 +101,7 @@ struct Step {
     Barrier barrier = Barrier::none;
     bool side_effect = false;
     bool writes_import = false;
+    bool remembers = false;
     bool has_run = false;
 };
 
@@ -97,12 +119,18 @@ struct State {
     std::vector<std::uint8_t> turned;    // by slot: has turned over in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
     std::vector<std::uint8_t> need;      // by step, and one more: scratch of a frame
+    std::vector<Content> contents;       // by version id; empty without verification
 
     [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()) - 1; }
 };
 
 /// The state of a graph that has not run, whose slots have no objects yet.
 [[nodiscard]] State make_state(const CompiledGraph& graph);
+
+/// By step: whether verification may run it again after a frame. Left out are passes with side effects or
+/// imports to write, passes that remember, those that lack something which only a pass left out could make
+/// again, and those that would overwrite what a pass left out has made.
+[[nodiscard]] std::vector<std::uint8_t> repeatable_steps(const State& state);
 
 /// Takes over from `before` what both graphs declare alike: slots (objects and values), stamps, and the
 /// records of passes. Gives for each of `before`'s slots whether it was taken.

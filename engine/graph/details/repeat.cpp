@@ -1,0 +1,89 @@
+#include <algorithm>
+
+#include "engine/graph/details/state.hpp"
+
+namespace candela::detail {
+namespace {
+
+/// Starts from all that may run again by itself, and takes away what the passes left out forbid, until
+/// nothing more follows.
+class Repetition {
+ public:
+    explicit Repetition(const State& state)
+        : state_(state),
+          again_(state.step_count()),
+          settled_(state.slots.size()),
+          overwritten_(state.versions.size()) {
+        for (std::uint32_t index = 0; index < again_.size(); ++index) {
+            const Step& step = state.steps[index];
+            const bool once = step.side_effect || step.writes_import || step.remembers;
+            again_[index] = step.has_run && !once;
+            if (!again_[index]) {
+                settle(step);
+            }
+        }
+    }
+
+    std::vector<std::uint8_t> find() {
+        while (leave_out()) {
+        }
+        return std::move(again_);
+    }
+
+ private:
+    /// What a pass that is left out has made stays.
+    void settle(const Step& step) {
+        for (std::uint32_t at = step.first_output; at < (&step + 1)->first_output; ++at) {
+            const Output& output = state_.outputs[at];
+            settled_[output.slot] = 1;
+            overwritten_[output.version - 1] = 1;
+        }
+    }
+
+    [[nodiscard]] bool leave_out() {
+        bool left_out = false;
+        for (std::uint32_t index = 0; index < again_.size(); ++index) {
+            const Step& step = state_.steps[index];
+            if (again_[index] && !(has_inputs(step) && may_write(step))) {
+                again_[index] = 0;
+                settle(step);
+                left_out = true;
+            }
+        }
+        return left_out;
+    }
+
+    [[nodiscard]] bool has_inputs(const Step& step) const {
+        for (std::uint32_t at = step.first_input; at < (&step + 1)->first_input; ++at) {
+            const std::uint32_t input = state_.inputs[at];
+            const Version& version = state_.versions[input];
+            const bool made_again = version.producer < again_.size() && again_[version.producer];
+            if (overwritten_[input] || !(made_again || version.present)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    [[nodiscard]] bool may_write(const Step& step) const {
+        for (std::uint32_t at = step.first_output; at < (&step + 1)->first_output; ++at) {
+            if (settled_[state_.outputs[at].slot]) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    const State& state_;
+    std::vector<std::uint8_t> again_;        // by step
+    std::vector<std::uint8_t> settled_;      // by slot: holds what a pass left out has made
+    std::vector<std::uint8_t> overwritten_;  // by version id: a pass left out has changed it since
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> repeatable_steps(const State& state) {
+    return Repetition(state).find();
+}
+
+}  // namespace candela::detail

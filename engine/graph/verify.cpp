@@ -1,0 +1,103 @@
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "engine/graph/execute.hpp"
+
+namespace candela {
+namespace {
+
+/// While it lives the flag is set.
+class Raised {
+ public:
+    explicit Raised(bool& flag) : flag_(flag) { flag_ = true; }
+    Raised(const Raised&) = delete;
+    Raised& operator=(const Raised&) = delete;
+    ~Raised() { flag_ = false; }
+
+ private:
+    bool& flag_;
+};
+
+}  // namespace
+
+void GraphRuntime::set_verification(bool on) {
+    if (on == verifying_) {
+        return;
+    }
+    verifying_ = on;
+    state_.contents.clear();
+    state_.contents.resize(on ? state_.versions.size() : 0);
+}
+
+void GraphRuntime::verify(const World& world) {
+    if (!graph_ || !verifying_) {
+        throw GraphError("there is no frame to verify: no graph has been adopted, or verification is off");
+    }
+    const std::vector<std::uint8_t> again = detail::repeatable_steps(state_);
+    const Raised repeating(repeating_);
+    Execution execution(*this, world);
+    carried_ = all_barriers;  // the plan counts on frames that begin at the beginning
+    for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
+        carried_ = carried_ | state_.steps[position].barrier;
+        if (!again[position]) {
+            continue;
+        }
+        execution.position_ = position;
+        run_step(execution, false);
+        record_.passes[position].verified = true;
+    }
+    carried_ = all_barriers;
+}
+
+/// Notes what the step has made, and compares it with what it had made before from the same inputs.
+void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
+    const detail::Step& next = *(&step + 1);
+    const auto drifted = [&](std::uint32_t version) { return state_.contents[version].drifted; };
+    const bool excused = changed || step.remembers ||
+                         std::any_of(state_.inputs.begin() + step.first_input,
+                                     state_.inputs.begin() + next.first_input, drifted);
+    for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
+        const detail::Output& output = state_.outputs[at];
+        const detail::Slot& slot = state_.slots[output.slot];
+        const bool stamped = state_.versions[output.version].stamp == clock_;
+        detail::Content& known = state_.contents[output.version];
+        if (!output.value && !slot.owned) {
+            known.drifted = !stamped;  // the host's: nobody can tell
+            continue;
+        }
+        detail::Content now = content_of(slot);
+        const bool both_set = known.value && now.value;
+        const bool same =
+            !known.known || (known.digest == now.digest &&
+                             (!both_set || !slot.equal || slot.equal(known.value.get(), now.value.get())));
+        if (!same && !excused) {
+            report_difference(step, output.version);
+        }
+        now.drifted = !stamped && (known.drifted || !same);
+        known = std::move(now);
+    }
+}
+
+detail::Content GraphRuntime::content_of(const detail::Slot& slot) const {
+    detail::Content content{.known = true, .value = slot.value};
+    if (slot.kind == ResourceKind::texture) {
+        content.digest = backend_.texture_digest(slot.object);
+    } else if (slot.kind == ResourceKind::buffer) {
+        content.digest = backend_.buffer_digest(slot.object);
+    }
+    return content;
+}
+
+void GraphRuntime::report_difference(const detail::Step& step, std::uint32_t version) const {
+    const auto& first = graph_->plan().first_version;
+    const auto index = std::distance(first.begin(), std::ranges::upper_bound(first, version)) - 1;
+    const detail::Resource& resource = graph_->declared().resources[static_cast<std::size_t>(index)];
+    throw GraphError(fmt::format(
+        "pass '{}' has an undeclared input: run again while nothing that it declares has changed, "
+        "it gives {} '{}' another content",
+        step.name, to_string(resource.kind), resource.name));
+}
+
+}  // namespace candela

@@ -1,0 +1,225 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "tests/engine/graph_random.hpp"
+#include "tests/engine/recording_backend.hpp"
+
+/// Random graphs whose passes compute: each hashes what it reads into what it writes.
+namespace candela::random_graph {
+
+using Content = std::uint64_t;
+
+inline Content mix(Content hash, Content value) {
+    hash = (hash ^ value) * 0x9e37'79b9'7f4a'7c15U;
+    return hash ^ (hash >> 29U);
+}
+
+/// A pass's result, from the contents that `content_of(access)` gives for what it reads or changes. With
+/// histories, what was there before is read as well.
+template <class ContentOf>
+Content evaluate(const Graph& graph, std::size_t pass, int number, ContentOf content_of) {
+    Content hash = mix(1, pass);
+    if (graph.passes[pass].reads_world) {
+        hash = mix(hash, static_cast<Content>(number));
+    }
+    for (const Access& access : graph.passes[pass].accesses) {
+        if (!access.write || access.version > 1) {
+            hash = mix(hash, content_of(access));
+        }
+    }
+    return hash;
+}
+
+/// What a pass writes: few different values, so that they often stay equal where their inputs do not.
+inline Content result(const Resource& resource, std::size_t index, Content hash) {
+    return resource.kind == ResourceKind::value ? mix(hash, index) % 3 : mix(hash, index);
+}
+
+/// What the host gives.
+struct Host {
+    int number = 0;
+    std::vector<Content> imports;  // by resource
+};
+
+/// By pass and by version of each resource, as the declaration means it.
+struct Meaning {
+    std::vector<Content> passes;
+    std::vector<std::vector<Content>> versions;
+};
+
+/// `before` gives the histories.
+inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& order, const Host& host,
+                       const Meaning* before) {
+    Meaning now;
+    now.passes.resize(graph.passes.size());
+    for (std::size_t index = 0; index < graph.resources.size(); ++index) {
+        now.versions.emplace_back(graph.resources[index].versions + 1, 0);
+        now.versions.back().front() = host.imports[index];
+    }
+    for (const std::uint32_t pass : order) {
+        const Content hash = evaluate(graph, pass, host.number, [&](const Access& access) {
+            if (access.past) {
+                return before ? before->versions[access.resource].back() : 0;
+            }
+            return now.versions[access.resource][access.version - (access.write ? 1 : 0)];
+        });
+        now.passes[pass] = hash;
+        for (const Access& access : graph.passes[pass].accesses) {
+            if (!access.write) {
+                continue;
+            }
+            now.versions[access.resource][access.version] =
+                result(graph.resources[access.resource], access.resource, hash);
+        }
+    }
+    return now;
+}
+
+/// A runtime with a back end of its own, which runs the graph's passes as computations.
+class Machine {
+ public:
+    Machine(const Graph& graph, CompileOptions options) : graph_(graph), runtime_(backend_) {
+        auto compiled =
+            compile(declare(graph, handles_,
+                            [this](std::size_t pass, const auto& handles) {
+                                return [this, pass, handles](Execution& run) { compute(run, pass, handles); };
+                            }),
+                    options);
+        runtime_.adopt(std::move(compiled).take());
+        for (std::size_t index = 0; index < graph.resources.size(); ++index) {
+            const bool gpu = graph.resources[index].kind != ResourceKind::value;
+            if (gpu && graph.resources[index].lifetime == Lifetime::imported) {
+                imported_[index] = backend_.create_texture("import", {});
+            }
+        }
+    }
+
+    /// Gives the host's things: values, and whatever of its objects has changed or was written by the graph.
+    void provide(const Host& host) {
+        world_.set(entity_, Number{host.number});
+        for (std::size_t index = 0; index < graph_.resources.size(); ++index) {
+            const Resource& resource = graph_.resources[index];
+            if (resource.lifetime != Lifetime::imported) {
+                continue;
+            }
+            if (resource.kind == ResourceKind::value) {
+                runtime_.set(ValueHandle<int>{handles_.newest[index]}, static_cast<int>(host.imports[index]));
+                continue;
+            }
+            RecordingBackend::Object& object = backend_.objects.at(imported_[index]);
+            if (object.content == host.imports[index] && bound_) {
+                continue;
+            }
+            object.content = host.imports[index];
+            if (resource.kind == ResourceKind::texture) {
+                runtime_.bind(TextureHandle{handles_.newest[index]}, imported_[index], {});
+            } else {
+                runtime_.bind(BufferHandle<float>{handles_.newest[index]}, imported_[index], 1);
+            }
+        }
+        bound_ = true;
+    }
+
+    const FrameRecord& run() { return runtime_.run(world_); }
+
+    /// Everything that can be seen from outside.
+    void check(const Meaning& expected) const {
+        check_use();
+        for (const auto& [pass, hash] : seen_) {
+            RC_ASSERT(hash == expected.passes[pass]);
+        }
+        for (const auto& [resource, object] : imported_) {
+            RC_ASSERT(backend_.objects.at(object).content == expected.versions[resource].back());
+        }
+    }
+
+    /// That the back end was used as it may be.
+    void check_use() const {
+        RC_ASSERT(backend_.misuse.empty());
+        RC_ASSERT(backend_.open_passes == 0);
+    }
+
+    GraphRuntime& runtime() { return runtime_; }
+    [[nodiscard]] const World& world() const { return world_; }
+
+    /// From now on the pass adds to its results what it has not declared.
+    void sabotage(std::size_t pass) { sabotaged_ = pass; }
+
+ private:
+    void compute(Execution& run, std::size_t pass, const Handles& handles) {
+        const Content hash = evaluate(graph_, pass, run.world().get<Number>(entity_).value,
+                                      [&](const Access& access) -> Content {
+                                          if (access.past) {
+                                              return past(run, access, handles);
+                                          }
+                                          return read(run, access.resource, handles.newest[access.resource]);
+                                      });
+        for (const Access& access : graph_.passes[pass].accesses) {
+            if (access.write) {
+                const Content content = result(graph_.resources[access.resource], access.resource, hash);
+                write(run, access.resource, handles.newest[access.resource],
+                      content + (pass == sabotaged_ ? 10 : 0));
+            }
+        }
+        if (graph_.passes[pass].side_effect) {
+            seen_[pass] = hash;
+        }
+    }
+
+    ObjectId object(Execution& run, std::size_t resource, ResourceHandle handle) const {
+        return graph_.resources[resource].kind == ResourceKind::texture
+                   ? run.object(TextureHandle{handle})
+                   : run.object(BufferHandle<float>{handle});
+    }
+
+    Content past(Execution& run, const Access& access, const Handles& handles) const {
+        const ResourceHandle handle = handles.past.at(access.resource);
+        const bool valid = graph_.resources[access.resource].kind == ResourceKind::texture
+                               ? run.history_valid(TextureHandle{handle})
+                               : run.history_valid(BufferHandle<float>{handle});
+        return valid ? backend_.objects.at(object(run, access.resource, handle)).content : 0;
+    }
+
+    Content read(Execution& run, std::size_t resource, ResourceHandle handle) const {
+        if (graph_.resources[resource].kind == ResourceKind::value) {
+            return static_cast<Content>(run.value(ValueHandle<int>{handle}));
+        }
+        return backend_.objects.at(object(run, resource, handle)).content;
+    }
+
+    void write(Execution& run, std::size_t resource, ResourceHandle handle, Content content) {
+        if (graph_.resources[resource].kind == ResourceKind::value) {
+            run.set(ValueHandle<int>{handle}, static_cast<int>(content));
+        } else {
+            backend_.objects.at(object(run, resource, handle)).content = content;
+        }
+    }
+
+    const Graph& graph_;
+    RecordingBackend backend_;
+    GraphRuntime runtime_;
+    Handles handles_;
+    std::map<std::size_t, ObjectId> imported_;  // by resource
+    std::map<std::size_t, Content> seen_;       // by pass with a side effect
+    World world_;
+    Entity entity_ = world_.create();
+    std::size_t sabotaged_ = static_cast<std::size_t>(-1);
+    bool bound_ = false;
+};
+
+inline void edit(Host& host) {
+    if (one_in(3)) {
+        host.number = static_cast<int>(choose(3));
+    }
+    for (Content& import : host.imports) {
+        if (one_in(3)) {
+            import = 1 + choose(4);
+        }
+    }
+}
+
+}  // namespace candela::random_graph
