@@ -69,7 +69,7 @@ struct Vpl {
     glm::vec3 normal;
     std::uint32_t bounce;
     glm::vec3 flux;
-    std::uint32_t pad0;
+    std::uint32_t map;
 };
 
 using BvhNode = candela::BvhNode;
@@ -94,7 +94,45 @@ struct Path {
     std::uint32_t seed;
     std::uint32_t first_vpl;
     std::uint32_t vpl_count;
+    glm::vec2 start{-1.0F};
+    std::uint32_t kept = 0;
+    std::uint32_t length = 0;
     bool operator==(const Path&) const = default;
+};
+
+struct VplPlace {
+    float weight;
+    std::uint32_t tile;
+    bool operator==(const VplPlace&) const = default;
+};
+
+enum class VplState : std::uint32_t { placed, escaped };
+
+struct VplRecord {
+    glm::vec3 position;
+    VplState state;
+    glm::vec3 normal;
+    float pad0;
+    glm::vec3 throughput;
+    float pad1;
+};
+
+struct CheckedPath {
+    std::uint32_t light;
+    std::uint32_t index;
+    std::uint32_t seed;
+    std::uint32_t first_tile;
+    std::uint32_t length;
+    std::uint32_t tested;
+    std::uint32_t canonical;
+    std::uint32_t traced_seed;
+};
+
+struct PathCheck {
+    glm::vec2 start;
+    glm::vec2 canonical;
+    std::uint32_t length;
+    std::uint32_t pad0;
 };
 
 struct FluxAccount {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/graph/compile.hpp"
 #include "engine/graph/describe.hpp"
@@ -88,6 +89,12 @@ EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
     return total;
 }
 
+/// Whether both give the same picture before it is tone-mapped.
+bool same_radiance(Configuration a, const Configuration& b) {
+    a.tone_map = b.tone_map;
+    return a == b;
+}
+
 }  // namespace
 
 Renderer::Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
@@ -113,6 +120,9 @@ void Renderer::adopt(const Configuration& configuration, glm::uvec2 size) {
     FrameHandles frame = build_frame(graph, gpu_, configuration, size);
     runtime_.adopt(compile(std::move(graph)).take());
     frame_ = frame;
+    if (size != size_ || !same_radiance(configuration, configuration_)) {
+        ++refinement_clock_.epoch;
+    }
     configuration_ = configuration;
     size_ = size;
     last_passes_.clear();
@@ -131,6 +141,8 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
     }
     runtime_.set(frame_.request, ViewRequest{camera, target.size, jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
+    set_vpl_clock(world);
+    set_refinement_clock();
 
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t index = next_frame_++;
@@ -138,8 +150,45 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
         const TimedFrame timed(backend_.timer(), index);
         last_passes_ = runtime_.run(world, Timing::on).passes;
     }
+    world_ = &world;
+    if (frame_.vpls) {
+        const VplPaths& vpls = runtime_.value(frame_.vpls->paths);
+        vpl_work_ = vpls.debt > 0 || vpls.stale > 0;
+    }
+    if (frame_.refinement) {
+        const std::uint32_t sets = runtime_.value(*frame_.refinement).set + 1;
+        refine_ = !vpl_work_ && sets < configuration_.refinement.frames;
+    }
     pending_.push_back(to_report(last_passes_, index, milliseconds_since(start)));
     match_times(backend_.timer().collect());
+    if (runtime_.verifies()) {
+        runtime_.verify(world);
+    }
+}
+
+/// VPLs of another world, or of a frame that was cut short, are not built upon.
+void Renderer::set_vpl_clock(const World& world) {
+    if (std::exchange(world_, nullptr) != &world) {
+        ++vpl_clock_.epoch;
+        ++refinement_clock_.epoch;
+        vpl_work_ = refine_ = false;
+    }
+    vpl_clock_.round += vpl_work_ ? 1 : 0;
+    if (frame_.vpl_clock) {
+        runtime_.set(*frame_.vpl_clock, vpl_clock_);
+    }
+}
+
+void Renderer::set_refinement_clock() {
+    refinement_clock_.round += std::exchange(refine_, false) ? 1 : 0;
+    if (frame_.refinement_clock) {
+        runtime_.set(*frame_.refinement_clock, refinement_clock_);
+    }
+}
+
+void Renderer::invalidate() {
+    runtime_.invalidate();
+    world_ = nullptr;
 }
 
 void Renderer::match_times(const std::vector<gl::FrameTime>& times) {
@@ -203,10 +252,19 @@ VplReport Renderer::report_vpls(const Vpls& vpls) const {
     accounts.resize(plan.paths.size());
     const auto alive =
         std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
+    const auto made = [&](const PassRecord& pass) { return pass.name == "vpl-trace" && pass.ran; };
+    const bool any_made = std::ranges::any_of(last_passes_, made);
+    const auto traced = [](std::uint32_t sum, const gpu::Path& path) {
+        return sum + path.length - path.kept;
+    };
     return {.requested = configuration_.vpls.count,
             .alive = static_cast<std::uint32_t>(alive),
             .paths = static_cast<std::uint32_t>(plan.paths.size()),
             .rays = count_rays(plan.paths, placed),
+            .debt = plan.debt,
+            .stale = plan.stale,
+            .traced = any_made ? std::accumulate(plan.paths.begin(), plan.paths.end(), 0U, traced) : 0,
+            .maps_drawn = any_made ? static_cast<std::uint32_t>(plan.maps_due.size()) : 0,
             .flux = sum_up(accounts)};
 }
 
@@ -214,6 +272,7 @@ LightReport Renderer::report_lights() const {
     const ShadowPlan& shadows = runtime_.value(frame_.shadows);
     LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
                        .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
+                       .shadow_views = runtime_.value(frame_.drawn_shadows).newly_drawn,
                        .without_shadow = shadows.lights_without};
     if (!frame_.lists) {
         return report;
@@ -232,6 +291,7 @@ Report Renderer::report() {
     Report report{.gl_renderer = device().renderer(),
                   .triangles = runtime_.value(frame_.metrics).triangles,
                   .vpls = std::nullopt,
+                  .refined = frame_.refinement ? runtime_.value(*frame_.refinement).set + 1 : 0,
                   .lights = report_lights(),
                   .memory = runtime_.memory()};
     if (frame_.vpls && configuration_.show != Show::direct) {

@@ -53,13 +53,18 @@ struct VplReport {
     std::uint32_t requested = 0;
     std::uint32_t alive = 0;
     std::uint32_t paths = 0;
-    std::uint32_t rays = 0;  ///< segments of the paths, those that hit nothing included
+    std::uint32_t rays = 0;        ///< segments of the paths, those that hit nothing included
+    std::uint32_t debt = 0;        ///< VPLs that are missing, and depth maps of VPLs that are out of date
+    std::uint32_t stale = 0;       ///< VPLs that light the scene rightly, but will give way to others
+    std::uint32_t traced = 0;      ///< VPLs that were made anew in the last frame
+    std::uint32_t maps_drawn = 0;  ///< depth maps of VPLs that were due in it
     EnergyAccount flux;
 };
 
 struct LightReport {
     std::uint32_t count = 0;
     std::uint32_t with_shadow = 0;
+    std::uint32_t shadow_views = 0;    ///< rendered when shadow maps last changed: 6 a cube, else 1 a light
     std::uint32_t without_shadow = 0;  ///< that should cast shadows but found no room in the budget
     std::uint32_t global = 0;  ///< that every list visits, having no range, or no room in the lists' memory
     std::uint32_t tile_max =
@@ -72,6 +77,7 @@ struct Report {
     std::string gl_renderer;
     std::uint64_t triangles = 0;
     std::optional<VplReport> vpls;  ///< none without indirect light
+    std::uint32_t refined = 0;      ///< sets of VPLs in the picture's mean; 0 without refinement
     LightReport lights;
     MemoryUse memory;
 };
@@ -101,7 +107,12 @@ class Renderer {
 
     /// Does everything anew in the next frame. A world is known by its address and its pools' revisions: call
     /// this after putting another world in the place of the last one.
-    void invalidate() { runtime_.invalidate(); }
+    void invalidate();
+
+    /// For tests: every frame's passes run again, those too that had nothing to do, and `render` throws
+    /// GraphError where a pass gives another result than before, as it depends on what it did not declare:
+    /// see GraphRuntime::verify. Reads all results back, and takes more than twice the time.
+    void verify(bool on) { runtime_.set_verification(on); }
 
     /// Tone-maps a picture of linear radiance that was averaged elsewhere; row 0 is the bottom.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
@@ -124,6 +135,8 @@ class Renderer {
 
  private:
     void adopt(const Configuration& configuration, glm::uvec2 size);
+    void set_vpl_clock(const World& world);
+    void set_refinement_clock();
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls) const;
     [[nodiscard]] LightReport report_lights() const;
@@ -134,6 +147,11 @@ class Renderer {
     Configuration configuration_;
     glm::uvec2 size_{1};
     FrameHandles frame_;
+    RefinementClock refinement_clock_;
+    bool refine_ = false;  // whether the next frame is to add another set of VPLs to the mean
+    VplClock vpl_clock_;
+    bool vpl_work_ = false;         // whether the last frame left some for its VPLs
+    const World* world_ = nullptr;  // of the last frame, if that was finished
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
     std::deque<FrameReport> pending_;  // GPU times have not arrived

@@ -55,8 +55,8 @@ void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, in
     if ((nearer || tie) && !is_hole(triangle, vec2(u, v))) hit = Hit(t, vec2(u, v), index);
 }
 
-// Nearest triangle with t in (t_min, t_max), whichever side it shows; `triangle` is NO_TRIANGLE if there is none.
-Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
+// A triangle with t in (t_min, t_max), whichever side it shows: the nearest, or with `any` the first that turns up.
+Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
     Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE);
     if (triangle_count == 0u) return hit;
     vec3 inverse_direction = safe_inverse(direction);
@@ -68,6 +68,8 @@ Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
         uint first = bvh_nodes[node].first;
         uint count = bvh_nodes[node].count;
         for (uint i = 0u; i < count; ++i) intersect_triangle(first + i, origin, direction, t_min, hit);
+
+        if (any && hit.triangle != NO_TRIANGLE) return hit;
 
         bool descend = false;
         if (count == 0u) {
@@ -88,4 +90,14 @@ Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
         }
     }
     return hit;
+}
+
+// Nearest triangle with t in (t_min, t_max), whichever side it shows; `triangle` is NO_TRIANGLE if there is none.
+Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
+    return trace(origin, direction, t_min, t_max, false);
+}
+
+// Whether there is a triangle with t in (t_min, t_max).
+bool any_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
+    return trace(origin, direction, t_min, t_max, true).triangle != NO_TRIANGLE;
 }

@@ -1,11 +1,18 @@
-// Shades the G-buffer. An invocation takes four pixels of a tile of 16 × 16, 8 apart, and fetches each light once for
-// all four.
+// Shades the G-buffer, a tile of 16 × 16 pixels a work group. An invocation takes four of them, 8 apart, and fetches each
+// light once for all four; with rays, which cost more than any fetch, it takes one, as software drivers end the loops of
+// an invocation after 65,536 turns in all.
 #include "bindings.glsl"
 
+#ifdef VPL_VISIBILITY_RAYS
+#define SURFACES 1
+#define GROUP_SIDE 16
+#else
 #define SURFACES 4
+#define GROUP_SIDE 8
+#endif
 #include "lighting.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
 
 uniform mat4 world_from_clip;
 uniform vec2 target_size;
@@ -17,7 +24,7 @@ layout(rgba32f, binding = IMAGE_RADIANCE) writeonly restrict uniform image2D rad
 
 ivec2 pixel(int s) {
     ivec2 tile = 16 * ivec2(gl_WorkGroupID.xy);
-    return tile + ivec2(gl_LocalInvocationID.xy) + 8 * ivec2(s & 1, s >> 1);
+    return tile + ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(s & 1, s >> 1);
 }
 
 void main() {

@@ -10,6 +10,7 @@ layout(location = 0, index = 1) out vec4 cover;
 
 void main() {
     vec4 colour = fragment_colour();
+    if (gl_HelperInvocation) return;  // as in vpl_maps.frag, where rays are traced
     Surface surfaces[SURFACES];
     uvec2 pixels[SURFACES];
     vec3 reflected[SURFACES];

@@ -7,6 +7,7 @@
 #include "shadow.glsl"
 #include "surface.glsl"
 #include "types.glsl"
+#include "vpl_visibility.glsl"
 
 #ifndef SURFACES
 #define SURFACES 1
@@ -16,7 +17,7 @@ layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light
 layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
 
 uniform uint vpl_count;
-uniform float vpl_radius2;  // of the disc that a VPL stands for, m²
+uniform float vpl_radius2;  // m²: nearer than its root a VPL lights no more than from there
 
 vec3 irradiance_from_light(Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
@@ -27,19 +28,29 @@ vec3 irradiance_from_light(Light light, Surface surface) {
 }
 
 // Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997), kept from growing
-// without bound at r = 0: the VPL stands for a disc, whose form factor on its axis is R² / (R² + r²) and not R² / r²
-// (Howell et al., "Thermal Radiation Heat Transfer", configuration factor of a disc). It is never above 1 / R².
-// Multiplied by flux/π it is the irradiance.
+// beyond 1/R², R² being vpl_radius2, in two ways, as the surface turns to the VPL. Facing it, the VPL stands for a disc,
+// whose form factor on its axis is R² / (R² + r²) and not R² / r² (Howell et al., "Thermal Radiation Heat Transfer",
+// configuration factor of a disc). Square to it that would darken creases, where a wall takes up half of the floor's sky
+// from however near: there the VPL is seen as if it sank behind its own surface, by R at contact and R²/r farther off,
+// which leaves the half, to within R over the wall's height. Multiplied by flux/π the term is the irradiance.
 float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
-    float distance2 = max(dot(to_vpl, to_vpl), 1e-12);
-    float cos_surface = max(dot(surface.normal, to_vpl), 0.0);
-    float cos_vpl = max(-dot(vpl.normal, to_vpl), 0.0);
-    return cos_surface * cos_vpl / (distance2 * (distance2 + vpl_radius2));
+    float height = -dot(vpl.normal, to_vpl);
+    if (height <= 0.0) return 0.0;
+    float facing = max(-dot(vpl.normal, surface.normal), 0.0);
+    float depth = (1.0 - facing) * vpl_radius2 * inversesqrt(vpl_radius2 + max(dot(to_vpl, to_vpl), 1e-12));
+    vec3 to_sunk = to_vpl - depth * vpl.normal;
+    float distance2 = max(dot(to_sunk, to_sunk), 1e-12);
+    float cos_surface = max(dot(surface.normal, to_sunk), 0.0);
+    return cos_surface * (height + depth) / (distance2 * (distance2 + facing * vpl_radius2));
 }
 
-// Share of the VPL's light that reaches the surface. VPLs shine through walls as yet.
-float vpl_visibility(uint index, Surface surface) { return 1.0; }
+// Geometry term times the share of the light that nothing holds back; that is looked up only where there is light.
+float visible_geometry_term(Vpl vpl, Surface surface) {
+    float geometry = geometry_term(vpl, surface);
+    if (geometry > 0.0) geometry *= vpl_visibility(vpl, surface);
+    return geometry;
+}
 
 // Irradiance from the lights that the surfaces visit, light by light, so that each is fetched once for all of them.
 void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
@@ -64,7 +75,7 @@ void gather_vpls(Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
     for (uint i = 0u; i < vpl_count; ++i) {
         Vpl vpl = vpls[i];
         for (int s = 0; s < SURFACES; ++s) {
-            irradiance[s] += vpl.flux * (geometry_term(vpl, surfaces[s]) * vpl_visibility(i, surfaces[s]));
+            irradiance[s] += vpl.flux * visible_geometry_term(vpl, surfaces[s]);
         }
     }
 }

@@ -1,9 +1,9 @@
 // Fragment side of mesh_surface.vert: the surface under the fragment.
 #include "bindings.glsl"
+#include "materials.glsl"
 #include "surface.glsl"
 #include "types.glsl"
 
-layout(std430, binding = BINDING_MATERIALS) readonly restrict buffer Materials { Material materials[]; };
 layout(binding = UNIT_BASE_COLOUR) uniform sampler2D base_colour;
 
 in vec3 normal;

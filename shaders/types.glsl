@@ -63,7 +63,7 @@ struct Vpl {
     vec3 normal;    // unit; it emits into this half-space
     uint bounce;    // 1 for the first surface that the light meets
     vec3 flux;      // reflected flux, lm or W as the lights have it; zero: not alive
-    uint pad0;
+    uint map;       // tile of its depth map in the atlas
 };
 
 struct BvhNode {
@@ -87,12 +87,53 @@ struct TraceTriangle {
 };
 
 struct Path {
-    vec3 flux;        // carried at the start
+    vec3 flux;        // of its light
     uint light;
     uint index;       // within the light's sequence
     uint seed;        // of the light's sequence
-    uint first_vpl;
-    uint vpl_count;   // bounces that the path may make, at least 1
+    uint first_vpl;   // its first place
+    uint vpl_count;   // bounces that the path may make, at least 1: its places
+    vec2 start;       // on its light, in [0, 1)^2; negative: at its point of the sequence
+    uint kept;        // leading bounces that an earlier frame has recorded
+    uint length;      // leading bounces that there are; the rest, if any, is still to be traced
+};
+
+// Place of a bounce of a path, and so of a VPL.
+struct VplPlace {
+    float weight;  // share of the light's flux that the path carries into the bounce
+    uint tile;     // of the bounce's record and of its VPL's depth map
+};
+
+// A bounce without its flux.
+struct VplRecord {
+    vec3 position;    // metres; escaped: where the segment began
+    uint state;       // VPL_*
+    vec3 normal;      // unit; escaped: the segment's direction
+    float pad0;
+    vec3 throughput;  // product of the albedos so far, this bounce's included
+    float pad1;
+};
+
+#define VPL_PLACED 0u
+#define VPL_ESCAPED 1u
+
+// A path whose records are to be tested against the scene as it is now.
+struct CheckedPath {
+    uint light;
+    uint index;
+    uint seed;         // of the light's sequence
+    uint first_tile;   // of its tiles in the list of them
+    uint length;       // bounces that have records
+    uint tested;       // leading segments that may have changed
+    uint canonical;    // 1: starts at its point of the sequence, of its light as it is now
+    uint traced_seed;  // of the sequence by which its records were made
+};
+
+struct PathCheck {
+    vec2 start;      // on its light as it is now, in [0, 1]^2
+    vec2 canonical;  // its point of the sequence
+    uint length;     // leading bounces that stay
+    uint pad0;
 };
 
 struct FluxAccount {

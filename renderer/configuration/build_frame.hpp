@@ -7,7 +7,10 @@
 #include "renderer/passes/bvh.hpp"
 #include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/lights.hpp"
+#include "renderer/passes/refinement.hpp"
+#include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/view.hpp"
+#include "renderer/passes/vpl_refresh.hpp"
 
 namespace candela {
 
@@ -18,7 +21,11 @@ struct FrameHandles {
     ValueHandle<SceneMetrics> metrics;
     ValueHandle<LightTable> lights;
     ValueHandle<ShadowPlan> shadows;
-    std::optional<Vpls> vpls;         ///< none without indirect light
+    ValueHandle<DrawnShadows> drawn_shadows;
+    std::optional<Vpls> vpls;                        ///< none without indirect light
+    std::optional<ValueHandle<VplClock>> vpl_clock;  ///< imported; none where all VPLs are made anew at once
+    std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
+    std::optional<ValueHandle<Refinement>> refinement;
     std::optional<LightLists> lists;  ///< none where all surfaces visit all lights
 };
 

@@ -16,12 +16,16 @@ constexpr std::array<std::string_view, all_shading_paths.size()> path_names{
     "forward",        "tiled-forward",     "forward+",          "deferred",
     "tiled-deferred", "clustered-forward", "clustered-deferred"};
 constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
+constexpr std::array<std::string_view, 3> visibility_names{"none", "maps", "rays"};
 
 std::span<const std::string_view> names_of(ShadingPath /*type*/) {
     return path_names;
 }
 std::span<const std::string_view> names_of(Show /*type*/) {
     return show_names;
+}
+std::span<const std::string_view> names_of(VplVisibility /*type*/) {
+    return visibility_names;
 }
 
 struct Range {
@@ -41,6 +45,9 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("count", c.vpls.count, {0, 1 << 20});
         visitor.member("bounces", c.vpls.bounces, {0, 64});
         visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
+        visitor.member("budget", c.vpls.budget, {0, 1 << 20});
+        visitor.member("visibility", c.visibility.method);
+        visitor.member("map_resolution", c.visibility.map_resolution, {8, 1024});
         visitor.member("geometry_bound", c.geometry_bound, {1e-6, infinity});
     });
     visitor.group("lists", [&] {
@@ -52,6 +59,10 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("cube_resolution", c.shadows.cube_resolution, {16, 8192});
         visitor.member("map_resolution", c.shadows.map_resolution, {16, 8192});
         visitor.member("budget_mib", c.shadows.budget_mib, {0, 1 << 16});
+    });
+    visitor.group("refinement", [&] {
+        visitor.member("enabled", c.refinement.enabled);
+        visitor.member("frames", c.refinement.frames, {1, 1 << 20});
     });
     visitor.group("tone_map", [&] {
         visitor.member("enabled", c.tone_map.enabled);
@@ -293,6 +304,9 @@ std::string_view to_string(ShadingPath path) {
 }
 std::string_view to_string(Show show) {
     return show_names[static_cast<std::size_t>(show)];
+}
+std::string_view to_string(VplVisibility visibility) {
+    return visibility_names[static_cast<std::size_t>(visibility)];
 }
 
 }  // namespace candela

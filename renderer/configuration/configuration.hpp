@@ -10,8 +10,10 @@
 
 #include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/lighting.hpp"
+#include "renderer/passes/refinement.hpp"
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/tone_map.hpp"
+#include "renderer/passes/vpl_maps.hpp"
 #include "renderer/passes/vpl_trace.hpp"
 
 namespace candela {
@@ -49,9 +51,11 @@ struct Configuration {
     Show show = Show::total;
     bool indirect = true;
     VplSettings vpls;
+    VplVisibilitySettings visibility;
     float geometry_bound = 1.0F;  ///< factor on the bound of a VPL's geometry term: see vpl_radius2
     ListSettings lists;
     ShadowSettings shadows;
+    RefinementSettings refinement;
     ToneMapSettings tone_map;
     bool operator==(const Configuration&) const = default;
 };
@@ -82,5 +86,6 @@ struct NamedConfiguration {
 
 [[nodiscard]] std::string_view to_string(ShadingPath path);
 [[nodiscard]] std::string_view to_string(Show show);
+[[nodiscard]] std::string_view to_string(VplVisibility visibility);
 
 }  // namespace candela

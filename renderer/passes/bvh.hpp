@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 
@@ -24,6 +25,12 @@ struct SceneMetrics {
     [[nodiscard]] glm::vec3 centre() const { return (lower + upper) * 0.5F; }
     /// Of the sphere around the box; 0 for an empty scene.
     [[nodiscard]] float radius() const { return glm::length(upper - lower) * 0.5F; }
+    /// How far above a surface rays start, in metres: some hundred times the rounding of positions.
+    [[nodiscard]] float ray_offset() const { return 2e-5F * scale(); }
+    /// The radius rounded down to a power of two, so that it stays while things move.
+    [[nodiscard]] float scale() const {
+        return radius() > 0.0F ? std::exp2(std::floor(std::log2(radius()))) : 0.0F;
+    }
 };
 
 /// The hierarchy on the CPU, kept from frame to frame so that it can be refitted.

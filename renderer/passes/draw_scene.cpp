@@ -25,6 +25,15 @@ void read_materials(Pass& pass, const SceneData& scene) {
     pass.read(scene.materials, Usage::storage);
 }
 
+bool meshes_changed(const Execution& run, const SceneData& scene) {
+    return run.changed(scene.layout) || run.changed(scene.vertices) || run.changed(scene.instance_ids) ||
+           run.changed(scene.indices) || run.changed(scene.draws) || run.changed(scene.instances);
+}
+
+bool materials_changed(const Execution& run, const SceneData& scene) {
+    return run.changed(scene.materials);
+}
+
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     gl::VertexArray& vertices = gpu.mesh_vertices();
     vertices.vertex_buffer(run.object(scene.vertices), sizeof(Vertex), 0, 0);

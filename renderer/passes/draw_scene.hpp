@@ -14,6 +14,10 @@ void read_meshes(Pass& pass, const SceneData& scene);
 /// Declares what their surfaces, shaded or masked, read besides.
 void read_materials(Pass& pass, const SceneData& scene);
 
+/// Whether any of it has changed since the running pass drew last.
+[[nodiscard]] bool meshes_changed(const Execution& run, const SceneData& scene);
+[[nodiscard]] bool materials_changed(const Execution& run, const SceneData& scene);
+
 /// Binds vertices, indices, instances and draw arguments.
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);
 void bind_materials(const Gpu& gpu, Execution& run, const SceneData& scene);

@@ -113,7 +113,7 @@ LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> 
                            std::optional<TextureHandle> depth, glm::uvec2 size,
                            const ListSettings& settings) {
     const BinBuffers bins = add_light_bins(
-        graph, gpu, "light-tiles", lights, view, settings, [](Pass&) {},
+        graph, gpu, "light-tiles", lights, view, settings, [&](Pass& pass) { pass.parameter(size); },
         [=](Execution&) { return tile_grid(size, settings); }, [](Execution&) { return true; });
     return add_narrowing(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
                          view, depth);
@@ -124,7 +124,11 @@ LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<Ligh
                                    ValueHandle<SceneLayout> layout, glm::uvec2 size,
                                    const ListSettings& settings) {
     const BinBuffers bins = add_light_bins(
-        graph, gpu, "blended-light-tiles", lights, view, settings, [&](Pass& pass) { pass.read(layout); },
+        graph, gpu, "blended-light-tiles", lights, view, settings,
+        [&](Pass& pass) {
+            pass.read(layout);
+            pass.parameter(size);
+        },
         [=](Execution&) { return tile_grid(size, settings); },
         [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
     return add_narrowing(graph, gpu, "blended-light-tiles", "light_tiles.comp", LightList::tile, bins,
@@ -144,7 +148,11 @@ LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTabl
         return cluster_grid(size, settings, nearest, farthest);
     };
     const BinBuffers bins = add_light_bins(
-        graph, gpu, "light-clusters", lights, view, settings, [&](Pass& pass) { pass.read(metrics); },
+        graph, gpu, "light-clusters", lights, view, settings,
+        [&](Pass& pass) {
+            pass.read(metrics);
+            pass.parameter(size);
+        },
         make_grid, [](Execution&) { return true; });
     return add_narrowing(graph, gpu, "light-clusters", "light_clusters.comp", LightList::cluster, bins,
                          light_buffer, view, std::nullopt);

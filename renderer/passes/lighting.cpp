@@ -33,17 +33,23 @@ LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<Lig
 }
 
 float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
-    return area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
+    return 4.0F * area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
 }
 
 std::vector<std::string> lighting_variant(const Lighting& lighting) {
-    if (!lighting.lists) {
-        return {};
+    std::vector<std::string> words;
+    if (lighting.lists) {
+        words.emplace_back("LIGHT_LIST_CELLS");
     }
-    if (lighting.lists->kind == LightList::tile) {
-        return {"LIGHT_LIST_CELLS"};
+    if (lighting.lists && lighting.lists->kind == LightList::cluster) {
+        words.emplace_back("LIGHT_LIST_PER_SURFACE");
     }
-    return {"LIGHT_LIST_CELLS", "LIGHT_LIST_PER_SURFACE"};
+    if (lighting.vpl_maps) {
+        words.emplace_back("VPL_VISIBILITY_MAPS");
+    } else if (lighting.vpl_rays) {
+        words.emplace_back("VPL_VISIBILITY_RAYS");
+    }
+    return words;
 }
 
 void read_lighting(Pass& pass, const Lighting& lighting) {
@@ -56,6 +62,12 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     if (lighting.vpls) {
         pass.read(lighting.vpls->paths);
         pass.read(lighting.vpls->vpls, Usage::storage);
+    }
+    if (lighting.vpl_maps) {
+        read_vpl_maps(pass, *lighting.vpl_maps);
+    }
+    if (lighting.vpl_rays) {
+        read_tracing(pass, *lighting.vpl_rays);
     }
     if (lighting.lists) {
         read_light_lists(pass, *lighting.lists);
@@ -84,7 +96,15 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
         return;
     }
     gpu.bind_storage(BINDING_VPLS, run.object(lighting.vpls->vpls));
-    program.set("vpl_radius2", vpl_radius2(lighting.geometry_bound, vpls, run.value(lighting.metrics).area));
+    const SceneMetrics& metrics = run.value(lighting.metrics);
+    program.set("vpl_radius2", vpl_radius2(lighting.geometry_bound, vpls, metrics.area));
+    if (lighting.vpl_maps) {
+        bind_vpl_maps(gpu, run, program, *lighting.vpl_maps, metrics);
+    }
+    if (lighting.vpl_rays) {
+        bind_tracing(gpu, run, program, *lighting.vpl_rays);
+        program.set("vpl_ray_offset", metrics.ray_offset());
+    }
 }
 
 }  // namespace candela

@@ -10,6 +10,7 @@
 #include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/lights.hpp"
 #include "renderer/passes/shadow_maps.hpp"
+#include "renderer/passes/vpl_maps.hpp"
 #include "renderer/passes/vpl_trace.hpp"
 
 namespace candela {
@@ -34,15 +35,17 @@ struct Lighting {
     LightBuffers buffers;
     ShadowMaps shadows;
     std::optional<Vpls> vpls;         ///< none: no indirect light
+    std::optional<VplMaps> vpl_maps;  ///< where VPLs are looked up; none: not in maps
+    std::optional<Tracing> vpl_rays;  ///< what rays to the VPLs are traced against; none: no rays
     std::optional<LightLists> lists;  ///< none: every surface visits every light
     Show show = Show::total;
     float geometry_bound = 1.0F;  ///< see `vpl_radius2`
 };
 
-/// Squared radius, in m², of the disc that a VPL stands for. N VPLs share the area A of the scene's surfaces,
-/// so each is a disc of A/N: R² = A / (π N), and its geometry term is at most 1/R², where a form factor of 1
-/// would be. `bound` scales that bound: at infinity the VPL is a point. The radius shrinks as N grows, and
-/// the energy that it costs vanishes.
+/// Squared distance R², in m², from which on a VPL's light hardly grows: shaders/lighting.glsl. N VPLs share
+/// the area A of the scene's surfaces; R is the diameter of a disc of A/N, R² = 4 A / (π N), the least error
+/// in the Cornell box with shadows of VPLs (tests/study). The geometry term is at most 1/R², and `bound`
+/// scales that; at infinity the VPL is a point. R shrinks as N grows, and the energy that it costs vanishes.
 [[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
 
 /// Words to define in shaders that include lighting.glsl.

@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "engine/graph/execute.hpp"
 #include "renderer/passes/draw_scene.hpp"
@@ -136,12 +139,43 @@ void draw_view(const Gpu& gpu, Execution& run, const SceneData& scene, const Sha
     draw_masked_depth(gpu, run, scene);
 }
 
+/// Gives the texture its description; says whether it keeps its content.
+bool reserve(Execution& run, TextureHandle texture, const TextureDesc& desc) {
+    const bool kept = run.desc(texture) == desc;
+    run.reserve(texture, desc);
+    return kept;
+}
+
+/// The views that do not show already what they are to show.
+std::vector<ShadowPlan::View> due_views(Execution& run, const SceneData& scene, const ShadowMaps& out,
+                                        const ShadowSettings& settings) {
+    const ShadowPlan& plan = run.value(out.plan);
+    const bool keeps_cubes = reserve(
+        run, out.cubes, plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
+    const bool keeps_maps =
+        reserve(run, out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
+    const DrawnShadows* const last = run.find(out.drawn);
+    if (last == nullptr || meshes_changed(run, scene) || materials_changed(run, scene)) {
+        return plan.views;
+    }
+    std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
+    for (const ShadowPlan::View& view : last->views) {
+        if (view.cube ? keeps_cubes : keeps_maps) {
+            shown[{view.cube, view.layer}] = &view;
+        }
+    }
+    std::vector<ShadowPlan::View> due;
+    std::ranges::copy_if(plan.views, std::back_inserter(due), [&](const ShadowPlan::View& view) {
+        const auto found = shown.find({view.cube, view.layer});
+        return found == shown.end() || *found->second != view;
+    });
+    return due;
+}
+
 void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
                     const ShadowSettings& settings, const ShadowPrograms& programs) {
-    const ShadowPlan& plan = run.value(out.plan);
-    run.reserve(out.cubes,
-                plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
-    run.reserve(out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
+    const std::vector<ShadowPlan::View> due = due_views(run, scene, out, settings);
+    run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
 
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
@@ -152,7 +186,7 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
     gl.PolygonOffset(-slope_offset, 0.0F);  // away from the light, as depth is reversed
     gl.Disable(GL_CULL_FACE);
     gl::Framebuffer& target = gpu.layer_target();
-    for (const ShadowPlan::View& view : plan.views) {
+    for (const ShadowPlan::View& view : due) {
         const auto resolution =
             static_cast<GLsizei>(view.cube ? settings.cube_resolution : settings.map_resolution);
         target.attach_depth_layer(run.object(view.cube ? out.cubes : out.maps), view.layer);
@@ -228,7 +262,8 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
             .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
                                 Usage::layer_target),
             .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
-                               Usage::layer_target)};
+                               Usage::layer_target),
+            .drawn = pass.write(graph.value<DrawnShadows>("drawn shadows"))};
         pass.run([=, &gpu](Execution& run) { render_shadows(gpu, run, scene, out, settings, programs); });
         return out;
     });

@@ -37,10 +37,17 @@ struct ShadowPlan {
     bool operator==(const ShadowPlan&) const = default;
 };
 
+/// What the maps show. Does not compare: how much of it a frame had to draw depends on what was there.
+struct DrawnShadows {
+    std::vector<ShadowPlan::View> views;
+    std::uint32_t newly_drawn = 0;  ///< of the views, when the maps last changed
+};
+
 struct ShadowMaps {
     ValueHandle<ShadowPlan> plan;
     TextureHandle cubes;  ///< cube array, depth32f, reversed
     TextureHandle maps;   ///< array, depth32f, reversed
+    ValueHandle<DrawnShadows> drawn;
 };
 
 /// Gives maps to the lights that cast shadows, the strongest flux first, as far as the budget goes.
@@ -48,9 +55,10 @@ struct ShadowMaps {
                                       const ShadowSettings& settings);
 
 /// Nodes `shadow-plan` (CPU) and `shadow-maps`: depth of the scene from every light that has a map, all
-/// triangles from both sides, less the holes of masks and what is blended. A point light looks through the
-/// six faces of a cube, a spot through its cone, a directional light through the rectangle that the scene
-/// covers.
+/// triangles from both sides, less the holes of masks and what is blended. Views that show already what they
+/// are to show are kept: where a light moves its own are drawn, where a mesh moves all. A point light looks
+/// through the six faces of a cube, a spot through its cone, a directional light through the rectangle that
+/// the scene covers.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

@@ -140,12 +140,12 @@ TEST_SUITE("configuration") {
         };
         CHECK(passes_of(ShadingPath::deferred, true) ==
               "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-              "vpl-paths "
-              "vpl-trace view gbuffer deferred transparent tone-map");
+              "view vpl-paths vpl-refresh "
+              "vpl-trace gbuffer deferred transparent tone-map");
         CHECK(passes_of(ShadingPath::forward, true) ==
               "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-              "vpl-paths "
-              "vpl-trace view forward transparent tone-map");
+              "view vpl-paths vpl-refresh "
+              "vpl-trace forward transparent tone-map");
         CHECK(passes_of(ShadingPath::deferred, false) ==
               "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
               "view gbuffer "

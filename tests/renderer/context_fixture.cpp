@@ -10,6 +10,11 @@ ContextKind& tested_kind() {
     return kind;
 }
 
+bool& verifying() {
+    static bool on = false;
+    return on;
+}
+
 }  // namespace
 
 ContextKind tested_context() {
@@ -18,6 +23,14 @@ ContextKind tested_context() {
 
 void set_tested_context(ContextKind kind) {
     tested_kind() = kind;
+}
+
+bool tests_verify() {
+    return verifying();
+}
+
+void set_tests_verify(bool on) {
+    verifying() = on;
 }
 
 std::unique_ptr<HeadlessContext> make_current_context() {

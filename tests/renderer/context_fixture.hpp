@@ -1,15 +1,30 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
 #include "renderer/context/headless.hpp"
 #include "renderer/gl/device.hpp"
+#include "renderer/renderer.hpp"
 
 namespace candela {
 
 /// The kind of context that this run of the tests asks for: `--context=egl|osmesa`.
 [[nodiscard]] ContextKind tested_context();
 void set_tested_context(ContextKind kind);
+
+/// Whether all renderers of this run of the tests verify their frames: `--verify`.
+[[nodiscard]] bool tests_verify();
+void set_tests_verify(bool on);
+
+/// A renderer as this run of the tests asks for it.
+class TestedRenderer : public Renderer {
+ public:
+    explicit TestedRenderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {})
+        : Renderer(get_proc, shader_directory) {
+        verify(tests_verify());
+    }
+};
 
 /// Makes a context of the tested kind current.
 [[nodiscard]] std::unique_ptr<HeadlessContext> make_current_context();

@@ -90,6 +90,65 @@ TEST_SUITE("gl graph backend") {
         CHECK(backend.texture(target[0]).read_floats() == std::vector<float>(16, 2.0F));
     }
 
+    TEST_CASE_FIXTURE(GlFixture, "a digest tells every layer, level and byte of an object") {
+        GraphBackend backend(device);
+        const auto fill = [&](ObjectId texture, std::uint32_t level, std::uint32_t layer, float value) {
+            Framebuffer target(device, "layer");
+            if (backend.texture(texture).desc().shape == TextureShape::flat) {
+                target.attach_depth(texture, level);
+            } else {
+                target.attach_depth_layer(texture, layer, level);
+            }
+            target.bind();
+            device.gl().ClearBufferfv(GL_DEPTH, 0, &value);
+        };
+        for (const TextureShape shape : {TextureShape::flat, TextureShape::array, TextureShape::cube_array}) {
+            const std::uint32_t layers = shape == TextureShape::flat ? 1 : 6;
+            const ObjectId texture = backend.create_texture(
+                "depth",
+                {.size = {4, 4}, .format = Format::depth32f, .shape = shape, .layers = layers, .mips = 2});
+            for (std::uint32_t layer = 0; layer < layers; ++layer) {
+                fill(texture, 0, layer, 0.25F);
+                fill(texture, 1, layer, 0.25F);
+            }
+            const std::uint64_t before = backend.texture_digest(texture);
+            CHECK(backend.texture_digest(texture) == before);
+            for (const std::uint32_t level : {0U, 1U}) {
+                fill(texture, level, layers - 1, 0.5F);
+                CHECK(backend.texture_digest(texture) != before);
+                fill(texture, level, layers - 1, 0.25F);
+                CHECK(backend.texture_digest(texture) == before);
+            }
+        }
+
+        const ObjectId buffer = backend.create_buffer("bytes", {.count = 11, .stride = 1});
+        std::array<std::uint8_t, 11> bytes{};
+        const auto digest = [&] {
+            device.gl().NamedBufferSubData(buffer, 0, sizeof(bytes), bytes.data());
+            return backend.buffer_digest(buffer);
+        };
+        const std::uint64_t before = digest();
+        for (std::uint8_t& byte : bytes) {
+            byte = 1;
+            CHECK(digest() != before);
+            byte = 0;
+        }
+        CHECK(digest() == before);
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "after blending with a second source a pass may have several targets") {
+        GraphBackend backend(device);
+        const std::array colours = {backend.create_texture("a", {.size = {4, 2}, .format = Format::r32f}),
+                                    backend.create_texture("b", {.size = {4, 2}, .format = Format::r32f})};
+        device.gl().BlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_COLOR);
+        const PassTargets targets{.colour = colours, .depth = 0, .size = {4, 2}};
+        backend.begin_pass("pass", 0, &targets);
+        GLint factor = 0;
+        device.gl().GetIntegerv(GL_BLEND_DST_RGB, &factor);
+        CHECK(factor == GL_ZERO);
+        backend.end_pass();
+    }
+
     TEST_CASE_FIXTURE(GlFixture, "passes are debug groups, and timed within frames") {
         GraphBackend backend(device);
         const GLint outside = get(device, GL_DEBUG_GROUP_STACK_DEPTH);

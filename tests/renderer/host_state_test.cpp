@@ -168,7 +168,7 @@ TEST_SUITE("host state") {
         for (const Oddity& oddity : oddities()) {
             CAPTURE(oddity.name);
             const auto context = make_current_context();
-            Renderer renderer(context->get_proc());
+            TestedRenderer renderer(context->get_proc());
             const gl::VertexArray array(renderer.device(), "host's");
             const gl::Buffer buffer(renderer.device(), "host's", 4096);
             const RenderTarget target(renderer.device(), size);

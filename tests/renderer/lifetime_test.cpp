@@ -73,7 +73,9 @@ TEST_SUITE("lifetime") {
 
     TEST_CASE_FIXTURE(RenderFixture, "meshes, images and lights that go free what they took") {
         Scene scene = cornell_box();
-        configure(linear_configuration());
+        Configuration unlimited = linear_configuration();
+        unlimited.vpls.budget = 0;
+        configure(unlimited);
         const Picture before = render(scene, size);
         const auto come_and_go = [&] {
             Material material;
@@ -99,7 +101,7 @@ TEST_SUITE("lifetime") {
     TEST_CASE_FIXTURE(RenderFixture,
                       "two renderers share a context and a target without a trace of each other") {
         configure(linear_configuration());
-        Renderer other(context->get_proc());
+        TestedRenderer other(context->get_proc());
         REQUIRE(other.configure(linear_configuration(ShadingPath::forward)).empty());
         Scene scene = cornell_box();
         Scene box = furnace_box(0.5F);
@@ -122,7 +124,7 @@ TEST_SUITE("lifetime") {
         const Picture alone = render(scene, size);
         const auto second = make_current_context();
         {
-            Renderer other(second->get_proc());
+            TestedRenderer other(second->get_proc());
             REQUIRE(other.configure(linear_configuration()).empty());
             for (int i = 0; i < 3; ++i) {
                 second->make_current();

@@ -7,12 +7,17 @@
 
 #include "tests/renderer/context_fixture.hpp"
 
-/// doctest's main with one option more: `--context=egl|osmesa`, by default egl.
+/// doctest's main with two options more: `--context=egl|osmesa`, by default egl, and `--verify`, for
+/// renderers that run clean passes again and compare.
 int main(int argc, char** argv) {
     constexpr std::string_view option = "--context=";
     std::vector<char*> others;
     for (int i = 0; i < argc; ++i) {
         const std::string_view argument = argv[i];
+        if (argument == "--verify") {
+            candela::set_tests_verify(true);
+            continue;
+        }
         if (!argument.starts_with(option)) {
             others.push_back(argv[i]);
             continue;

@@ -274,6 +274,7 @@ Configuration linear_configuration(ShadingPath path) {
     Configuration configuration;
     configuration.path = path;
     configuration.tone_map.enabled = false;
+    configuration.visibility.method = VplVisibility::none;
     return configuration;
 }
 

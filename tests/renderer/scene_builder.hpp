@@ -103,7 +103,8 @@ class RenderTarget {
     gl::Framebuffer framebuffer_;
 };
 
-/// A configuration that writes linear radiance.
+/// A configuration that writes linear radiance, and whose VPLs shine through walls: tests about what stops
+/// them ask for it, and all others need not wait for it.
 [[nodiscard]] Configuration linear_configuration(ShadingPath path = ShadingPath::deferred);
 
 /// A renderer in a context of its own.
@@ -118,7 +119,7 @@ class RenderFixture : public GlFixture {
     /// Whether the pass ran in the last frame; the graph must have it.
     [[nodiscard]] bool ran(std::string_view pass) const;
 
-    Renderer renderer{context->get_proc()};
+    TestedRenderer renderer{context->get_proc()};
 };
 
 }  // namespace candela

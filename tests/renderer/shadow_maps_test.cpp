@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <vector>
 
 #include "tests/renderer/path_fixture.hpp"
 
@@ -36,8 +38,9 @@ class ShadowMapTests : public RenderFixture {
     ShadowMapTests() {
         // From below the occluder, so that it hides nothing of the ground.
         occluded_.world.set(occluded_.camera, looking({0.0F, 0.45F, 0.9F}, {0.0F, 0.0F, 0.1F}));
-        add(occluded_.world, at(glm::vec3(occluder_.centre)),
-            MeshInstance{square(static_cast<float>(occluder_.half), diffuse(glm::vec3(0.5F), true))});
+        occluder_entity_ =
+            add(occluded_.world, at(glm::vec3(occluder_.centre)),
+                MeshInstance{square(static_cast<float>(occluder_.half), diffuse(glm::vec3(0.5F), true))});
     }
 
     template <class Light>
@@ -108,6 +111,7 @@ class ShadowMapTests : public RenderFixture {
     }
 
     Occluder occluder_;
+    Entity occluder_entity_;
     Scene scene_ = ground();
     Scene occluded_ = ground();
 };
@@ -218,6 +222,65 @@ TEST_SUITE("shadow maps") {
         light_up(at({0.2F, 2.0F, 0.1F}), PointLight{});
         shadows(true, 128);
         CHECK(picture(occluded_) != with);
+    }
+
+    TEST_CASE_FIXTURE(ShadowMapTests,
+                      "only views that changed are rendered again, and the rest still holds") {
+        renderer.verify(false);  // which renders all of them
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configuration.shadows = {.cube_resolution = 64, .map_resolution = 64};
+        configure(configuration);
+        World& world = occluded_.world;
+        const Entity first = add(world, at({0.2F, 2.0F, 0.1F}), PointLight{.intensity = 3.0F});
+        const Entity second = add(world, at({-0.4F, 1.5F, 0.3F}), PointLight{.intensity = 2.0F});
+        const Entity spot = add(world, looking({1, 2, 1}, {0, 0, 0}), SpotLight{});
+        const Entity other_spot = add(world, looking({-1, 2, 1}, {0, 0, 0}), SpotLight{.intensity = 0.5F});
+        const Entity sun = add(world, looking({1, 3, 0}, {0, 0, 0}), DirectionalLight{.illuminance = 0.1F});
+        Entity extra{};
+        const auto move = [&](Entity entity) {
+            world.edit<Transform>(entity, [](Transform& pose) { pose.translation.x += 0.1F; });
+        };
+        struct Edit {
+            const char* name;
+            std::function<void()> apply;
+            std::uint32_t views;
+        };
+        const std::vector<Edit> edits = {
+            {"first frame", [] {}, 6 + 6 + 1 + 1 + 1},
+            {"point light moves", [&] { move(first); }, 6},
+            {"the other moves", [&] { move(second); }, 6},
+            {"spot moves", [&] { move(spot); }, 1},
+            {"two move", [&] { move(spot), move(first); }, 7},
+            {"sun turns",
+             [&] {
+                 world.set(sun, looking({2, 3, 0}, {0, 0, 0}));
+             },
+             1},
+            {"colour changes", [&] { world.edit<PointLight>(first, [](auto& l) { l.colour.g = 0.5F; }); }, 0},
+            // The brighter comes first: the two change places.
+            {"order changes", [&] { world.edit<PointLight>(second, [](auto& l) { l.intensity = 9; }); }, 12},
+            // Another count of layers is another texture; cubes stay.
+            {"spot added",
+             [&] {
+                 extra = add(world, looking({0, 2, 1}, {0, 0, 0}), SpotLight{});
+             },
+             4},
+            {"spot goes", [&] { world.destroy(extra); }, 3},
+            {"mesh moves", [&] { move(occluder_entity_); }, 6 + 6 + 1 + 1 + 1},
+            {"dimmest light goes", [&] { world.remove<SpotLight>(other_spot); }, 2},
+        };
+        for (const Edit& edit : edits) {
+            CAPTURE(edit.name);
+            edit.apply();
+            const Picture shown = render(occluded_, size);
+            CHECK((ran("shadow-maps") ? renderer.report().lights.shadow_views : 0) == edit.views);
+            TestedRenderer fresh(context->get_proc());
+            REQUIRE(fresh.configure(configuration).empty());
+            const RenderTarget target(device, size);
+            fresh.render(world, occluded_.camera, target.target());
+            CHECK(target.read() == shown);
+        }
     }
 
     TEST_CASE_FIXTURE(ShadowMapTests, "walls do not shade each other in their crease") {

@@ -1,0 +1,30 @@
+#include "renderer/passes/refinement.hpp"
+
+#include "engine/graph/execute.hpp"
+
+namespace candela {
+
+ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
+                                       const SceneData& scene, ValueHandle<LightTable> lights,
+                                       ValueHandle<CameraView> view) {
+    return graph.add("refinement", [&](Pass& pass) {
+        pass.remembers();
+        pass.read(clock);
+        pass.read(scene.layout);
+        pass.read(scene.placement);
+        pass.read(lights);
+        pass.read(view);
+        const auto out = pass.write(graph.value<Refinement>("refinement"));
+        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
+            const Refinement* const last = run.find(out);
+            const std::uint64_t epoch = run.value(clock).epoch;
+            const bool moved =
+                run.changed(layout) || run.changed(placement) || run.changed(lights) || run.changed(view);
+            const bool rests = last != nullptr && last->epoch == epoch && !moved;
+            run.set(out, {rests ? last->set + 1 : 0, epoch});
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/graph/frame_graph.hpp"
+#include "renderer/passes/lights.hpp"
+#include "renderer/passes/scene_upload.hpp"
+#include "renderer/passes/view.hpp"
+
+namespace candela {
+
+/// Averaging of frames while nothing moves, each with VPLs of its own.
+struct RefinementSettings {
+    bool enabled = false;
+    std::uint32_t frames = 1024;  ///< after so many the picture stands
+    bool operator==(const RefinementSettings&) const = default;
+};
+
+/// What the host tells of time.
+struct RefinementClock {
+    std::uint64_t epoch = 0;  ///< another one than before: the mean begins anew
+    std::uint64_t round = 0;  ///< another one than before: another set of VPLs is due
+    bool operator==(const RefinementClock&) const = default;
+};
+
+/// Which set of VPLs a frame is lit by. Set 0 is that of a frame without refinement; set k has the seed
+/// `VplSettings::seed` + k.
+struct Refinement {
+    std::uint32_t set = 0;  ///< so many sets are in the mean already
+    std::uint64_t epoch = 0;
+    bool operator==(const Refinement&) const = default;
+};
+
+/// Node `refinement` (CPU): goes on to the next set in each round in which the scene, its lights and the view
+/// are what they were, and else back to set 0 at once.
+[[nodiscard]] ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
+                                                     const SceneData& scene, ValueHandle<LightTable> lights,
+                                                     ValueHandle<CameraView> view);
+
+}  // namespace candela

@@ -1,0 +1,186 @@
+#include "renderer/passes/vpl_paths.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/graph/execute.hpp"
+
+namespace candela {
+namespace {
+
+double power(const LightTable::Entry& entry) {
+    return static_cast<double>(entry.flux.r) + static_cast<double>(entry.flux.g) +
+           static_cast<double>(entry.flux.b);
+}
+
+/// Paths of one light.
+struct Share {
+    std::uint32_t light;
+    std::uint32_t paths;
+    double expected;  ///< the share before rounding
+};
+
+/// Shares `count` paths out by systematic sampling of the lights' cumulative flux: each gets its expected
+/// share, rounded up or down, and the sum is right.
+std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
+    const double total = std::accumulate(lights.entries.begin(), lights.entries.end(), 0.0,
+                                         [](double sum, const auto& entry) { return sum + power(entry); });
+    std::vector<Share> shares;
+    double cumulative = 0.0;
+    std::uint32_t given = 0;
+    for (std::uint32_t i = 0; i < lights.entries.size(); ++i) {
+        const double expected = count * power(lights.entries[i]) / total;
+        cumulative += expected;
+        const bool last = i + 1 == lights.entries.size();
+        const std::uint32_t until =
+            last ? count : std::min(count, static_cast<std::uint32_t>(std::llround(cumulative)));
+        if (until > given) {
+            shares.push_back({i, until - given, expected});
+        }
+        given = std::max(given, until);
+    }
+    return shares;
+}
+
+/// Where between 0 and 1 a light's first path lies on the ladder of survival, so that the lights of one path
+/// each differ in how far they get.
+double ladder_offset(std::uint32_t light) {
+    constexpr double golden = 0.6180339887498949;
+    return std::fmod((light + 0.5) * golden, 1.0);
+}
+
+/// Bounces of path `j` of `paths`: one, and one more for each k with (j + offset) / paths < ρᵏ.
+std::uint32_t bounces_of(double position, double albedo, std::uint32_t limit) {
+    std::uint32_t bounces = 1;
+    for (double survival = albedo; bounces < limit && position < survival; survival *= albedo) {
+        ++bounces;
+    }
+    return bounces;
+}
+
+std::uint32_t hashed(std::uint32_t seed, std::uint32_t value) {
+    std::uint64_t x = (static_cast<std::uint64_t>(seed) << 32U | value) + 0x9e3779b97f4a7c15U;
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;  // the finalizer of SplitMix64 (Steele et al., 2014)
+    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+    return static_cast<std::uint32_t>(x >> 32U);
+}
+
+std::vector<gpu::Path> make_paths(const LightTable& lights, double albedo, std::uint32_t count,
+                                  const VplSettings& settings) {
+    std::vector<gpu::Path> paths;
+    std::uint32_t first_vpl = 0;
+    for (const Share& share : share_paths(lights, count)) {
+        const LightTable::Entry& entry = lights.entries[share.light];
+        for (std::uint32_t j = 0; j < share.paths; ++j) {
+            const double position = (j + ladder_offset(share.light)) / share.paths;
+            paths.push_back({.flux = entry.flux,
+                             .light = share.light,
+                             .index = j,
+                             .seed = hashed(settings.seed, entry.entity.index),
+                             .first_vpl = first_vpl,
+                             .vpl_count = bounces_of(position, albedo, settings.bounces)});
+            paths.back().length = paths.back().vpl_count;
+            first_vpl += paths.back().vpl_count;
+        }
+    }
+    return paths;
+}
+
+std::uint32_t vpls_of(const std::vector<gpu::Path>& paths) {
+    return paths.empty() ? 0 : paths.back().first_vpl + paths.back().vpl_count;
+}
+
+/// Share of its light's flux that each path starts with. A light whose share is below one path stands for its
+/// like.
+double start_weight(const Share& share) {
+    return 1.0 / (share.expected >= 1.0 ? share.paths : share.expected);
+}
+
+/// Paths that make more than i bounces, for each i, up to and with none.
+std::vector<std::uint32_t> count_reach(const VplPaths& plan) {
+    std::vector<std::uint32_t> reach(plan.max_bounces + 1, 0);
+    for (const gpu::Path& path : plan.paths) {
+        for (std::uint32_t i = 0; i < path.vpl_count; ++i) {
+            ++reach[i];
+        }
+    }
+    return reach;
+}
+
+/// Those paths that go on from a bounce carry what those that do not would have carried on.
+std::vector<gpu::VplPlace> make_places(const VplPaths& plan, const std::vector<Share>& shares) {
+    const std::vector<std::uint32_t> reach = count_reach(plan);
+    std::vector<gpu::VplPlace> places;
+    places.reserve(plan.vpl_count);
+    auto share = shares.begin();
+    for (const gpu::Path& path : plan.paths) {
+        share += path.light != share->light ? 1 : 0;
+        double weight = start_weight(*share);
+        for (std::uint32_t i = 0; i < path.vpl_count; ++i) {
+            places.push_back({static_cast<float>(weight), static_cast<std::uint32_t>(places.size())});
+            weight *= static_cast<double>(reach[i]) / std::max(reach[i + 1], 1U);
+        }
+    }
+    return places;
+}
+
+}  // namespace
+
+VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
+    VplPaths plan;
+    if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) {
+        return plan;
+    }
+    const double albedo = std::clamp(static_cast<double>(mean_albedo), 0.0, 1.0);
+    double vpls_per_path = 0.0;
+    double survival = 1.0;
+    for (std::uint32_t k = 0; k < settings.bounces && survival > 1e-6; ++k, survival *= albedo) {
+        vpls_per_path += survival;
+    }
+    // The ladder of survival rounds, light by light; take as many paths as fit.
+    auto count = static_cast<std::uint32_t>(settings.count / vpls_per_path) + 1;
+    plan.paths = make_paths(lights, albedo, count, settings);
+    while (count > 1 && vpls_of(plan.paths) > settings.count) {
+        const std::uint32_t excess = vpls_of(plan.paths) - settings.count;
+        const auto fewer = static_cast<std::uint32_t>(excess / vpls_per_path);
+        count -= std::clamp(fewer, 1U, count - 1);
+        plan.paths = make_paths(lights, albedo, count, settings);
+    }
+    // A single path may be too long.
+    plan.paths.back().length = plan.paths.back().vpl_count =
+        std::min(plan.paths.back().vpl_count, settings.count);
+    plan.vpl_count = vpls_of(plan.paths);
+    for (const gpu::Path& path : plan.paths) {
+        plan.max_bounces = std::max(plan.max_bounces, path.vpl_count);
+    }
+    plan.seed = settings.seed;
+    plan.places = make_places(plan, share_paths(lights, count));
+    plan.map_count = plan.vpl_count;
+    plan.maps_due.resize(plan.vpl_count);
+    std::iota(plan.maps_due.begin(), plan.maps_due.end(), 0U);
+    return plan;
+}
+
+ValueHandle<VplPaths> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+                                    ValueHandle<LightTable> lights,
+                                    std::optional<ValueHandle<Refinement>> refinement,
+                                    const VplSettings& settings) {
+    return graph.add("vpl-paths", [&](Pass& pass) {
+        pass.read(lights);
+        pass.read(metrics);
+        if (refinement) {
+            pass.read(*refinement);
+        }
+        pass.parameter(settings);
+        const auto paths = pass.write(graph.value<VplPaths>("vpl paths"));
+        pass.run([=](Execution& run) {
+            VplSettings of_set = settings;
+            of_set.seed += refinement ? run.value(*refinement).set : 0;
+            run.set(paths, plan_paths(run.value(lights), run.value(metrics).mean_albedo, of_set));
+        });
+        return paths;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,22 @@
+// How far a VPL sees in the direction of a texel's centre.
+#include "bindings.glsl"
+#include "bvh.glsl"
+#include "types.glsl"
+#include "vpl_atlas.glsl"
+
+layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
+
+flat in uint mapped_vpl;
+
+void main() {
+    // Llvmpipe reads zeros for fragments that cover nothing, and walks in a circle through a hierarchy of zeros.
+    if (gl_HelperInvocation) return;
+    Vpl vpl = vpls[mapped_vpl];
+    vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl.map).corner)) / float(vpl_map_resolution);
+    vec3 local = hemi_octahedral_decode(at * 2.0 - 1.0);
+    vec3 tangent, bitangent;
+    basis_around(vpl.normal, tangent, bitangent);
+    vec3 direction = local.x * tangent + local.y * bitangent + local.z * vpl.normal;
+    Hit hit = closest_hit(vpl_map_origin(vpl), direction, 0.0, 1.0 / 0.0);
+    gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(hit.t);
+}

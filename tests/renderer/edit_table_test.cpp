@@ -1,0 +1,249 @@
+// Which passes run after which edit, in the frame right after it, by the graph's own record.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+// x: runs, by every path that has such a pass; .: does not. `surfaces` are gbuffer and depth-prepass,
+// `shading` forward, deferred and transparent. Of the lists of lights, `tiles` and `clusters` are those
+// unbound in depth, `bounded` those that the depth of surfaces bounds, and `blended` those of the blended
+// surfaces in front.
+//
+// Passes that read transforms (scene-gather, lights, view) look again whenever one has changed, and stop
+// there if theirs is where it was. What only the picture's size and settings change is shaded anew from
+// surfaces that are found anew, as the targets in between are not kept. All edits but the first start from a
+// still frame without debt.
+constexpr std::string_view table = R"(
+                     gather upload instances bvh lights plan shadows light-upload view paths refresh trace vpl-maps surfaces tiles clusters bounded blended shading tone-map
+first frame             x      x       x      x    x     x      x         x        x     x      x      x      x         x      x       x       x       x      x       x
+nothing                 .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .       .       .      .       x
+light named             .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .       .       .      .       x
+camera moves            x      .       .      .    x     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
+camera zooms            .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
+light moves             x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x       x       x      x       x
+spot moves              x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x       x       x      x       x
+light changes colour    .      .       .      .    x     x      .         x        .     x      x      x      x         .      x       x       x       x      x       x
+light goes off          .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x       x       x      x       x
+light goes on           .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x       x       x      x       x
+light's shadow goes     .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x       x       x      x       x
+mesh moves              x      .       x      x    x     .      x         .        x     .      x      x      x         x      .       .       x       .      x       x
+mesh appears            x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x       x       x      x       x
+material changes        x      x       x      x    .     .      x         .        .     .      x      x      x         x      .       .       x       x      x       x
+mesh goes               x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x       x       x      x       x
+target widens           .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
+target doubles          .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
+indirect light shown    .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .       .       .      x       x
+exposure changes        .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .       .       .      x       x
+more VPLs               .      .       .      .    .     .      .         .        .     x      x      x      x         x      .       .       .       .      x       x
+another path            .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .       .       .      x       x
+)";
+
+/// The column of a path's pass.
+std::string column_of(std::string_view pass, ShadingPath path) {
+    static const std::map<std::string_view, std::string> columns{
+        {"scene-gather", "gather"},    {"scene-upload", "upload"}, {"instance-upload", "instances"},
+        {"shadow-plan", "plan"},       {"shadow-maps", "shadows"}, {"vpl-paths", "paths"},
+        {"vpl-refresh", "refresh"},    {"vpl-trace", "trace"},     {"gbuffer", "surfaces"},
+        {"depth-prepass", "surfaces"}, {"forward", "shading"},     {"deferred", "shading"},
+        {"transparent", "shading"}};
+    if (pass.starts_with("light-tiles")) {
+        return path == ShadingPath::tiled_forward ? "tiles" : "bounded";
+    }
+    if (pass.starts_with("light-clusters")) {
+        return "clusters";
+    }
+    if (pass.starts_with("blended")) {
+        return "blended";
+    }
+    const auto found = columns.find(pass);
+    return found == columns.end() ? std::string(pass) : found->second;
+}
+
+using Row = std::map<std::string, std::string>;  // by column: x or .
+
+std::map<std::string, Row> read_table() {
+    std::istringstream lines{std::string(table)};
+    std::string line;
+    std::getline(lines, line);
+    std::getline(lines, line);
+    const std::size_t names = line.find("gather");
+    std::vector<std::string> columns;
+    std::istringstream header(line);
+    for (std::string column; header >> column;) columns.push_back(column);
+
+    std::map<std::string, Row> rows;
+    while (std::getline(lines, line)) {
+        std::string name = line.substr(0, names);
+        name.erase(name.find_last_not_of(' ') + 1);
+        std::istringstream marks(line.substr(names));
+        for (const std::string& column : columns) marks >> rows[name][column];
+        REQUIRE(!marks.fail());
+    }
+    return rows;
+}
+
+class EditTable : public RenderFixture {
+ protected:
+    EditTable() {
+        spot_ = add(scene_.world, looking({0.5F, 1.5F, 1.0F}, {0, 0, 0}), SpotLight{.intensity = 3.0F});
+        for (const auto& [entity, mesh] : scene_.world.view<MeshInstance>()) block_ = entity;
+        configuration_.visibility.method = VplVisibility::maps;
+        configuration_.vpls.budget = 8;
+    }
+
+    void move(Entity entity) {
+        scene_.world.edit<Transform>(entity, [](Transform& pose) { pose.translation.x += 0.1F; });
+    }
+
+    template <class Change>
+    void change_light(Change change) {
+        scene_.world.edit<PointLight>(scene_.light, change);
+    }
+
+    std::shared_ptr<const Mesh> pane(glm::vec3 albedo) { return square(0.3F, diffuse(albedo, true)); }
+
+    struct Edit {
+        std::string name;
+        std::function<void()> apply;
+    };
+    std::vector<Edit> edits() {
+        World& world = scene_.world;
+        return {
+            {"nothing", [] {}},
+            {"light named", [&] { world.set(scene_.light, Name{"lamp"}); }},
+            {"camera moves", [&] { move(scene_.camera); }},
+            {"camera zooms",
+             [&] { world.edit<Camera>(scene_.camera, [](Camera& c) { c.vertical_fov = 0.5F; }); }},
+            {"light moves", [&] { move(scene_.light); }},
+            {"spot moves", [&] { move(spot_); }},
+            {"light changes colour", [&] { change_light([](PointLight& l) { l.colour.g *= 0.5F; }); }},
+            {"light goes off", [&] { change_light([](PointLight& l) { l.intensity = 0.0F; }); }},
+            {"light goes on", [&] { change_light([](PointLight& l) { l.intensity = 2.0F; }); }},
+            {"light's shadow goes", [&] { change_light([](PointLight& l) { l.casts_shadow = false; }); }},
+            {"mesh moves", [&] { move(block_); }},
+            {"mesh appears",
+             [&] {
+                 extra_ = add(world, at({0, 0.5F, 0.5F}), MeshInstance{pane({1, 1, 0})});
+             }},
+            {"material changes",
+             [&] {
+                 world.set(extra_, MeshInstance{pane({0, 1, 0})});
+             }},
+            {"mesh goes", [&] { world.destroy(extra_); }},
+            {"target widens",
+             [&] {
+                 size_ = {44, 30};
+             }},
+            {"target doubles",
+             [&] {
+                 size_ = {88, 60};
+             }},  // the view's matrices stay
+            {"indirect light shown", [&] { configuration_.show = Show::indirect; }},
+            {"exposure changes", [&] { configuration_.tone_map.exposure_ev += 1.0F; }},
+            {"more VPLs", [&] { configuration_.vpls.count += 8; }},
+            {"another path",
+             [&] {
+                 const bool forward = configuration_.path == ShadingPath::forward;
+                 configuration_.path = forward ? ShadingPath::deferred : ShadingPath::forward;
+             }},
+        };
+    }
+
+    /// A frame; checks its passes against the row of that name.
+    void check(const std::string& name) {
+        CAPTURE(name);
+        configure(configuration_);
+        static_cast<void>(render(scene_, size_));
+        REQUIRE(rows_.contains(name));
+        for (const PassRecord& pass : renderer.last_passes()) {
+            CAPTURE(pass.name);
+            const Row& row = rows_.at(name);
+            REQUIRE(row.contains(column_of(pass.name, configuration_.path)));
+            CHECK((pass.ran ? "x" : ".") == row.at(column_of(pass.name, configuration_.path)));
+        }
+        checked_.insert(name);
+    }
+
+    /// Renders until all work that was left is done.
+    void come_to_rest() {
+        for (int frame = 0; frame < 100; ++frame) {
+            static_cast<void>(render(scene_, size_));
+            const auto ran = [](const PassRecord& pass) { return pass.ran; };
+            if (std::ranges::count_if(renderer.last_passes(), ran) == 1) return;
+        }
+        FAIL("does not come to rest");
+    }
+
+    Scene scene_ = cornell_box();
+    Entity spot_;
+    Entity block_;
+    Entity extra_;
+    glm::uvec2 size_{40, 30};
+    Configuration configuration_ = few_vpls();
+    std::map<std::string, Row> rows_ = read_table();
+    std::set<std::string> checked_;
+};
+
+}  // namespace
+
+TEST_SUITE("edits") {
+    TEST_CASE_FIXTURE(EditTable, "after each edit those passes run that it concerns, by every path") {
+        const Scene scene = scene_;
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            scene_ = scene;
+            size_ = {40, 30};
+            configuration_.path = path;
+            configuration_.show = Show::total;
+            renderer.invalidate();
+            check("first frame");
+            for (const Edit& edit : edits()) {
+                come_to_rest();
+                edit.apply();
+                check(edit.name);
+            }
+        }
+        CHECK(checked_.size() == rows_.size());
+    }
+
+    TEST_CASE_FIXTURE(EditTable, "without a budget the same passes run, less the one that spreads the work") {
+        configuration_.vpls.budget = 0;
+        check("first frame");
+        for (const Edit& edit : edits()) {
+            come_to_rest();
+            edit.apply();
+            check(edit.name);
+        }
+        CHECK(checked_.size() == rows_.size());
+    }
+
+    TEST_CASE_FIXTURE(EditTable, "a target of another size and the same shape has lists of its own") {
+        add_ranged_lights(scene_.world, 40, 0.8F);
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            configuration_.path = path;
+            configure(configuration_);
+            static_cast<void>(render(scene_, size_));
+            TestedRenderer fresh(context->get_proc());
+            REQUIRE(fresh.configure(configuration_).empty());
+            const RenderTarget target(device, 2U * size_);
+            fresh.render(scene_.world, scene_.camera, target.target());
+            CHECK(render(scene_, 2U * size_) == target.read());
+        }
+    }
+}

@@ -1,0 +1,148 @@
+#include "tests/renderer/random_edits.hpp"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+namespace candela {
+namespace {
+
+/// The last of the view.
+Entity last_mesh(const World& world) {
+    Entity last{};
+    for (const auto& [entity, mesh] : world.view<MeshInstance>()) {
+        last = entity;
+    }
+    return last;
+}
+
+}  // namespace
+
+RandomEdits::RandomEdits(Scene edited, const Configuration& rendered, unsigned seed)
+    : scene(std::move(edited)), configuration(rendered), random_(seed), block_(last_mesh(scene.world)) {
+    parent_ = add(scene.world, Transform{.translation = {0.0F, 1.0F, 0.0F}, .scale = {-1.0F, 0.8F, 1.2F}});
+    add(scene.world, Transform{.translation = {0.4F, 0.1F, 0.2F}, .parent = parent_},
+        MeshInstance{square(0.2F, diffuse({0.2F, 0.5F, 0.9F}))});
+    add(scene.world, Transform{.translation = {0.3F, 0.3F, -0.1F}, .parent = parent_},
+        PointLight{.colour = {1.0F, 0.6F, 0.3F}, .intensity = 0.5F, .range = 3.0F});
+}
+
+std::string RandomEdits::next() {
+    struct Edit {
+        std::string_view name;
+        void (RandomEdits::*apply)();
+    };
+    static constexpr std::array edits{Edit{"the light moves", &RandomEdits::move_light},
+                                      Edit{"a mesh moves", &RandomEdits::move_mesh},
+                                      Edit{"the parent moves", &RandomEdits::move_parent},
+                                      Edit{"the parent mirrors", &RandomEdits::mirror_parent},
+                                      Edit{"the light toggles", &RandomEdits::toggle_light},
+                                      Edit{"a point comes", &RandomEdits::add_point},
+                                      Edit{"a spot comes", &RandomEdits::add_spot},
+                                      Edit{"a sun comes", &RandomEdits::add_sun},
+                                      Edit{"a mesh comes", &RandomEdits::add_mesh},
+                                      Edit{"a mesh is painted", &RandomEdits::paint_mesh},
+                                      Edit{"something goes", &RandomEdits::remove_something},
+                                      Edit{"something moves", &RandomEdits::move_something},
+                                      Edit{"the camera moves", &RandomEdits::move_camera},
+                                      Edit{"resize", &RandomEdits::resize},
+                                      Edit{"path", &RandomEdits::switch_path},
+                                      Edit{"shadows", &RandomEdits::switch_shadows}};
+    const Edit& edit = edits.at(draw(static_cast<std::uint32_t>(edits.size())));
+    (this->*edit.apply)();
+    return std::string(edit.name) + "; ";
+}
+
+void RandomEdits::clear_meshes() {
+    std::vector<Entity> meshes;
+    for (const auto& [entity, mesh] : scene.world.view<MeshInstance>()) {
+        meshes.push_back(entity);
+    }
+    for (const Entity mesh : meshes) {
+        scene.world.remove<MeshInstance>(mesh);
+    }
+}
+
+void RandomEdits::shift(Entity entity) {
+    const float x = offset();
+    const glm::vec3 by(x, 0.0F, offset());
+    scene.world.edit<Transform>(entity, [&](Transform& pose) { pose.translation += by; });
+}
+
+void RandomEdits::mirror_parent() {
+    scene.world.edit<Transform>(parent_, [](Transform& pose) { pose.scale.x *= -1.0F; });
+}
+
+void RandomEdits::toggle_light() {
+    scene.world.edit<PointLight>(
+        scene.light, [](PointLight& light) { light.intensity = light.intensity > 0.0F ? 0.0F : 2.0F; });
+}
+
+void RandomEdits::add_point() {
+    const float x = offset();
+    extra_.push_back(add(scene.world, at({x, 1.0F + x, offset()}),
+                         PointLight{.intensity = 0.1F + std::abs(x), .range = 2.0F}));
+}
+
+void RandomEdits::add_spot() {
+    const float x = offset();
+    extra_.push_back(add(scene.world, looking({x, 1.5F, offset()}, {0.5F * x, 0.0F, x}),
+                         SpotLight{.intensity = 1.0F, .inner_cone = 0.0F, .outer_cone = 0.6F}));
+}
+
+void RandomEdits::add_sun() {
+    extra_.push_back(
+        add(scene.world, looking({offset(), 1.0F, 3.0F}, {0, 0, 0}), DirectionalLight{.illuminance = 0.5F}));
+}
+
+void RandomEdits::add_mesh() {
+    const float x = offset();
+    extra_.push_back(add(scene.world, at({x, 0.6F - x, offset()}),
+                         MeshInstance{square(0.2F, diffuse({0.9F, 0.5F, 0.1F}, true))}));
+}
+
+void RandomEdits::paint_mesh() {
+    Mesh painted = *scene.world.get<MeshInstance>(block_).mesh;
+    const auto colour = diffuse({0.3F, std::abs(offset()), 0.4F}, true);
+    for (Primitive& primitive : painted.primitives) {
+        primitive.material = colour;
+    }
+    scene.world.set(block_, MeshInstance{std::make_shared<const Mesh>(std::move(painted))});
+}
+
+void RandomEdits::remove_something() {
+    if (extra_.empty()) {
+        return;
+    }
+    const auto gone = extra_.begin() + draw(static_cast<std::uint32_t>(extra_.size()));
+    scene.world.destroy(*gone);
+    extra_.erase(gone);
+}
+
+void RandomEdits::move_something() {
+    if (!extra_.empty()) {
+        shift(extra_[draw(static_cast<std::uint32_t>(extra_.size()))]);
+    }
+}
+
+void RandomEdits::move_camera() {
+    const float x = 0.1F * offset();
+    const glm::vec3 by(x, 0.0F, 0.1F * offset());
+    scene.world.edit<Transform>(scene.camera, [&](Transform& pose) { pose.translation += by; });
+}
+
+void RandomEdits::resize() {
+    size = std::array{glm::uvec2(40, 30), glm::uvec2(33, 21), glm::uvec2(64, 8)}.at(draw(3));
+}
+
+void RandomEdits::switch_path() {
+    configuration.path = all_shading_paths.at(draw(all_shading_paths.size()));
+}
+
+void RandomEdits::switch_shadows() {
+    configuration.shadows.enabled = !configuration.shadows.enabled;
+}
+
+}  // namespace candela

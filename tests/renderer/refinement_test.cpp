@@ -1,0 +1,259 @@
+// Frames of different VPLs averaged while nothing moves.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{48, 36};
+
+Configuration refining(std::uint32_t frames, ShadingPath path = ShadingPath::deferred) {
+    Configuration configuration = linear_configuration(path);
+    configuration.vpls.count = 32;
+    configuration.vpls.budget = 0;
+    configuration.refinement = {.enabled = true, .frames = frames};
+    return configuration;
+}
+
+Configuration plain(Configuration configuration) {
+    configuration.refinement.enabled = false;
+    return configuration;
+}
+
+class RefinementTests : public RenderFixture {
+ protected:
+    /// The scene without refinement, by a renderer that has seen nothing else.
+    Picture fresh_picture(const Configuration& configuration, glm::uvec2 of_size = size) {
+        TestedRenderer fresh(context->get_proc());
+        REQUIRE(fresh.configure(plain(configuration)).empty());
+        const RenderTarget target(device, of_size);
+        fresh.render(scene.world, scene.camera, target.target());
+        return target.read();
+    }
+
+    /// Frames until the picture stands; gives the last.
+    Picture refined(std::uint32_t frames) {
+        Picture picture;
+        for (std::uint32_t i = 0; i < frames; ++i) {
+            picture = render(scene, size);
+        }
+        return picture;
+    }
+
+    [[nodiscard]] std::vector<std::string> passes_that_ran() const {
+        std::vector<std::string> names;
+        for (const PassRecord& pass : renderer.last_passes()) {
+            if (pass.ran) names.emplace_back(pass.name);
+        }
+        return names;
+    }
+
+    void move(Entity entity) {
+        scene.world.edit<Transform>(entity, [](Transform& pose) { pose.translation.x += 0.125F; });
+    }
+
+    Scene scene = cornell_box();
+};
+
+/// Mean of pictures, in doubles.
+Picture average(const std::vector<Picture>& pictures) {
+    Picture mean{pictures.front().size, {}};
+    for (std::size_t i = 0; i < pictures.front().pixels.size(); ++i) {
+        glm::dvec3 sum(0.0);
+        for (const Picture& picture : pictures) {
+            sum += picture.pixels[i];
+        }
+        mean.pixels.emplace_back(sum / static_cast<double>(pictures.size()));
+    }
+    return mean;
+}
+
+/// Mean squared error relative to the reference's mean square.
+double relative_error(const Picture& picture, const Picture& reference) {
+    double error = 0.0;
+    double power = 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const glm::dvec3 wanted(reference.pixels[i]);
+        const glm::dvec3 off = glm::dvec3(picture.pixels[i]) - wanted;
+        error += glm::dot(off, off);
+        power += glm::dot(wanted, wanted);
+    }
+    return error / power;
+}
+
+}  // namespace
+
+TEST_SUITE("refinement") {
+    TEST_CASE_FIXTURE(RefinementTests, "the mean is that of pictures rendered with each seed") {
+        constexpr std::uint32_t sets = 8;
+        const Configuration configuration = refining(sets);
+        configure(configuration);
+        std::vector<Picture> pictures;
+        for (std::uint32_t set = 0; set < sets; ++set) {
+            Configuration of_set = configuration;
+            of_set.vpls.seed += set;
+            pictures.push_back(fresh_picture(of_set));
+            const Picture mean = render(scene, size);
+            CAPTURE(set);
+            CHECK(renderer.report().refined == set + 1);
+            CHECK(is_sane(mean));
+            if (set == 0) {
+                CHECK(mean == pictures.front());
+            }
+            // A step rounds three times, each by at most 2⁻²⁴ of the sets' largest value, which lies within
+            // an order of magnitude of the mean; 24 roundings are 1.4e-6 of it.
+            const Picture expected = average(pictures);
+            CHECK(worst_error(mean, expected, 1e-2 * candela::mean(expected)) < 2e-5);
+        }
+        CHECK(pictures[1] != pictures[0]);
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests, "the error falls as sets accumulate") {
+        // A reference of other sets: another count of VPLs would come with another bound on their nearness.
+        const auto start_at = [&](std::uint32_t seed, std::uint32_t frames) {
+            Configuration configuration = refining(frames);
+            configuration.vpls.seed = seed;
+            configure(configuration);
+        };
+        start_at(1'000'000, 256);
+        const Picture reference = refined(256);
+        // Of one sequence of sets the error scatters: whole walls are too bright or too dark at once.
+        glm::dvec3 error(0.0);  // after 1, 8 and 64 sets, of four sequences
+        for (const std::uint32_t seed : {0U, 1000U, 2000U, 3000U}) {
+            start_at(seed, 64);
+            error.x += relative_error(refined(1), reference);
+            error.y += relative_error(refined(7), reference);
+            error.z += relative_error(refined(56), reference);
+        }
+        CAPTURE(error.x);
+        CAPTURE(error.y);
+        CAPTURE(error.z);
+        // Independent sets divide the error by 8 each time; the reference's own adds a quarter of the last.
+        // The rest is for the scatter.
+        CHECK(error.y < error.x / 3.0);
+        CHECK(error.z < error.y / 3.0);
+        CHECK(error.z > 0.0);
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests, "whatever moves gives the unrefined frame at once, bit for bit") {
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            const Configuration configuration = refining(16, path);
+            configure(configuration);
+            const Entity block = [&] {
+                Entity last{};
+                for (const auto& [entity, mesh] : scene.world.view<MeshInstance>()) last = entity;
+                return last;
+            }();
+            for (const Entity moved : {scene.light, scene.camera, block}) {
+                const Picture before = refined(4);
+                CHECK(renderer.report().refined >= 4);
+                move(moved);
+                const Picture after = render(scene, size);
+                CHECK(after == fresh_picture(configuration));
+                CHECK(after != before);
+                CHECK(renderer.report().refined == 1);
+            }
+            static_cast<void>(refined(4));
+            scene.world.edit<PointLight>(scene.light, [](PointLight& light) { light.intensity *= 1.5F; });
+            CHECK(render(scene, size) == fresh_picture(configuration));
+        }
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests, "it stops after as many frames, and then a frame costs nothing") {
+        configure(refining(5));
+        const Picture stands = refined(5);
+        CHECK(ran("accumulate"));
+        CHECK(renderer.report().refined == 5);
+        for (int i = 0; i < 3; ++i) {
+            CHECK(render(scene, size) == stands);
+            CHECK(passes_that_ran() == std::vector<std::string>{"tone-map"});
+        }
+        CHECK(renderer.report().refined == 5);
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests, "what is set to what it was interrupts nothing") {
+        configure(refining(16));
+        static_cast<void>(refined(3));
+        scene.world.set(scene.light, Transform(scene.world.get<Transform>(scene.light)));
+        static_cast<void>(render(scene, size));
+        CHECK(renderer.report().refined == 4);
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests,
+                      "between sets neither the scene nor the view nor shadows are touched") {
+        configure(refining(16));
+        static_cast<void>(refined(3));
+        for (const char* pass : {"scene-gather", "scene-upload", "instance-upload", "bvh", "lights", "view",
+                                 "shadow-plan", "shadow-maps", "light-upload", "gbuffer"}) {
+            CAPTURE(pass);
+            CHECK_FALSE(ran(pass));
+        }
+        CHECK(ran("vpl-trace"));
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests,
+                      "resizing, another path and invalidating start anew; exposure does not") {
+        Configuration configuration = refining(16);
+        configure(configuration);
+        static_cast<void>(refined(4));
+        configuration.path = ShadingPath::forward;
+        configure(configuration);
+        CHECK(render(scene, size) == fresh_picture(configuration));
+
+        static_cast<void>(refined(4));
+        constexpr glm::uvec2 larger = 2U * size;
+        CHECK(render(scene, larger) == fresh_picture(configuration, larger));
+        CHECK(render(scene, size) == fresh_picture(configuration));
+
+        static_cast<void>(refined(4));
+        renderer.invalidate();
+        CHECK(render(scene, size) == fresh_picture(configuration));
+
+        static_cast<void>(refined(4));
+        CHECK(renderer.report().refined == 5);
+        configuration.tone_map.exposure_ev = 1.0F;
+        configure(configuration);
+        static_cast<void>(render(scene, size));
+        CHECK(renderer.report().refined == 6);
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests, "another world begins anew, and jitter is a move") {
+        const Configuration configuration = refining(16);
+        configure(configuration);
+        static_cast<void>(refined(4));
+        const Scene other = furnace_box(0.5F);
+        static_cast<void>(render(other, size));
+        CHECK(renderer.report().refined == 1);
+        static_cast<void>(refined(4));
+        CHECK(renderer.report().refined == 4);
+        const RenderTarget target(device, size);
+        renderer.render(scene.world, scene.camera, target.target(), {0.25F, 0.0F});
+        CHECK(renderer.report().refined == 1);
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests, "with a budget sets are made whole, and their debt is paid before") {
+        Configuration configuration = refining(32);
+        configuration.vpls.budget = 4;
+        configure(configuration);
+        const Picture first = render(scene, size);
+        CHECK(first == fresh_picture(configuration));
+        move(scene.light);
+        bool in_debt = false;
+        for (int i = 0; i < 64; ++i) {
+            static_cast<void>(render(scene, size));
+            const Report report = renderer.report();
+            in_debt = report.vpls->debt > 0 || report.vpls->stale > 0;
+            CHECK((!in_debt || report.refined == 1));
+        }
+        CHECK_FALSE(in_debt);
+        CHECK(renderer.report().refined == 32);
+    }
+}

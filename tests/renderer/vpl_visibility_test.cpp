@@ -1,0 +1,355 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <string_view>
+
+#include "engine/graph/execute.hpp"
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{96, 72};
+constexpr std::array<std::uint32_t, 5> resolutions{16, 32, 64, 128, 256};
+constexpr std::array<float, 3> scales{0.01F, 1.0F, 1000.0F};
+
+Configuration indirect_only(VplVisibility method, std::uint32_t resolution = 32) {
+    Configuration configuration = linear_configuration();
+    configuration.show = Show::indirect;
+    configuration.shadows.enabled = false;
+    configuration.vpls.budget = 0;
+    configuration.vpls.bounces = 1;
+    configuration.visibility = {method, resolution};
+    return configuration;
+}
+
+/// relMSE as measures of Candela's pictures have it: over all pixels, relative to |b|² + 0.01 · |mean of b|².
+double relative_error(const Picture& a, const Picture& b) {
+    glm::dvec3 sum(0.0);
+    for (const glm::vec3& pixel : b.pixels) sum += pixel;
+    const auto count = static_cast<double>(b.pixels.size());
+    const double floor = 0.01 * glm::dot(sum, sum) / (count * count);
+    double error = 0.0;
+    for (std::size_t i = 0; i < b.pixels.size(); ++i) {
+        const glm::dvec3 wanted(b.pixels[i]);
+        const glm::dvec3 off = glm::dvec3(a.pixels[i]) - wanted;
+        error += glm::dot(off, off) / (glm::dot(wanted, wanted) + floor);
+    }
+    return error / count;
+}
+
+/// A floor of 4 × 4 and, along its edge x = -2, a wall that a spot light shines on. All lengths times
+/// `scale`. The VPLs are on the wall; the floor hides nothing from it. `cone` is the light's, in radians.
+Scene lit_wall(float scale, float cone) {
+    Scene scene;
+    const auto material = diffuse(glm::vec3(0.5F), true);
+    add(scene.world, Transform{}, MeshInstance{square(2.0F * scale, material)});
+    const glm::quat upright = glm::angleAxis(-std::numbers::pi_v<float> / 2.0F, glm::vec3(0, 0, 1));
+    add(scene.world, Transform{.translation = scale * glm::vec3(-2, 2, 0), .rotation = upright},
+        MeshInstance{square(2.0F * scale, material)});
+    scene.light =
+        add(scene.world, looking(scale * glm::vec3(-0.5F, 1.2F, 0.3F), scale * glm::vec3(-2, 1, 0.1F)),
+            SpotLight{.intensity = scale * scale, .inner_cone = 0.5F * cone, .outer_cone = cone});
+    scene.camera = add(scene.world, looking(scale * glm::vec3(0.2F, 4.0F, 0.5F), {0, 0, 0}),
+                       Camera{.vertical_fov = 0.75F, .near_plane = 0.01F * scale});
+    return scene;
+}
+
+/// A sheet that stands on the floor in the plane x = 0.
+struct Sheet {
+    double height = 2.5;
+    double half_width = 2.5;
+};
+
+/// Whether the sheet crosses a line from `from` (x < 0) along `direction` before `reach`. The floor is no
+/// obstacle: what passes below the sheet's foot counts as blocked, so that its shadow begins there.
+bool crosses(const Sheet& sheet, double scale, glm::dvec3 from, glm::dvec3 direction, double reach) {
+    const double t = -from.x / direction.x;
+    const glm::dvec3 at = (from + t * direction) / scale;
+    return direction.x > 0.0 && t < reach && at.y < sheet.height && std::abs(at.z) < sheet.half_width;
+}
+
+/// Angle that a texel's diagonal is at most seen under: one of 2 / resolution along both sides of the square
+/// is √2 · 2 / resolution on the octahedron, which is s⁻¹ away (s = |x| + |y| + z of the direction).
+double texel_angle(std::uint32_t resolution, glm::dvec3 local) {
+    const double s = std::abs(local.x) + std::abs(local.y) + local.z;
+    return std::asin(std::min(1.0, 2.0 * std::numbers::sqrt2 * s / resolution));
+}
+
+class VplVisibilityTests : public PathFixture {
+ protected:
+    Picture picture(const Scene& scene, const Configuration& configuration) {
+        configure(configuration);
+        renderer.invalidate();
+        return render(scene, size);
+    }
+
+    /// Checks the shadow of a sheet in the light of one VPL. Nothing may be wrong where all lines within
+    /// `astray` of the one to the VPL are blocked, or none.
+    void check_sheet(Configuration configuration, float scale, double texels) {
+        Scene scene = lit_wall(scale, 0.002F);
+        const Sheet sheet;
+        const glm::quat upright = glm::angleAxis(std::numbers::pi_v<float> / 2.0F, glm::vec3(0, 0, 1));
+        add(scene.world, Transform{.rotation = upright},
+            MeshInstance{square(static_cast<float>(sheet.half_width) * scale, diffuse(glm::vec3(0), true))});
+        configuration.vpls.count = 1;
+        const std::uint32_t resolution = configuration.visibility.map_resolution;
+        const Picture shadowed = picture(scene, configuration);
+        configuration.visibility.method = VplVisibility::none;
+        const Picture lit = picture(scene, configuration);
+        const glm::dvec3 vpl = static_cast<double>(scale) * glm::dvec3(-2, 1, 0.1);  // where the cone points
+        const auto& camera = scene.world.get<Camera>(scene.camera);
+        const auto& pose = scene.world.get<Transform>(scene.camera);
+        std::size_t dark = 0, bright = 0, wrong = 0;
+        for (std::uint32_t i = 0; i < size.x * size.y; ++i) {
+            const PixelRay view = pixel_ray(camera, pose, size, i % size.x, i / size.x);
+            const glm::dvec3 point = view.origin - view.origin.y / view.direction.y * view.direction;
+            const glm::dvec3 on_sheet =
+                (view.origin - view.origin.x / view.direction.x * view.direction) / double(scale);
+            const bool sees_sheet = view.origin.x * view.direction.x < 0.0 && on_sheet.y > 0.0 &&
+                                    on_sheet.y < sheet.height && std::abs(on_sheet.z) < sheet.half_width;
+            if (lit.pixels[i].r == 0.0F || sees_sheet) continue;
+            const double reach = glm::distance(point, vpl);
+            const glm::dvec3 ray = (point - vpl) / reach;
+            const double astray = texels * texel_angle(resolution, {ray.y, ray.z, ray.x});
+            const glm::dvec3 u = glm::normalize(glm::cross(ray, glm::dvec3(0, 1, 0)));
+            const glm::dvec3 v = glm::cross(ray, u);
+            std::size_t hits = 0;
+            constexpr int around = 16;
+            for (int k = 0; k < around; ++k) {
+                const double turn = 2.0 * std::numbers::pi * k / around;
+                const glm::dvec3 side = std::cos(turn) * u + std::sin(turn) * v;
+                hits +=
+                    crosses(sheet, scale, vpl, ray + std::tan(std::min(astray, 1.5)) * side, reach) ? 1 : 0;
+            }
+            const bool centre = crosses(sheet, scale, vpl, ray, reach);
+            const float visible = shadowed.pixels[i].r / lit.pixels[i].r;
+            if (hits == around && centre) {
+                ++dark;
+                wrong += visible == 0.0F ? 0 : 1;
+            } else if (hits == 0 && !centre) {
+                ++bright;
+                wrong += visible >= 0.99F ? 0 : 1;
+            }
+        }
+        CAPTURE(resolution);
+        CAPTURE(scale);
+        CHECK(dark > 40);
+        CHECK(bright > 200);
+        CHECK(wrong == 0);
+    }
+};
+
+/// The two rooms with the door between them shut.
+Scene closed_rooms() {
+    Scene scene = shipped_scene("two-rooms");
+    Entity door;
+    for (const auto& [entity, name] : scene.world.view<Name>()) {
+        if (name.value == "door") door = entity;
+    }
+    Transform pose = scene.world.get<Transform>(door);
+    pose.rotation = glm::quat(1, 0, 0, 0);
+    scene.world.set(door, pose);
+    return scene;
+}
+
+}  // namespace
+
+TEST_SUITE("VPL visibility") {
+    TEST_CASE_FIXTURE(VplVisibilityTests, "nothing darkens an unoccluded plane") {
+        for (const float scale : scales) {
+            const Scene scene = lit_wall(scale, 0.4F);
+            Configuration configuration = indirect_only(VplVisibility::none);
+            configuration.vpls.count = 64;
+            const Picture lit = picture(scene, configuration);
+            REQUIRE(mean(lit) > 1e-4);
+            configuration.visibility.method = VplVisibility::maps;
+            for (const std::uint32_t resolution : resolutions) {
+                CAPTURE(scale);
+                CAPTURE(resolution);
+                configuration.visibility.map_resolution = resolution;
+                // No pixel by more than a hundredth, and none brightened.
+                CHECK(worst_error(picture(scene, configuration), lit, 1e-12) < 0.01);
+            }
+            configuration.visibility.method = VplVisibility::rays;
+            CHECK(picture(scene, configuration) == lit);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "smooth normals darken nothing of a sphere's inside") {
+        Scene scene;
+        // Facets of 8°: the shading normal is up to 5° off their own.
+        add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 3, diffuse(glm::vec3(0.5F)))});
+        add(scene.world, at({0.5F, 0.3F, 0.2F}), PointLight{});
+        scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+        Configuration configuration = indirect_only(VplVisibility::none);
+        const Picture lit = picture(scene, configuration);
+        configuration.visibility.method = VplVisibility::maps;
+        for (const std::uint32_t resolution : resolutions) {
+            configuration.visibility.map_resolution = resolution;
+            CAPTURE(resolution);
+            CHECK(worst_error(picture(scene, configuration), lit, 1e-12) < 0.01);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "a sheet's shadow is where it should be and begins at its foot") {
+        for (const float scale : scales) {
+            for (const std::uint32_t resolution : resolutions) {
+                check_sheet(indirect_only(VplVisibility::maps, resolution), scale, 2.0);
+            }
+            // Rays stray by no more than the offsets of their ends: a hundredth of a texel's diagonal here.
+            check_sheet(indirect_only(VplVisibility::rays), scale, 0.01);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "maps come close to rays as they grow finer") {
+        const Scene scene = cornell_box();
+        Configuration configuration = indirect_only(VplVisibility::rays);
+        configuration.vpls.bounces = 3;
+        const Picture exact = picture(scene, configuration);
+        configuration.visibility.method = VplVisibility::none;
+        const double without = relative_error(picture(scene, configuration), exact);
+        configuration.visibility.method = VplVisibility::maps;
+        double coarser = without;
+        for (const std::uint32_t resolution : {16U, 64U, 256U}) {
+            CAPTURE(resolution);
+            configuration.visibility.map_resolution = resolution;
+            const double error = relative_error(picture(scene, configuration), exact);
+            CHECK(error < 0.7 * coarser);  // more than noise would give
+            coarser = error;
+        }
+        // 256 texels a side: 16 tiles a layer, and so 16 layers. A texel is 1/100 rad, a blurred edge 2 cm
+        // wide.
+        CHECK(coarser < 0.02);
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "a shut door keeps the light out") {
+        Scene scene = closed_rooms();
+        const Entity dark = scene.camera;
+        const Entity lit = add(scene.world, looking({-0.3F, 1.7F, 1.7F}, {-2.5F, 0.85F, -0.4F}),
+                               Camera{.vertical_fov = 1.2F});
+        for (const auto& [method, resolution] :
+             {std::pair{VplVisibility::maps, 64U}, std::pair{VplVisibility::rays, 64U}}) {
+            CAPTURE(to_string(method));
+            Configuration configuration = indirect_only(method, resolution);
+            configuration.vpls.bounces = 3;
+            scene.camera = lit;
+            const double bright = mean(picture(scene, configuration));
+            scene.camera = dark;
+            CHECK(mean(picture(scene, configuration)) < 1e-4 * bright);
+            CHECK(bright > 0.1);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "all paths agree under each method") {
+        Scene scene = cornell_box();
+        for (const VplVisibility method : {VplVisibility::none, VplVisibility::maps}) {
+            CAPTURE(to_string(method));
+            check_paths(scene, {60, 45}, indirect_only(method));
+        }
+        // At the very edge of a shadow the rounding of a position decides about a whole VPL.
+        Configuration configuration = indirect_only(VplVisibility::rays);
+        configuration.path = ShadingPath::forward;
+        const Picture reference = picture(scene, configuration);
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            configuration.path = path;
+            const Picture other = picture(scene, configuration);
+            std::size_t off = 0;
+            for (std::size_t i = 0; i < other.pixels.size(); ++i) {
+                const glm::vec3 difference = glm::abs(other.pixels[i] - reference.pixels[i]);
+                off += glm::length(difference) > 1e-3F * glm::length(reference.pixels[i]) ? 1 : 0;
+            }
+            CHECK(off <= other.pixels.size() / 500);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "a closed convex box has no shadows") {
+        const Scene scene = furnace_box(0.5F);
+        Configuration configuration = indirect_only(VplVisibility::none);
+        configuration.vpls.bounces = 16;
+        const Picture lit = picture(scene, configuration);
+        configuration.visibility.method = VplVisibility::rays;
+        CHECK(relative_error(picture(scene, configuration), lit) < 1e-6);
+        // Along its edges a texel that sees one wall darkens the other, over a strip as wide as the texel.
+        for (const auto& [resolution, most] : {std::pair{32U, 0.03}, std::pair{128U, 0.01}}) {
+            CAPTURE(resolution);
+            configuration.visibility = {VplVisibility::maps, resolution};
+            const double share = mean(picture(scene, configuration)) / mean(lit);
+            CHECK(share <= 1.0);
+            CHECK(share > 1.0 - most);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests, "switching the method leaves nothing behind") {
+        const Scene scene = cornell_box();
+        const auto round = [&] {
+            Picture last;
+            for (const VplVisibility method :
+                 {VplVisibility::maps, VplVisibility::rays, VplVisibility::none}) {
+                configure(indirect_only(method));
+                last = render(scene, size);
+            }
+            return last;
+        };
+        configure(indirect_only(VplVisibility::none));
+        const Picture before = render(scene, size);
+        CHECK(round() == before);
+        const gl::ObjectCounts once = renderer.device().live();
+        CHECK(round() == before);
+        CHECK(renderer.device().live() == once);
+    }
+
+    TEST_CASE_FIXTURE(VplVisibilityTests,
+                      "maps are drawn when the VPLs change, and not when the camera moves") {
+        Scene scene = cornell_box();
+        configure(indirect_only(VplVisibility::maps));
+        const Picture first = render(scene, size);
+        CHECK(ran("vpl-maps"));
+        Transform pose = scene.world.get<Transform>(scene.camera);
+        pose.translation.x += 0.1F;
+        scene.world.set(scene.camera, pose);
+        CHECK(render(scene, size) != first);
+        CHECK_FALSE(ran("vpl-maps"));
+        scene.world.set(scene.light, at({0.3F, 1.5F, 0.0F}));
+        const Picture moved = render(scene, size);
+        CHECK(ran("vpl-maps"));
+        renderer.invalidate();
+        CHECK(render(scene, size) == moved);
+    }
+}
+
+TEST_SUITE("VPL atlas") {
+    TEST_CASE("tiles fit into what the driver allows") {
+        const gl::Limits limits{.texture_size = 16384, .texture_layers = 2048};
+        for (const std::uint32_t resolution : {8U, 33U, 64U, 200U, 1024U}) {
+            for (const std::uint32_t maps : {1U, 2U, 257U, 16384U}) {
+                CAPTURE(resolution);
+                CAPTURE(maps);
+                const VplAtlas atlas = plan_vpl_atlas(resolution, maps, limits);
+                const std::uint32_t room = atlas.tiles * atlas.tiles;
+                CHECK(atlas.tiles * resolution <= atlas.side);
+                CHECK(atlas.side <= limits.texture_size);
+                CHECK(atlas.layers <= limits.texture_layers);
+                CHECK(room * atlas.layers >= maps);
+                CHECK(room * (atlas.layers - 1) < maps);
+            }
+        }
+    }
+
+    TEST_CASE("what does not fit is refused") {
+        const gl::Limits limits{.texture_size = 1024, .texture_layers = 256};
+        CHECK_THROWS_WITH_AS(static_cast<void>(plan_vpl_atlas(2048, 1, limits)),
+                             "depth maps of VPLs of 2048 texels a side: the driver allows 1024", gl::GlError);
+        CHECK_THROWS_WITH_AS(
+            static_cast<void>(plan_vpl_atlas(256, 16384, limits)),
+            "depth maps of 16384 VPLs, 256 texels a side, fill 1024 layers; the driver allows 256",
+            gl::GlError);
+    }
+}
