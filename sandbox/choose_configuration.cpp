@@ -1,29 +1,18 @@
 #include "sandbox/choose_configuration.hpp"
 
-#include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "sandbox/input_file.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
-std::string read_text(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        const std::string fault = std::generic_category().message(errno);
-        throw std::runtime_error(fmt::format("{}: cannot be read: {}", path.string(), fault));
-    }
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-Configuration read_file(const std::filesystem::path& path) {
-    const ConfigurationResult result = read_configuration(read_text(path));
+Configuration read_over(const Configuration& base, const std::filesystem::path& path) {
+    const ConfigurationResult result = read_configuration(read_file(path), base);
     if (result.configuration) return *result.configuration;
     throw std::runtime_error(fmt::format("{}: {}", path.string(), fmt::join(result.faults, "; ")));
 }
@@ -35,14 +24,17 @@ void override_by(const std::optional<T>& flag, T& value) {
 
 }  // namespace
 
-Configuration choose_configuration(const Options& options) {
-    Configuration configuration = options.config ? read_file(*options.config) : Configuration{};
+Configuration choose_configuration(const Options& options, bool in_window) {
+    Configuration configuration;
+    configuration.refinement.enabled = in_window;
+    if (options.config) configuration = read_over(configuration, *options.config);
     override_by(options.show, configuration.show);
     override_by(options.path, configuration.path);
     override_by(options.indirect, configuration.indirect);
     override_by(options.vpls, configuration.vpls.count);
     override_by(options.bounces, configuration.vpls.bounces);
     override_by(options.seed, configuration.vpls.seed);
+    override_by(options.vpl_visibility, configuration.visibility.method);
     const std::vector<std::string> faults = validate(configuration);
     if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
     return configuration;

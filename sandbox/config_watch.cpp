@@ -12,7 +12,7 @@ namespace {
 
 ConfigurationResult read(const Options& options) {
     try {
-        return {choose_configuration(options), {}};
+        return {choose_configuration(options, true), {}};
     } catch (const std::runtime_error& fault) {
         return {std::nullopt, {fault.what()}};
     }

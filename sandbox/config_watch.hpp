@@ -23,8 +23,8 @@ class ConfigWatch {
     /// without `options.config`.
     explicit ConfigWatch(Options options);
 
-    /// To be called often. Once after each save: the configuration chosen as choose_configuration does, or
-    /// what is wrong with it. Throws nothing for files that are missing or faulty.
+    /// To be called often. Once after each save: the configuration that choose_configuration gives a window,
+    /// or what is wrong with it. Throws nothing for files that are missing or faulty.
     [[nodiscard]] std::optional<ConfigurationResult> poll(Clock::time_point now);
 
  private:

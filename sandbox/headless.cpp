@@ -32,21 +32,27 @@ std::optional<fs::path> picture_path(const Options& options) {
     return "candela.png";
 }
 
+int frames_of(const Options& options, const Scene& scene) {
+    return options.frames.value_or(scene.animation ? scene.animation->script().frames : 1);
+}
+
 void apply(Renderer& renderer, const Configuration& configuration) {
     const std::vector<std::string> faults = renderer.configure(configuration);
     if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
 }
 
-void run_headless(const HeadlessContext& context, const Scene& scene, Entity camera,
+void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size) {
     Renderer renderer(context.get_proc());
     apply(renderer, configuration);
     Capture capture(renderer, size);
     const std::optional<fs::path> out = picture_path(options);
-    const int frames = options.frames.value_or(1);
+    const int frames = frames_of(options, scene);
 
-    RunReport run{context.description(), scene.path.string(), size, configuration, {}, {}};
+    RunReport run{
+        context.description(), scene.path.string(), animation_of(scene), size, configuration, {}, {}};
     for (int frame = 0; frame < frames; ++frame) {
+        if (scene.animation) scene.animation->apply(scene.world, frame);
         CaptureReport captured;
         const Picture picture = capture.render(scene.world, camera, options.samples, captured);
         captured.frame.index = static_cast<std::uint64_t>(frame);

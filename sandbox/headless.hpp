@@ -15,10 +15,13 @@ namespace candela::sandbox {
 /// report or a graph is all that is asked for.
 [[nodiscard]] std::optional<std::filesystem::path> picture_path(const Options& options);
 
-/// Renders the frames, writes what the options ask for and prints a table of the last frame. `context` is
-/// current. Throws std::runtime_error for outputs that cannot be written, and gl::GlError for impossible
-/// sizes.
-void run_headless(const HeadlessContext& context, const Scene& scene, Entity camera,
+/// The frames of a headless run: those asked for, else those of the scene's animation, else one.
+[[nodiscard]] int frames_of(const Options& options, const Scene& scene);
+
+/// Renders the frames, moving the scene by its animation, writes what the options ask for and prints a table
+/// of the last frame. `context` is current. Throws std::runtime_error for outputs that cannot be written, and
+/// gl::GlError for impossible sizes.
+void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size);
 
 /// Writes --report and --describe-graph, as far as they are asked for.

@@ -105,7 +105,9 @@ void add_output(CLI::App& app, const std::string& flag, std::optional<fs::path>&
 void declare(CLI::App& app, Options& options) {
     app.set_help_flag("--help", "print this and exit");
     app.set_version_flag("--version", "candela " CANDELA_VERSION, "print the version and exit");
-    app.add_option("SCENE", options.scene, "default: the shipped Cornell box")->type_name("FILE.gltf|.glb");
+    app.add_option("SCENE", options.scene,
+                   "default: the one that the script is for, else the shipped Cornell box")
+        ->type_name("FILE.gltf|.glb");
     app.add_flag("--headless", options.headless, "no window: render, write, exit");
     add_choice<ContextChoice, ContextChoice>(app, "--context", options.context,
                                              {{"auto", ContextChoice::automatic},
@@ -117,7 +119,8 @@ void declare(CLI::App& app, Options& options) {
            "--size", [&options](const std::string& text) { options.size = parse_size(text); },
            "pixels; default: 1280x720 in a window, 512x512 headless")
         ->type_name("WxH");
-    add_number(app, "--frames", options.frames, 1, "default: 1 headless, no end in a window");
+    add_number(app, "--frames", options.frames, 1,
+               "default: headless 1, or as many as the script has; no end in a window");
     add_number(app, "--samples", options.samples, 1,
                "average N frames jittered within the pixel; default: 1");
     app.add_option("--camera", options.camera, "default: the scene's first, else one that sees all of it")
@@ -136,6 +139,14 @@ void declare(CLI::App& app, Options& options) {
     add_number(app, "--vpls", options.vpls, 0U, "virtual point lights");
     add_number(app, "--bounces", options.bounces, 0U, "indirect bounces: 0 is direct light only");
     add_number(app, "--seed", options.seed, 0U, "of the light paths");
+    add_choice<std::optional<VplVisibility>, VplVisibility>(
+        app, "--vpl-visibility", options.vpl_visibility,
+        {{"none", VplVisibility::none}, {"maps", VplVisibility::maps}, {"rays", VplVisibility::rays}},
+        "whether walls stop the light of virtual lights: by depth maps, or exactly by rays");
+    app.add_option("--animate", options.animate,
+                   "a script of light, mesh and camera motion, or the name of a shipped one: door-opens, "
+                   "flicker-walk, orbit-light, teleport, toggle")
+        ->type_name("FILE.json|NAME");
     app.add_option("--config", options.config,
                    "configuration; flags override it; in a window it is read again whenever it is saved")
         ->type_name("FILE.json")
@@ -157,12 +168,8 @@ void check_together(Options& options) {
         throw CLI::ValidationError("--headless", "there is no window for --context window");
     }
     options.headless = options.headless || windowless;
-    const bool numbers =
-        options.out && options.out->filename().string().find(frame_number) != std::string::npos;
-    if (options.out && !numbers && options.frames.value_or(1) > 1) {
-        fail("--out", options.out->string(),
-             fmt::format("needs a %d to number its {} frames", *options.frames));
-    }
+    if (const auto fault = numbering_fault(options, options.frames.value_or(1)))
+        throw CLI::ValidationError(*fault);
 }
 
 std::string one_line(std::string text) {
@@ -187,6 +194,12 @@ std::variant<Options, EarlyExit> parse_options(int count, const char* const* arg
     } catch (const CLI::ParseError& fault) {
         return EarlyExit{2, fmt::format("candela: {}\n", one_line(fault.what()))};
     }
+}
+
+std::optional<std::string> numbering_fault(const Options& options, int frames) {
+    if (!options.out || frames == 1) return std::nullopt;
+    if (options.out->filename().string().find(frame_number) != std::string::npos) return std::nullopt;
+    return fmt::format("--out: '{}' needs a %d to number its {} frames", options.out->string(), frames);
 }
 
 fs::path numbered(const fs::path& out, int frame) {

@@ -18,11 +18,11 @@ enum class ContextChoice : std::uint8_t { automatic, window, egl, osmesa };
 /// The command line. What it left out and a configuration file may hold is nullopt, so that only flags that
 /// were given override the file.
 struct Options {
-    std::optional<std::filesystem::path> scene;  ///< default: the shipped Cornell box
+    std::optional<std::filesystem::path> scene;  ///< default: the script's, else the shipped Cornell box
     bool headless = false;                       ///< also set by a `context` that has no windows
     ContextChoice context = ContextChoice::automatic;
     std::optional<glm::ivec2> size;     ///< pixels; default: 1280x720 in a window, 512x512 headless
-    std::optional<int> frames;          ///< default: 1 headless, no end in a window
+    std::optional<int> frames;          ///< default: 1 or the script's length headless, no end in a window
     int samples = 1;                    ///< frames averaged, jittered within the pixel
     std::optional<std::string> camera;  ///< name or index; default: the scene's first
 
@@ -32,6 +32,8 @@ struct Options {
     std::optional<std::uint32_t> vpls;
     std::optional<std::uint32_t> bounces;  ///< indirect ones: 1 is light, surface, seen surface
     std::optional<std::uint32_t> seed;
+    std::optional<VplVisibility> vpl_visibility;
+    std::optional<std::filesystem::path> animate;  ///< a script's file, or the name of a shipped one
     std::optional<std::filesystem::path> config;
     bool print_config = false;
 
@@ -51,6 +53,9 @@ struct EarlyExit {
 /// Reads the command line; `arguments[0]` is the program. Looks at no file beyond whether it, or the folder
 /// that is to hold it, is there. Faults have exit status 2.
 [[nodiscard]] std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments);
+
+/// What is wrong with the name for so many pictures; nullopt if nothing is.
+[[nodiscard]] std::optional<std::string> numbering_fault(const Options& options, int frames);
 
 /// The picture's file name for frame `frame`: every "%d" in the name becomes its number.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& out, int frame);

@@ -32,17 +32,25 @@ void drag(const char* label, std::uint32_t& value, float speed) {
     ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
 }
 
+/// Refinement is on in a window whatever a frame is made of, so that named configurations leave it as it is.
+Configuration with_refinement_of(const Configuration& present, Configuration named) {
+    named.refinement = present.refinement;
+    return named;
+}
+
 /// Named configurations, of which one is shown where nothing was changed since.
 void draw_named_configurations(Configuration& value) {
     const auto named = named_configurations();
-    const auto is_value = [&](const NamedConfiguration& choice) { return choice.configuration == value; };
+    const auto is_value = [&](const NamedConfiguration& choice) {
+        return with_refinement_of(value, choice.configuration) == value;
+    };
     const auto shown = std::find_if(named.begin(), named.end(), is_value);
     if (!ImGui::BeginCombo("configuration",
                            shown == named.end() ? "custom" : std::string(shown->name).c_str()))
         return;
     for (const NamedConfiguration& choice : named) {
         if (ImGui::Selectable(std::string(choice.name).c_str(), is_value(choice)))
-            value = choice.configuration;
+            value = with_refinement_of(value, choice.configuration);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(choice.description).c_str());
     }
     ImGui::EndCombo();
@@ -58,6 +66,28 @@ void draw_list_settings(LightList list, ListSettings& settings) {
     }
     text("tile size");
     if (list == LightList::cluster) drag("slices", settings.slices, 0.2F);
+}
+
+void draw_visibility(VplVisibilitySettings& settings) {
+    combo("VPL visibility", settings.method,
+          std::array{VplVisibility::none, VplVisibility::maps, VplVisibility::rays});
+    if (settings.method == VplVisibility::maps) drag("VPL map texels", settings.map_resolution, 0.2F);
+}
+
+void draw_refinement(RefinementSettings& settings) {
+    ImGui::Checkbox("refine while still", &settings.enabled);
+    if (settings.enabled) drag("frames to refine", settings.frames, 1.0F);
+}
+
+void draw_playback(Playback& playback) {
+    int frame = playback.frame();
+    if (ImGui::SliderInt("frame", &frame, 0, playback.frames() - 1, "%d", ImGuiSliderFlags_AlwaysClamp))
+        playback.seek(frame);
+    if (ImGui::Button(playback.playing() ? "pause" : "play")) playback.toggle();
+    ImGui::SameLine();
+    if (ImGui::Button("step")) playback.step();
+    ImGui::SameLine();
+    text("(space, period)");
 }
 
 void draw_cameras(const World& world, Interaction& interaction) {
@@ -140,6 +170,7 @@ void draw_light_counts(const LightReport& lights) {
 
 void draw_vpls(const VplReport& vpls) {
     text(fmt::format("{} of {} VPLs on {} paths", vpls.alive, vpls.requested, vpls.paths));
+    text(fmt::format("still to make: {}; to give way: {}", vpls.debt, vpls.stale));
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g,
                          line.value.b));
@@ -149,7 +180,8 @@ void draw_vpls(const VplReport& vpls) {
 
 }  // namespace
 
-void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, const FrameReport& frame) {
+void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Playback* playback,
+                 const FrameReport& frame) {
     if (!visible) return;
     Configuration wanted = renderer.configuration();
     const float scale = ImGui::GetIO().FontGlobalScale;
@@ -161,6 +193,8 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, con
         ImGui::Separator();
         draw_cameras(world, interaction);
         draw_lights(world, interaction.selected);
+        if (playback != nullptr && ImGui::CollapsingHeader("Animation", ImGuiTreeNodeFlags_DefaultOpen))
+            draw_playback(*playback);
         if (ImGui::CollapsingHeader("Passes", ImGuiTreeNodeFlags_DefaultOpen)) draw_passes(frame);
         if (ImGui::CollapsingHeader("Energy: lights in, surfaces out")) draw_account(renderer);
         ImGui::PopItemWidth();
@@ -179,6 +213,11 @@ void Panel::draw_configuration(Configuration& wanted) {
     drag("VPLs", wanted.vpls.count, 1.0F);
     drag("bounces", wanted.vpls.bounces, 0.05F);
     drag("seed", wanted.vpls.seed, 0.05F);
+    drag("budget a frame", wanted.vpls.budget, 0.2F);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("VPLs, and maps of them, made anew in a frame; 0: all that are due");
+    draw_visibility(wanted.visibility);
+    draw_refinement(wanted.refinement);
     ImGui::DragFloat("geometry bound", &wanted.geometry_bound, 0.01F);
     ImGui::Checkbox("shadows", &wanted.shadows.enabled);
     ImGui::DragFloat("exposure (EV)", &wanted.tone_map.exposure_ev, 0.02F);

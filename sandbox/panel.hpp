@@ -6,6 +6,7 @@
 
 #include "renderer/renderer.hpp"
 #include "sandbox/interaction.hpp"
+#include "sandbox/playback.hpp"
 
 namespace candela::sandbox {
 
@@ -16,8 +17,10 @@ class Panel {
     /// Of the configuration that was last asked for, in the panel or elsewhere.
     std::vector<std::string> faults;
 
-    /// Draws it, and puts into effect what people change in it. Between Gui::begin_frame and end_frame.
-    void draw(Renderer& renderer, World& world, Interaction& interaction, const FrameReport& frame);
+    /// Draws it, and puts into effect what people change in it. `playback` is null without an animation.
+    /// Between Gui::begin_frame and end_frame.
+    void draw(Renderer& renderer, World& world, Interaction& interaction, Playback* playback,
+              const FrameReport& frame);
 
  private:
     void draw_configuration(Configuration& wanted);

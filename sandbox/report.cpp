@@ -29,7 +29,8 @@ Json to_json(const VplReport& vpls) {
     Json flux;
     for (const EnergyLine& line : energy_lines(vpls.flux)) flux[line.name] = to_json(line.value);
     flux["roulette_error"] = to_json(vpls.flux.roulette_error);
-    return {{"requested", vpls.requested}, {"alive", vpls.alive}, {"paths", vpls.paths}, {"flux", flux}};
+    return {{"requested", vpls.requested}, {"alive", vpls.alive}, {"paths", vpls.paths},
+            {"debt", vpls.debt},           {"stale", vpls.stale}, {"flux", flux}};
 }
 
 Json to_json(const LightReport& lights) {
@@ -70,6 +71,7 @@ std::string light_table(const LightReport& lights) {
 std::string vpl_table(const VplReport& vpls) {
     std::string table = fmt::format("VPLs             {} alive of {} requested, on {} paths\n", vpls.alive,
                                     vpls.requested, vpls.paths);
+    table += fmt::format("  still to make  {}, and {} that will give way to others\n", vpls.debt, vpls.stale);
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r,
                              line.value.g, line.value.b);
@@ -87,6 +89,7 @@ std::string to_json(const RunReport& report) {
                        {"gl_renderer", report.state.gl_renderer},
                        {"context", report.context},
                        {"scene", report.scene},
+                       {"animation", report.animation ? Json(*report.animation) : Json(nullptr)},
                        {"triangles", report.state.triangles},
                        {"size", {report.size.x, report.size.y}},
                        {"config", Json::parse(write_configuration(report.configuration))},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@ namespace candela::sandbox {
 struct RunReport {
     std::string context;  ///< "window", "EGL device /dev/dri/card0", "OSMesa", ...
     std::string scene;
-    glm::ivec2 size{0};  ///< pixels
+    std::optional<std::string> animation;  ///< the script's file
+    glm::ivec2 size{0};                    ///< pixels
     Configuration configuration;
     std::vector<FrameReport> frames;
     Report state;  ///< after the last frame

@@ -65,17 +65,20 @@ Entity add_framing_camera(World& world, float aspect) {
 
 }  // namespace
 
-fs::path shipped_scene() {
-    const fs::path name = "cornell.gltf";
+fs::path shipped_file(const std::string& folder, const std::string& name) {
     std::error_code ignored;
-    const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / "scenes" / name;
-    return fs::exists(beside, ignored) ? beside : fs::path(CANDELA_SCENES) / name;
+    const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / folder / name;
+    return fs::exists(beside, ignored) ? beside : fs::path(CANDELA_SHIPPED) / folder / name;
 }
 
 Scene load_scene(const fs::path& path) {
-    Scene scene{path, {}, {}};
+    Scene scene{path, {}, {}, {}};
     scene.warnings = import_gltf(path, scene.world).warnings;
     return scene;
+}
+
+std::optional<std::string> animation_of(const Scene& scene) {
+    return scene.animation ? std::optional(scene.animation->script().path.string()) : std::nullopt;
 }
 
 Bounds bounds(const World& world) {

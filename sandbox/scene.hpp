@@ -8,20 +8,26 @@
 #include <glm/vec3.hpp>
 
 #include "engine/ecs/world.hpp"
+#include "sandbox/animation.hpp"
 
 namespace candela::sandbox {
 
-/// What the app shows: a world, and where it came from.
+/// What the app shows: a world, where it came from, and how it moves.
 struct Scene {
     std::filesystem::path path;
     World world;
-    std::vector<std::string> warnings;  ///< what the file has and the import left out, a line each
+    std::vector<std::string> warnings;   ///< what the file has and the import left out, a line each
+    std::optional<Animation> animation;  ///< of the world
 };
 
-/// The Cornell box: from the folder `scenes` beside the executable, else from the source tree.
-[[nodiscard]] std::filesystem::path shipped_scene();
+/// The file of the scene's script, if it has one.
+[[nodiscard]] std::optional<std::string> animation_of(const Scene& scene);
 
-/// Throws SceneError that names the file and the fault.
+/// A file of a folder that comes with the app, "scenes" or "animations": beside the executable, or, where
+/// there is none, in the source tree.
+[[nodiscard]] std::filesystem::path shipped_file(const std::string& folder, const std::string& name);
+
+/// Without an animation. Throws SceneError that names the file and the fault.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
 /// The sphere around the box of all mesh instances, world space, metres. Radius 0 if there is nothing.

@@ -4,13 +4,17 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "renderer/context/headless.hpp"
+#include "sandbox/animation_script.hpp"
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/config_watch.hpp"
 #include "sandbox/headless.hpp"
@@ -57,15 +61,18 @@ std::vector<ContextKind> headless_kinds(ContextChoice choice) {
     return {ContextKind::egl, ContextKind::osmesa};
 }
 
+bool wants_window(const Options& options) {
+    return !options.headless && (options.context == ContextChoice::window || has_display());
+}
+
 /// A window, or null where the headless contexts are next. What failed goes into `tried`.
 std::unique_ptr<Window> open_window(const Options& options, glm::ivec2 size,
                                     std::vector<std::string>& tried) {
-    const bool wanted = options.context == ContextChoice::window;
-    if (options.headless || (!wanted && !has_display())) return nullptr;
+    if (!wants_window(options)) return nullptr;
     try {
         return std::make_unique<Window>(size, "Candela");
     } catch (const ContextError& fault) {
-        if (wanted) throw;
+        if (options.context == ContextChoice::window) throw;
         tried.emplace_back(fault.what());
         return nullptr;
     }
@@ -84,19 +91,39 @@ std::unique_ptr<HeadlessContext> open_headless(ContextChoice choice, std::vector
     throw ContextError(fmt::format("no OpenGL 4.5 context: {}", fmt::join(tried, "; ")));
 }
 
+std::filesystem::path default_scene() {
+    return shipped_file("scenes", "cornell.gltf");
+}
+
 float aspect(glm::ivec2 size) {
     return static_cast<float>(size.x) / static_cast<float>(size.y);
 }
 
+/// The scene that the flags, or else the script, ask for, with the script's animation.
+Scene open_scene(const Options& options) {
+    std::optional<Script> script;
+    if (options.animate) script = load_script(*options.animate);
+    const std::filesystem::path by_default =
+        script ? scene_of(*script).value_or(default_scene()) : default_scene();
+    Scene scene = load_scene(options.scene.value_or(by_default));
+    if (script) scene.animation.emplace(std::move(*script), scene.world);
+    return scene;
+}
+
+void check_numbering(const Options& options, int frames) {
+    if (const auto fault = numbering_fault(options, frames)) throw std::runtime_error(*fault);
+}
+
 void run_session(const Options& options) {
     ConfigWatch watch(options);
-    const Configuration configuration = choose_configuration(options);
+    const bool windowed = wants_window(options);
+    const Configuration configuration = choose_configuration(options, windowed);
     if (options.list_configs || options.print_config) {
         fmt::print("{}",
                    options.list_configs ? list_configurations() : write_configuration(configuration) + "\n");
         return;
     }
-    Scene scene = load_scene(options.scene.value_or(shipped_scene()));
+    Scene scene = open_scene(options);
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "candela: {}\n", warning);
 
     std::vector<std::string> tried;
@@ -106,10 +133,12 @@ void run_session(const Options& options) {
         return run_window(*window, scene, camera, configuration, watch, options);
     }
     for (const std::string& fault : tried) fmt::print(stderr, "candela: no window: {}\n", fault);
+    check_numbering(options, frames_of(options, scene));
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
-    run_headless(*context, scene, camera, configuration, options, size);
+    run_headless(*context, scene, camera, windowed ? choose_configuration(options, false) : configuration,
+                 options, size);
 }
 
 }  // namespace

@@ -5,17 +5,20 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "engine/scene/hierarchy.hpp"
 #include "renderer/renderer.hpp"
 #include "sandbox/capture.hpp"
 #include "sandbox/gui.hpp"
 #include "sandbox/headless.hpp"
 #include "sandbox/interaction.hpp"
 #include "sandbox/panel.hpp"
+#include "sandbox/playback.hpp"
 #include "sandbox/report.hpp"
 
 namespace candela::sandbox {
@@ -34,6 +37,7 @@ class WindowSession {
           gui_(window),
           interaction_(scene.world, camera) {
         apply(renderer_, configuration);
+        if (scene.animation) playback_.emplace(*scene.animation);
     }
 
     void run() {
@@ -46,7 +50,8 @@ class WindowSession {
         const Configuration configuration = renderer_.configuration();
         if (options_.out) write_picture(numbered(*options_.out, std::max(frame_ - 1, 0)));
         write_documents(options_,
-                        {"window", scene_.path.string(), pixels_, configuration, frames_, renderer_.report()},
+                        {"window", scene_.path.string(), animation_of(scene_), pixels_, configuration,
+                         frames_, renderer_.report()},
                         renderer_);
     }
 
@@ -63,8 +68,10 @@ class WindowSession {
 
         gui_.begin_frame();
         for (const InputEvent& event : events) handle(event, size);
-        panel_.draw(renderer_, scene_.world, interaction_, frames_.empty() ? FrameReport{} : frames_.back());
+        panel_.draw(renderer_, scene_.world, interaction_, playback_ ? &*playback_ : nullptr,
+                    frames_.empty() ? FrameReport{} : frames_.back());
         take_saved_configuration();
+        animate();
         const Viewport viewport = make_viewport(scene_.world, interaction_.viewer(), size);
         draw_markers(light_markers(scene_.world), viewport, interaction_.selected);
         renderer_.render(scene_.world, interaction_.viewer(), {0, pixels_});
@@ -81,10 +88,24 @@ class WindowSession {
         for (const std::string& fault : panel_.faults) fmt::print(stderr, "candela: {}\n", fault);
     }
 
-    /// Panels take two frames to settle after an event. A given number of frames is not waited for.
+    /// The viewer goes with the camera that it started from, wherever it has strayed to since.
+    void animate() {
+        if (!playback_) return;
+        const Entity camera = interaction_.camera();
+        const glm::mat4 before = world_matrix(scene_.world, camera);
+        playback_->advance(scene_.world);
+        if (world_matrix(scene_.world, camera) != before) interaction_.look_from_camera(camera);
+    }
+
+    /// Panels take two frames to settle after an event. A given number of frames is not waited for, nor is a
+    /// script that plays, nor a picture on which there was more to do than to show it again.
     [[nodiscard]] bool is_idle() const {
         constexpr int settled = 3;
-        return !options_.frames && quiet_frames_ > settled;
+        const auto& passes = renderer_.last_passes();
+        const auto ran =
+            std::count_if(passes.begin(), passes.end(), [](const auto& pass) { return pass.ran; });
+        const bool playing = playback_ && playback_->playing();
+        return !options_.frames && !playing && ran <= 1 && quiet_frames_ > settled;
     }
 
     void handle(const InputEvent& event, glm::vec2 size) {
@@ -92,7 +113,13 @@ class WindowSession {
         const bool key = event.kind == InputEvent::Kind::key;
         if (key && event.code == GLFW_KEY_ESCAPE) window_.close();
         if (key && event.code == GLFW_KEY_F1) panel_.visible = !panel_.visible;
+        if (key && playback_) handle_playback(event.code);
         interaction_.handle(event, size);
+    }
+
+    void handle_playback(int key) {
+        if (key == GLFW_KEY_SPACE) playback_->toggle();
+        if (key == GLFW_KEY_PERIOD) playback_->step();
     }
 
     /// Times that have arrived; all of them where they go into a report, else the last.
@@ -118,6 +145,7 @@ class WindowSession {
     Gui gui_;
     Interaction interaction_;
     Panel panel_;
+    std::optional<Playback> playback_;
     glm::ivec2 pixels_{1};
     int frame_ = 0;
     int quiet_frames_ = 0;

@@ -52,29 +52,51 @@ TEST_SUITE("options") {
         CHECK(options.samples == 1);
         CHECK_FALSE((options.scene || options.size || options.frames || options.camera || options.config));
         CHECK_FALSE((options.show || options.path || options.indirect));
-        CHECK_FALSE((options.vpls || options.bounces || options.seed));
+        CHECK_FALSE((options.vpls || options.bounces || options.seed || options.vpl_visibility));
+        CHECK_FALSE(options.animate);
         CHECK_FALSE((options.out || options.report || options.describe_graph));
         CHECK_FALSE((options.print_config || options.list_configs));
     }
 
     TEST_CASE("every flag reaches its option") {
-        const Options options = accepted({"room.glb",       "--headless",
-                                          "--context",      "osmesa",
-                                          "--size",         "333x217",
-                                          "--frames",       "3",
-                                          "--samples",      "4",
-                                          "--camera",       "2",
-                                          "--show",         "indirect",
-                                          "--path",         "deferred",
-                                          "--indirect",     "off",
-                                          "--vpls",         "0",
-                                          "--bounces",      "5",
-                                          "--seed",         "4294967295",
-                                          "--config",       __FILE__,
-                                          "--print-config", "--out",
-                                          "f%d.png",        "--report",
-                                          "r.json",         "--describe-graph",
-                                          "g.dot",          "--list-configs"});
+        const Options options = accepted({"room.glb",
+                                          "--headless",
+                                          "--context",
+                                          "osmesa",
+                                          "--size",
+                                          "333x217",
+                                          "--frames",
+                                          "3",
+                                          "--samples",
+                                          "4",
+                                          "--camera",
+                                          "2",
+                                          "--show",
+                                          "indirect",
+                                          "--path",
+                                          "deferred",
+                                          "--indirect",
+                                          "off",
+                                          "--vpls",
+                                          "0",
+                                          "--bounces",
+                                          "5",
+                                          "--seed",
+                                          "4294967295",
+                                          "--vpl-visibility",
+                                          "rays",
+                                          "--animate",
+                                          "orbit-light",
+                                          "--config",
+                                          __FILE__,
+                                          "--print-config",
+                                          "--out",
+                                          "f%d.png",
+                                          "--report",
+                                          "r.json",
+                                          "--describe-graph",
+                                          "g.dot",
+                                          "--list-configs"});
         CHECK(options.scene == "room.glb");
         CHECK(options.headless);
         CHECK(options.context == ContextChoice::osmesa);
@@ -88,6 +110,8 @@ TEST_SUITE("options") {
         CHECK(options.vpls == 0U);
         CHECK(options.bounces == 5U);
         CHECK(options.seed == 4294967295U);
+        CHECK(options.vpl_visibility == VplVisibility::rays);
+        CHECK(options.animate == "orbit-light");
         CHECK(options.config == __FILE__);
         CHECK(options.print_config);
         CHECK(options.out == "f%d.png");
@@ -106,6 +130,10 @@ TEST_SUITE("options") {
             CHECK(accepted({"--path", std::string(to_string(path)).c_str()}).path == path);
         }
         CHECK(accepted({"--indirect", "on"}).indirect == true);
+        for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
+            const std::string word(to_string(method));
+            CHECK(accepted({"--vpl-visibility", word.c_str()}).vpl_visibility == method);
+        }
     }
 
     TEST_CASE("a context without windows is headless") {
@@ -136,13 +164,15 @@ TEST_SUITE("options") {
         check_refused_value("--show", {"both"});
         check_refused_value("--path", {"tiled", "forward-plus", "Forward", "1"});
         check_refused_value("--indirect", {"true", "1"});
+        check_refused_value("--vpl-visibility", {"on", "map", "Rays"});
         check_refused({"--vpls"}, "--vpls", "");
+        check_refused({"--animate"}, "--animate", "");
         check_refused({"--vpls", "1", "--vpls", "2"}, "--vpls", "");
     }
 
     TEST_CASE("flags that do not exist are refused and not in the help") {
         const std::string help = std::get<EarlyExit>(parse({"--help"})).text;
-        for (const char* flag : {"--animate", "--vpl-visibility", "--fullscreen", "-x"}) {
+        for (const char* flag : {"--fullscreen", "--budget", "-x"}) {
             check_refused({flag, "x"}, flag, "");
             CHECK(help.find(flag) == std::string::npos);
         }
@@ -153,10 +183,10 @@ TEST_SUITE("options") {
         const EarlyExit help = std::get<EarlyExit>(parse({"--help"}));
         CHECK(help.status == 0);
         for (const char* flag :
-             {"SCENE",          "--headless", "--context",      "--size",     "--frames", "--samples",
-              "--camera",       "--show",     "--path",         "--indirect", "--vpls",   "--bounces",
-              "--seed",         "--config",   "--print-config", "--out",      "--report", "--describe-graph",
-              "--list-configs", "--version",  "--help"}) {
+             {"SCENE",    "--headless",       "--context",      "--size",     "--frames",       "--samples",
+              "--camera", "--show",           "--path",         "--indirect", "--vpls",         "--bounces",
+              "--seed",   "--vpl-visibility", "--animate",      "--config",   "--print-config", "--out",
+              "--report", "--describe-graph", "--list-configs", "--version",  "--help"}) {
             CAPTURE(flag);
             CHECK(help.text.find(flag) != std::string::npos);
         }
@@ -179,6 +209,13 @@ TEST_SUITE("options") {
         CHECK(accepted({"--frames", "1", "--out", "a.png"}).frames == 1);
         CHECK(accepted({"--frames", "2", "--out", "a%d.png"}).frames == 2);
         check_refused({"--frames", "2", "--out", "%d/a.png"}, "--out", "%d/a.png");
+
+        // A script's length is not known before it is read.
+        const Options animated = accepted({"--animate", "a.json", "--out", "a.png"});
+        CHECK_FALSE(numbering_fault(animated, 1));
+        CHECK(numbering_fault(animated, 60) == "--out: 'a.png' needs a %d to number its 60 frames");
+        CHECK_FALSE(numbering_fault(accepted({"--out", "a%d.png"}), 60));
+        CHECK_FALSE(numbering_fault(accepted({}), 60));
 
         CHECK(numbered("a%d.png", 7) == "a7.png");
         CHECK(numbered("in/f%d-%d.exr", 12) == "in/f12-12.exr");

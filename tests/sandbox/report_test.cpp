@@ -19,14 +19,15 @@ EnergyAccount balanced() {
 }
 
 RunReport some_run() {
-    RunReport run{"EGL surfaceless", "a/\xFF.gltf", {640, 480}, {}, {}, {}};
+    RunReport run{"EGL surfaceless", "a/\xFF.gltf", "orbit.json", {640, 480}, {}, {}, {}};
     run.frames.push_back({.index = 3,
                           .cpu_ms = 1.5,
                           .gpu_ms = 2.5,
                           .passes = {{"gbuffer", true, 0.5, 1.0}, {"vpl-trace", false, 0.0, 0.0}}});
     run.state.gl_renderer = "a driver";
     run.state.triangles = 36;
-    run.state.vpls = VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced()};
+    run.state.vpls =
+        VplReport{.requested = 256, .alive = 251, .paths = 120, .debt = 13, .stale = 17, .flux = balanced()};
     run.state.lights = {
         .count = 300, .with_shadow = 2, .without_shadow = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
     run.state.memory = {
@@ -41,6 +42,7 @@ TEST_SUITE("report") {
         const auto json = nlohmann::json::parse(to_json(some_run()));
         CHECK(json["gl_renderer"] == "a driver");
         CHECK(json["context"] == "EGL surfaceless");
+        CHECK(json["animation"] == "orbit.json");
         CHECK(json["triangles"] == 36);
         CHECK(json["size"] == nlohmann::json::array({640, 480}));
         CHECK(json["config"]["vpls"]["count"] == 256);
@@ -49,6 +51,8 @@ TEST_SUITE("report") {
         CHECK(json["frames"][0]["passes"][0]["gpu_ms"] == 1.0);
         CHECK(json["frames"][0]["passes"][1]["ran"] == false);
         CHECK(json["vpls"]["alive"] == 251);
+        CHECK(json["vpls"]["debt"] == 13);
+        CHECK(json["vpls"]["stale"] == 17);
         CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
         CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
         CHECK(json["lights"]["without_shadow"] == 1);
@@ -84,7 +88,8 @@ TEST_SUITE("report") {
     TEST_CASE("the table names every pass and tells which ones ran") {
         const RunReport run = some_run();
         const std::string table = to_table(run.frames[0], run.state);
-        for (const char* word : {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "36"})
+        for (const char* word :
+             {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "13, and 17", "36"})
             CHECK_MESSAGE(table.find(word) != std::string::npos, word);
     }
 }

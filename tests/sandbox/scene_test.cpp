@@ -47,7 +47,7 @@ std::string fault_of(World world, const std::string& camera) {
 
 TEST_SUITE("scene") {
     TEST_CASE("the shipped scene is found, and has a camera and a light") {
-        const Scene scene = load_scene(shipped_scene());
+        const Scene scene = load_scene(shipped_file("scenes", "cornell.gltf"));
         CHECK(scene.warnings.empty());
         CHECK(cameras(scene.world).size() == 1);
         CHECK(scene.world.count<PointLight>() == 1);

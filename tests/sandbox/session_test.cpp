@@ -1,12 +1,14 @@
 #include "sandbox/session.hpp"
 
 #include <fstream>
+#include <string>
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "sandbox/picture.hpp"
+#include "sandbox/scene.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {
@@ -59,6 +61,58 @@ TEST_SUITE("session") {
         CHECK(first.pixels == read_pfm(*options.out).pixels);
     }
 
+    TEST_CASE("every shipped script moves its scene, the same in every run") {
+        for (const char* script : {"orbit-light", "door-opens", "flicker-walk", "teleport", "toggle"}) {
+            CAPTURE(script);
+            const TemporaryFolder folder;
+            Options options = small_headless();
+            options.size = glm::ivec2(32, 32);
+            options.vpls = 16;
+            options.vpl_visibility = VplVisibility::none;
+            options.animate = script;
+            options.frames = 17;  // by when every script has moved something
+            options.out = folder / "%d.pfm";
+            options.report = folder / "a.json";
+            REQUIRE(run(options) == 0);
+            CHECK(folder.file_count() == 18);
+            const auto report = nlohmann::json::parse(std::ifstream(*options.report));
+            CHECK(report["animation"].get<std::string>().ends_with(std::string(script) + ".json"));
+            CHECK(report["frames"].size() == 17);
+            CHECK(report["frames"][16]["index"] == 16);
+
+            const auto first = [&](int index) { return read_pfm(numbered(folder / "%d.pfm", index)).pixels; };
+            CHECK(first(0) != first(16));
+            options.frames = 3;
+            options.out = folder / "again%d.pfm";
+            REQUIRE(run(options) == 0);
+            for (const int index : {0, 1, 2})
+                CHECK(first(index) == read_pfm(numbered(*options.out, index)).pixels);
+        }
+    }
+
+    TEST_CASE("a run is as long as its script; frames beyond the end are the last") {
+        const TemporaryFolder folder;
+        const TemporaryFolder inputs;
+        std::ofstream(inputs / "a.json") << R"({"frames": 2, "tracks": [
+            {"node": "ceiling light", "intensity": [[0, 4], [1, 1]]}]})";
+        Options options = small_headless();
+        options.animate = inputs / "a.json";
+        options.indirect = false;
+        options.out = folder / "%d.pfm";
+        REQUIRE(run(options) == 0);
+        CHECK(folder.file_count() == 2);
+        options.frames = 4;
+        REQUIRE(run(options) == 0);
+        CHECK(folder.file_count() == 4);
+        const auto frame = [&](int index) { return read_pfm(numbered(*options.out, index)).pixels; };
+        CHECK(frame(0) != frame(1));
+        CHECK(frame(1) == frame(2));
+        CHECK(frame(1) == frame(3));
+        // A quarter of the light; powers of two scale without rounding.
+        const glm::vec3 before = frame(0)[10 * 33 + 16];
+        CHECK(before * 0.25F == frame(1)[10 * 33 + 16]);
+    }
+
     TEST_CASE("faults end with status 2 and leave nothing behind") {
         const TemporaryFolder folder;
         const TemporaryFolder inputs;
@@ -83,6 +137,20 @@ TEST_SUITE("session") {
         }
         SUBCASE("a flag out of range") {
             options.vpls = 1U << 31U;
+        }
+        SUBCASE("no such script") {
+            options.animate = "none";
+        }
+        SUBCASE("a malformed script") {
+            options.animate = inputs / "broken.json";
+        }
+        SUBCASE("a script for another scene") {
+            options.scene = shipped_file("scenes", "corner.gltf");
+            options.animate = "orbit-light";
+            options.out = folder / "%d.png";
+        }
+        SUBCASE("a script of many frames and one picture") {
+            options.animate = "orbit-light";
         }
         SUBCASE("a picture that the driver cannot hold") {
             options.size = glm::ivec2(1 << 24, 1);

@@ -156,6 +156,13 @@ class App {
         button(false);
     }
 
+    void press_key(KeySym key) {
+        const KeyCode code = XKeysymToKeycode(display_.get(), key);
+        XTestFakeKeyEvent(display_.get(), code, True, CurrentTime);
+        XTestFakeKeyEvent(display_.get(), code, False, CurrentTime);
+        pause();
+    }
+
     /// Closes it by keyboard; the exit status.
     int quit() {
         press_key(XK_Escape);
@@ -204,13 +211,6 @@ class App {
         pause();
     }
 
-    void press_key(KeySym key) {
-        const KeyCode code = XKeysymToKeycode(display_.get(), key);
-        XTestFakeKeyEvent(display_.get(), code, True, CurrentTime);
-        XTestFakeKeyEvent(display_.get(), code, False, CurrentTime);
-        pause();
-    }
-
     /// People are slow too.
     void pause() {
         XSync(display_.get(), False);
@@ -222,10 +222,12 @@ class App {
     pid_t process_ = 0;
 };
 
-/// Exposed so that nothing comes near white, where differences vanish.
+/// Exposed so that nothing comes near white, where differences vanish; and at rest as soon as nothing moves.
 class DarkConfiguration {
  public:
-    DarkConfiguration() { std::ofstream(path()) << R"({"tone_map": {"exposure_ev": -3}})"; }
+    DarkConfiguration() {
+        std::ofstream(path()) << R"({"tone_map": {"exposure_ev": -3}, "refinement": {"enabled": false}})";
+    }
     [[nodiscard]] std::string path() const { return (folder_ / "dark.json").string(); }
 
  private:
@@ -268,6 +270,25 @@ void drag_light(App& app) {
     app.drag(light_x(), light_y(), light_x() + moved_by * pixels_per_metre(light_depth), light_y());
 }
 
+/// A script in a file of its own.
+class ScriptFile {
+ public:
+    explicit ScriptFile(const std::string& json) { std::ofstream(path()) << json; }
+    [[nodiscard]] std::string path() const { return (folder_ / "script.json").string(); }
+
+ private:
+    TemporaryFolder folder_;
+};
+
+/// Where the wall is brightest with the light at `x` metres, if the camera stands at `camera_x`.
+double column_of(double x, double camera_x = 0.0) {
+    return width / 2.0 + (x - camera_x) * pixels_per_metre(4.9);
+}
+
+/// The stretch of the wall that rounds to the same brightness is some 20 pixels wide; its middle is good for
+/// a few.
+constexpr double column_tolerance = 4.0;
+
 /// Left and right of the box nothing is ever lit.
 void check_same_beside_the_box(const Shot& before, const Shot& after) {
     const int edge = static_cast<int>(width / 2.0 - 1.02 * pixels_per_metre(2.9));
@@ -286,15 +307,12 @@ TEST_SUITE("window") {
     TEST_CASE("a wall is brightest right behind the light, before it is dragged and after") {
         const DarkConfiguration dark;
         App app({"--indirect", "off", "--config", dark.path()});
-        // Irradiance I·d/r³ on the wall is largest at the foot of the perpendicular. The stretch that rounds
-        // to the same brightness is some 20 pixels wide; its middle is good for a few.
-        constexpr double tolerance = 4.0;
+        // Irradiance I·d/r³ on the wall is largest at the foot of the perpendicular.
         const Shot before = app.settled();
-        CHECK(std::abs(brightest_column(before) - width / 2.0) < tolerance);
+        CHECK(std::abs(brightest_column(before) - column_of(0.0)) < column_tolerance);
         drag_light(app);
         const Shot after = app.settled();
-        CHECK(std::abs(brightest_column(after) - (width / 2.0 + moved_by * pixels_per_metre(4.9))) <
-              tolerance);
+        CHECK(std::abs(brightest_column(after) - column_of(moved_by)) < column_tolerance);
         check_same_beside_the_box(before, after);
         CHECK(app.quit() == 0);
     }
@@ -326,6 +344,50 @@ TEST_SUITE("window") {
         for (std::size_t i = 0; i < before.pixels.size(); ++i)
             changed += std::abs(before.pixels[i] - back.pixels[i]) > 6 ? 1 : 0;
         CHECK(changed < 50);
+        CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("a script plays to its end, and steps and plays again by keyboard") {
+        const DarkConfiguration dark;
+        const ScriptFile script(R"({"frames": 20, "tracks": [{"node": "ceiling light",
+            "translation": [[0, [-0.4, 1.6, 0]], [19, [0.4, 1.6, 0]]]}]})");
+        App app({"--indirect", "off", "--config", dark.path(), "--animate", script.path()});
+        const auto column = [&] { return brightest_column(app.settled()); };
+        CHECK(std::abs(column() - column_of(0.4)) < column_tolerance);
+        app.press_key(XK_period);
+        CHECK(std::abs(column() - column_of(-0.4)) < column_tolerance);
+        for (int step = 0; step < 5; ++step) app.press_key(XK_period);
+        CHECK(std::abs(column() - column_of(-0.4 + 5 * 0.8 / 19)) < column_tolerance);
+        app.press_key(XK_space);
+        CHECK(std::abs(column() - column_of(0.4)) < column_tolerance);
+        CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("a script that has ended leaves its light to be dragged, and takes it back") {
+        const DarkConfiguration dark;
+        const ScriptFile script(R"({"frames": 2, "tracks": [{"node": "ceiling light",
+            "interpolation": "step", "translation": [[0, [-0.4, 1.6, 0]], [1, [0, 1.6, 0]]]}]})");
+        App app({"--indirect", "off", "--config", dark.path(), "--animate", script.path()});
+        const auto column = [&] { return brightest_column(app.settled()); };
+        CHECK(std::abs(column() - column_of(0.0)) < column_tolerance);
+        drag_light(app);
+        CHECK(std::abs(column() - column_of(moved_by)) < column_tolerance);
+        app.press_key(XK_period);
+        CHECK(std::abs(column() - column_of(-0.4)) < column_tolerance);
+        CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("the view goes with a camera that a script drives, and orbits once it stands") {
+        const DarkConfiguration dark;
+        const ScriptFile script(R"({"frames": 10, "tracks": [{"node": "camera",
+            "translation": [[0, [0, 1, 3.9]], [9, [0.3, 1, 3.9]]]}]})");
+        App app({"--indirect", "off", "--config", dark.path(), "--animate", script.path()});
+        const Shot ended = app.settled();
+        CHECK(std::abs(brightest_column(ended) - column_of(0.0, 0.3)) < column_tolerance);
+        app.drag(240.0, 300.0, 200.0, 290.0);
+        CHECK_FALSE(app.settled() == ended);
+        app.press_key(XK_period);
+        CHECK(std::abs(brightest_column(app.settled()) - column_of(0.0)) < column_tolerance);
         CHECK(app.quit() == 0);
     }
 

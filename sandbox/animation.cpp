@@ -1,0 +1,152 @@
+#include "sandbox/animation.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "engine/scene/components.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+/// The key in force: the last that is not after `frame`, else the first. There is one.
+template <class T>
+auto key_at(const Keys<T>& keys, int frame) {
+    const auto is_later = [](int at, const Key<T>& key) { return at < key.frame; };
+    const auto later = std::upper_bound(keys.begin(), keys.end(), frame, is_later);
+    return later == keys.begin() ? later : std::prev(later);
+}
+
+template <class T>
+std::optional<T> held_at(const Keys<T>& keys, int frame) {
+    return keys.empty() ? std::nullopt : std::optional<T>(key_at(keys, frame)->value);
+}
+
+// Between equal keys a value stands still to the bit, so that what rests causes no work.
+float between(float from, float to, float part) {
+    return from + part * (to - from);
+}
+glm::vec3 between(const glm::vec3& from, const glm::vec3& to, float part) {
+    return from + part * (to - from);
+}
+/// Along the great circle, the shorter way: Shoemake, "Animating Rotation with Quaternion Curves" (1985).
+glm::quat between(const glm::quat& from, const glm::quat& to, float part) {
+    return from == to ? from : glm::normalize(glm::slerp(from, to, part));
+}
+
+template <class T>
+std::optional<T> value_at(const Keys<T>& keys, Interpolation interpolation, int frame) {
+    if (keys.empty()) return std::nullopt;
+    const auto last = key_at(keys, frame);
+    const auto next = std::next(last);
+    // At its frame a key holds to the bit.
+    const bool holds = interpolation == Interpolation::step || next == keys.end() || frame <= last->frame;
+    if (holds) return last->value;
+    const float part =
+        static_cast<float>(frame - last->frame) / static_cast<float>(next->frame - last->frame);
+    const bool smooth = interpolation == Interpolation::smooth;
+    return between(last->value, next->value, smooth ? glm::smoothstep(0.0F, 1.0F, part) : part);
+}
+
+[[noreturn]] void fail(const Script& script, std::size_t track, const char* member,
+                       const std::string& fault) {
+    throw std::runtime_error(fmt::format("{}: tracks[{}].{}: '{}' {}", script.path.string(), track, member,
+                                         script.tracks[track].node, fault));
+}
+
+std::vector<Entity> find_nodes(const World& world, const std::string& wanted) {
+    std::vector<Entity> found;
+    for (auto [entity, name] : world.view<Name>()) {
+        if (name.value == wanted) found.push_back(entity);
+    }
+    return found;
+}
+
+/// Candela or lux; nullopt where there is no light.
+std::optional<float> light_strength(const World& world, Entity entity) {
+    if (const auto* light = world.find<PointLight>(entity)) return light->intensity;
+    if (const auto* light = world.find<SpotLight>(entity)) return light->intensity;
+    if (const auto* light = world.find<DirectionalLight>(entity)) return light->illuminance;
+    return std::nullopt;
+}
+
+/// The member that only a light has and the track drives.
+const char* light_member(const Track& track) {
+    if (!track.intensity.empty()) return "intensity";
+    if (!track.colour.empty()) return "colour";
+    return track.enabled.empty() ? nullptr : "enabled";
+}
+
+template <class T>
+void put(const std::optional<T>& value, T& target) {
+    if (value) target = *value;
+}
+
+void apply_transform(World& world, Entity entity, const Pose& pose) {
+    if (!pose.translation && !pose.rotation && !pose.scale) return;
+    Transform transform;
+    if (const auto* present = world.find<Transform>(entity)) transform = *present;
+    put(pose.translation, transform.translation);
+    put(pose.rotation, transform.rotation);
+    put(pose.scale, transform.scale);
+    world.set(entity, transform);
+}
+
+/// `strength` is what the light has while it is on.
+template <class Light>
+void apply_light(World& world, Entity entity, const Pose& pose, float strength, float Light::*member) {
+    if (!world.has<Light>(entity)) return;
+    world.edit<Light>(entity, [&](Light& light) {
+        put(pose.colour, light.colour);
+        if (pose.intensity || pose.enabled) light.*member = pose.enabled.value_or(true) ? strength : 0.0F;
+    });
+}
+
+}  // namespace
+
+Pose pose_at(const Track& track, int frame) {
+    return {.translation = value_at(track.translation, track.interpolation, frame),
+            .rotation = value_at(track.rotation, track.interpolation, frame),
+            .scale = value_at(track.scale, track.interpolation, frame),
+            .intensity = value_at(track.intensity, track.interpolation, frame),
+            .colour = value_at(track.colour, track.interpolation, frame),
+            .enabled = held_at(track.enabled, frame)};
+}
+
+int frame_of(const Script& script, int frame) {
+    return script.loop ? frame % script.frames : std::min(frame, script.frames - 1);
+}
+
+Animation::Animation(Script script, const World& world) : script_(std::move(script)) {
+    driven_.reserve(script_.tracks.size());
+    for (std::size_t i = 0; i < script_.tracks.size(); ++i) {
+        const Track& track = script_.tracks[i];
+        const std::vector<Entity> nodes = find_nodes(world, track.node);
+        if (nodes.empty()) fail(script_, i, "node", "is no node of the scene");
+        if (nodes.size() > 1) fail(script_, i, "node", fmt::format("is the name of {} nodes", nodes.size()));
+        const std::optional<float> strength = light_strength(world, nodes.front());
+        const char* of_light = light_member(track);
+        if (of_light != nullptr && !strength) fail(script_, i, of_light, "is no light");
+        driven_.push_back({nodes.front(), strength.value_or(0.0F)});
+    }
+}
+
+void Animation::apply(World& world, int frame) const {
+    const int shown = frame_of(script_, frame);
+    for (std::size_t i = 0; i < driven_.size(); ++i) {
+        const Pose pose = pose_at(script_.tracks[i], shown);
+        const Entity entity = driven_[i].entity;
+        const float strength = pose.intensity.value_or(driven_[i].strength);
+        apply_transform(world, entity, pose);
+        apply_light(world, entity, pose, strength, &PointLight::intensity);
+        apply_light(world, entity, pose, strength, &SpotLight::intensity);
+        apply_light(world, entity, pose, strength, &DirectionalLight::illuminance);
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,74 @@
+#include "sandbox/choose_configuration.hpp"
+
+#include <fstream>
+#include <stdexcept>
+
+#include <doctest/doctest.h>
+
+#include "tests/sandbox/temporary_folder.hpp"
+
+namespace candela::sandbox {
+
+TEST_SUITE("choosing a configuration") {
+    TEST_CASE("without a wish it is the default, which a window refines") {
+        CHECK(choose_configuration({}, false) == Configuration{});
+        Configuration refined;
+        refined.refinement.enabled = true;
+        CHECK(choose_configuration({}, true) == refined);
+    }
+
+    TEST_CASE("a file has the last word on refinement, if it says one") {
+        const TemporaryFolder folder;
+        Options options;
+        options.config = folder / "a.json";
+        for (const bool in_window : {false, true}) {
+            std::ofstream(*options.config) << R"({"vpls": {"count": 3}})";
+            CHECK(choose_configuration(options, in_window).refinement.enabled == in_window);
+            CHECK(choose_configuration(options, in_window).vpls.count == 3);
+            for (const bool wanted : {false, true}) {
+                std::ofstream(*options.config)
+                    << R"({"refinement": {"enabled": )" << (wanted ? "true" : "false") << "}}";
+                CHECK(choose_configuration(options, in_window).refinement.enabled == wanted);
+            }
+        }
+    }
+
+    TEST_CASE("flags override the file") {
+        const TemporaryFolder folder;
+        Options options;
+        options.config = folder / "a.json";
+        std::ofstream(*options.config) << R"({"path": "deferred",
+            "vpls": {"count": 3, "seed": 4, "visibility": "rays", "budget": 5}})";
+        options.vpl_visibility = VplVisibility::none;
+        options.seed = 9;
+        const Configuration configuration = choose_configuration(options, false);
+        CHECK(configuration.visibility.method == VplVisibility::none);
+        CHECK(configuration.vpls.seed == 9);
+        CHECK(configuration.vpls.count == 3);
+        CHECK(configuration.vpls.budget == 5);
+        CHECK(configuration.path == ShadingPath::deferred);
+    }
+
+    TEST_CASE("what is asked for is shown by --print-config") {
+        for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
+            Options options;
+            options.vpl_visibility = method;
+            const std::string text = write_configuration(choose_configuration(options, false));
+            CHECK(text.find("\"visibility\": \"" + std::string(to_string(method)) + "\"") !=
+                  std::string::npos);
+        }
+    }
+
+    TEST_CASE("faults name the file") {
+        const TemporaryFolder folder;
+        Options options;
+        options.config = folder / "a.json";
+        std::ofstream(*options.config) << R"({"vpls": {"visibility": "yes"}})";
+        CHECK_THROWS_WITH_AS(
+            static_cast<void>(choose_configuration(options, true)),
+            (options.config->string() + ": vpls.visibility: is not one of none, maps, rays").c_str(),
+            std::runtime_error);
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,117 @@
+#include "sandbox/playback.hpp"
+
+#include <doctest/doctest.h>
+
+#include "engine/scene/components.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+/// A lamp whose height in metres is the number of the frame.
+class Played {
+ public:
+    explicit Played(bool loop) : lamp_(make_lamp()), animation_(make_script(loop), world_) {}
+
+    /// The frame that the window shows.
+    float advance() {
+        playback.advance(world_);
+        return height();
+    }
+    [[nodiscard]] float height() const { return world_.get<Transform>(lamp_).translation.y; }
+    void drag(float height) { world_.set(lamp_, Transform{.translation = {0.0F, height, 0.0F}}); }
+
+ private:
+    Entity make_lamp() {
+        const Entity lamp = world_.create();
+        world_.set(lamp, Name{"lamp"});
+        return lamp;
+    }
+    static Script make_script(bool loop) {
+        Script script;
+        script.frames = 4;
+        script.loop = loop;
+        script.tracks = {{.node = "lamp", .translation = {{0, {0.0F, 0.0F, 0.0F}}, {4, {0.0F, 4.0F, 0.0F}}}}};
+        return script;
+    }
+
+    World world_;
+    Entity lamp_;
+    Animation animation_;
+
+ public:
+    Playback playback{animation_};
+};
+
+}  // namespace
+
+TEST_SUITE("playback") {
+    TEST_CASE("it plays a frame at a time, and pauses at the end") {
+        Played played(false);
+        for (const float frame : {0.0F, 1.0F, 2.0F, 3.0F}) {
+            CHECK(played.playback.playing());
+            CHECK(played.advance() == frame);
+        }
+        CHECK(played.advance() == 3.0F);
+        CHECK_FALSE(played.playback.playing());
+        CHECK(played.advance() == 3.0F);
+    }
+
+    TEST_CASE("a loop goes on from the start") {
+        Played played(true);
+        for (int frame = 0; frame < 11; ++frame) CHECK(played.advance() == static_cast<float>(frame % 4));
+        CHECK(played.playback.playing());
+    }
+
+    TEST_CASE("paused it stands, then goes on from there") {
+        Played played(false);
+        static_cast<void>(played.advance());
+        static_cast<void>(played.advance());
+        played.playback.toggle();
+        CHECK(played.advance() == 1.0F);
+        CHECK(played.advance() == 1.0F);
+        played.playback.toggle();
+        CHECK(played.advance() == 2.0F);
+    }
+
+    TEST_CASE("played again after the end it starts over") {
+        Played played(false);
+        for (int frame = 0; frame < 5; ++frame) static_cast<void>(played.advance());
+        played.playback.toggle();
+        CHECK(played.advance() == 0.0F);
+        CHECK(played.advance() == 1.0F);
+    }
+
+    TEST_CASE("steps and jumps pause, and are shown in the next frame") {
+        Played played(false);
+        static_cast<void>(played.advance());
+        played.playback.step();
+        CHECK_FALSE(played.playback.playing());
+        CHECK(played.advance() == 1.0F);
+        played.playback.seek(3);
+        CHECK(played.advance() == 3.0F);
+        played.playback.step();
+        CHECK(played.advance() == 0.0F);
+        played.playback.seek(2);
+        CHECK(played.advance() == 2.0F);
+        CHECK(played.advance() == 2.0F);
+    }
+
+    TEST_CASE("a light that is dragged is the script's while it plays and people's while it is paused") {
+        Played played(false);
+        static_cast<void>(played.advance());
+        played.drag(9.0F);
+        CHECK(played.advance() == 1.0F);
+        played.playback.toggle();
+        played.drag(9.0F);
+        CHECK(played.advance() == 9.0F);
+        played.playback.toggle();
+        CHECK(played.advance() == 2.0F);
+        played.playback.toggle();
+        played.drag(9.0F);
+        played.playback.seek(2);
+        CHECK(played.advance() == 2.0F);
+    }
+}
+
+}  // namespace candela::sandbox
