@@ -10,9 +10,11 @@ T = TypeVar("T")
 ENDS = ("absorbed", "escaped", "truncated", "roulette")  # of emitted light
 
 # A frame may cost this many times what the yardstick's does: instant radiosity of 256 VPLs, deferred, unbounded,
-# without visibility. Twice buys a lever or two, and no more than one doubling of the VPLs.
-COST_FACTOR = 2.0
-YARDSTICK = {"path": "deferred", "vpls": 256, "bounces": 3, "bound": "infinity", "lever": "none"}
+# without visibility. A look into a VPL's map costs several times what its light does, and nothing else stops leaks.
+COST_FACTOR = 5.0
+YARDSTICK = {
+    "path": "deferred", "vpls": 256, "bounces": 8, "bound": "infinity", "visibility": "none", "lever": "none"
+}
 
 
 def pareto_front(items: Iterable[T], cost: Callable[[T], float], error: Callable[[T], float]) -> list[T]:
@@ -54,7 +56,8 @@ def select(rows: Iterable[Row], **wanted: Any) -> list[Row]:
 
 def candidates(rows: Sequence[Row]) -> list[Row]:
     """The configurations measured on every scene of the matrix: geometric means of their error, and of their cost as a
-    multiple of the yardstick's on the same scene, be it after a move of the camera or with all made anew."""
+    multiple of the yardstick's on the same scene, after a move of the camera. What a frame with everything made anew
+    costs is told but does not count: while things move, the app makes a few VPLs a frame."""
     yardsticks = {row["scene"]: row for row in select(rows, suite="matrix", **YARDSTICK)}
     by_id: dict[str, list[Row]] = {}
     for row in select(rows, suite="matrix"):
@@ -69,7 +72,7 @@ def candidates(rows: Sequence[Row]) -> list[Row]:
             for time in ("frame_ms", "full_ms")
         }
         error = geometric_mean([row["total_rel_mse"] for row in group])
-        found.append({"id": name, "cost": max(ratios.values()), **ratios, "error": error, "scenes": len(group)})
+        found.append({"id": name, "cost": ratios["frame_ms"], **ratios, "error": error, "scenes": len(group)})
     return found
 
 
@@ -78,3 +81,43 @@ def best_default(rows: Sequence[Row]) -> Row | None:
     front = pareto_front(candidates(rows), lambda each: each["cost"], lambda each: each["error"])
     within = [each for each in front if each["cost"] <= COST_FACTOR]
     return min(within, key=lambda each: each["error"]) if within else None
+
+
+def excess_frames(row: Row, against: Row) -> int:
+    """How many frames have more than 1.2 times the error that another configuration has there."""
+    return sum(a > 1.2 * b for a, b in zip(row["indirect_rel_mse"], against["indirect_rel_mse"]))
+
+
+def flicker_table(played: Sequence[Row]) -> list[Row]:
+    """By script, how much the indirect light flickers, and how much less the incremental VPLs do."""
+    table = []
+    for script in dict.fromkeys(row["scene"] for row in played if row["suite"] != "refinement"):
+        found = {row["id"]: row for row in select(played, scene=script)}
+        if not {"fresh", "fixed", "incremental"} <= found.keys():
+            continue
+        flicker = {name: row["indirect_flicker"] for name, row in found.items()}
+        line = {"script": script, "noise": found["fixed"]["flicker_noise"], **flicker}
+        for name in ("fresh", "fixed"):
+            line[f"incremental_to_{name}"] = flicker["incremental"] / max(flicker[name], 1e-30)
+        line["excess_frames"] = excess_frames(found["incremental"], found["fixed"])
+        table.append({**line, "most_debt": max(found["incremental"]["debt"])})
+    return table
+
+
+def visibility_costs(rows: Sequence[Row]) -> list[Row]:
+    """By scene, the indirect light's error without VPL visibility, with maps and with rays, of as many VPLs as all
+    three were measured with, against a reference of as many bounces."""
+    table = []
+    plain = select(rows, suite="convergence", path="deferred", bound=1.0)
+    for scene in dict.fromkeys(row["scene"] for row in plain):
+        by_count: dict[int, dict[str, Row]] = {}
+        for row in select(plain, scene=scene):
+            by_count.setdefault(row["vpls"], {})[row["visibility"]] = row
+        full = [count for count, found in by_count.items() if {"none", "maps", "rays"} <= found.keys()]
+        if full:
+            found = by_count[max(full)]
+            errors = {name: found[name]["indirect_rel_mse"] for name in ("none", "maps", "rays")}
+            gain = errors["none"] / errors["maps"]
+            noise = found["none"]["reference_noise"]
+            table.append({"scene": scene, "vpls": max(full), **errors, "none_to_maps": gain, "reference_noise": noise})
+    return table

@@ -68,11 +68,13 @@ def family(row: Row) -> str:
         return "another bound"
     if row["bounces"] != matrix.DEFAULT_BOUNCES:
         return "other bounces"
+    if row["visibility"] != matrix.DEFAULT_VISIBILITY:
+        return "no visibility" if row["visibility"] == "none" else f"visibility: {row['visibility']}"
     return "paths" if row["lever"] == "none" else row["lever"]
 
 
 def scatter(axes: Axes, rows: Sequence[Row], time: str, error: str) -> None:
-    others = {"another bound": (".", 0.45), "other bounces": ("x", 0.45)}
+    others = {"another bound": (".", 0.45), "other bounces": ("x", 0.45), "no visibility": ("+", 0.6)}
     for name, (marker, alpha) in others.items():
         chosen = [row for row in rows if family(row) == name]
         style = {"color": "#555555", "alpha": alpha, "linestyle": "none", "markersize": 5}
@@ -81,18 +83,18 @@ def scatter(axes: Axes, rows: Sequence[Row], time: str, error: str) -> None:
         chosen = [row for row in rows if row["path"] == path and family(row) == "paths"]
         style = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 5, "markeredgewidth": 0}
         axes.plot([row[time] for row in chosen], [row[error] for row in chosen], label=path, **style)
-    for lever in [name for name in matrix.LEVERS if name != "none"]:
-        chosen = [row for row in rows if family(row) == lever]
+    kinds = [each for each in matrix.VISIBILITIES if each not in ("none", matrix.DEFAULT_VISIBILITY)]
+    for kind, marker in zip(kinds, "<>dp"):
+        chosen = [row for row in rows if family(row) == f"visibility: {kind}"]
         style = {"linestyle": "none", "markersize": 7, "markerfacecolor": "none", "markeredgewidth": 1}
-        marker = "<>dph*8"[list(matrix.LEVERS).index(lever) % 7]
-        axes.plot([row[time] for row in chosen], [row[error] for row in chosen], marker, color="#555555",
-                  label=lever.replace("-", " "), **style)
+        style |= {"marker": marker, "color": "#555555", "label": f"visibility: {kind}"}
+        axes.plot([row[time] for row in chosen], [row[error] for row in chosen], **style)
 
 
 def plain(axes: Axes, rows: Sequence[Row], time: str, error: str) -> None:
     """Instant radiosity as the student report has it: all VPLs, unbounded, without visibility."""
     for path, style in (("forward", ":"), ("deferred", "--")):
-        chosen = select(rows, path=path, bound=matrix.UNBOUNDED, bounces=matrix.DEFAULT_BOUNCES, lever="none")
+        chosen = select(rows, path=path, bound=matrix.UNBOUNDED, bounces=matrix.DEFAULT_BOUNCES, visibility="none")
         chosen = sorted(chosen, key=lambda row: row["vpls"])
         axes.plot([row[time] for row in chosen], [row[error] for row in chosen], style, color=ORANGE, linewidth=1.3,
                   label=f"plain instant radiosity, {path}", zorder=1)
@@ -144,13 +146,20 @@ def bound_label(bound: float | str) -> str:
 
 def convergence_panels(axes: Sequence[Axes], rows: Sequence[Row]) -> None:
     floor = rows[0]["reference_noise"]
-    for bound, (colour, marker) in zip(matrix.BOUNDS, SERIES):
-        chosen = sorted((row for row in rows if row["bound"] == bound), key=lambda row: row["vpls"])
+    hidden = rows[0]["scene"] in matrix.HIDDEN
+    main = matrix.DEFAULT_VISIBILITY if hidden else "none"
+    lines = [(bound, main, style, "-") for bound, style in zip(matrix.BOUNDS, SERIES)]
+    others = {"none": ":", "rays": "--"} if hidden else {}
+    lines += [(matrix.DEFAULT_BOUND, visibility, SERIES[2], dashes) for visibility, dashes in others.items()]
+    for bound, visibility, (colour, marker), dashes in lines:
+        chosen = [row for row in rows if row["bound"] == bound and row["visibility"] == visibility]
+        chosen.sort(key=lambda row: row["vpls"])
         found = analysis.slope_above(chosen, floor)
-        label = bound_label(bound) + ("" if found is None else f", slope {found:.2f}")
+        label = bound_label(bound) + {"none": ", no visibility" if hidden else "", "rays": ", rays"}.get(visibility, "")
+        label += "" if found is None else f", slope {found:.2f}"
+        style = {"color": colour, "marker": marker, "markersize": 4, "linestyle": dashes, "label": label}
         for panel, column in zip(axes, ("indirect_rel_mse", "indirect_bias", "indirect_spikes")):
-            values = [row[column] for row in chosen]
-            panel.plot([row["vpls"] for row in chosen], values, color=colour, marker=marker, markersize=4, label=label)
+            panel.plot([row["vpls"] for row in chosen], [row[column] for row in chosen], **style)
     axes[0].axhline(floor, color="#777777", linestyle=":", linewidth=1, label="reference's own noise")
     axes[0].set(yscale="log", ylabel="relMSE of the indirect light")
     axes[1].set(ylabel="bias, share of the indirect light")
@@ -256,7 +265,7 @@ def growth(rows: Sequence[Row], lights: Sequence[Row], out: pathlib.Path) -> Mad
 def energy(rows: Sequence[Row], out: pathlib.Path) -> Made:
     """Shares of the emitted flux over the number of bounces, a panel a scene."""
     vpls = 1024
-    shown = [row for row in select(rows, suite="matrix", vpls=vpls, path=matrix.DEFAULT_PATH, lever="none")
+    shown = [row for row in select(rows, suite="matrix", vpls=vpls, path=matrix.DEFAULT_PATH, visibility="none")
              if row["bound"] == matrix.DEFAULT_BOUND and "absorbed_share" in row]
     names = scenes_of(shown, "matrix")
     if not names:
@@ -294,7 +303,8 @@ def direct_light(rows: Sequence[Row], out: pathlib.Path) -> Made:
     order = [("shadow-maps-half", "half"), ("none", "default"), ("shadow-maps-double", "double")]
     figure, axes = plt.subplots(figsize=(7, 4.8))
     for scene, (colour, marker) in zip(scenes_of(rows, "matrix"), SERIES * 2):
-        default = {"path": matrix.DEFAULT_PATH, "bound": matrix.DEFAULT_BOUND, "bounces": matrix.DEFAULT_BOUNCES}
+        default = {"path": matrix.DEFAULT_PATH, "bound": matrix.DEFAULT_BOUND, "bounces": matrix.DEFAULT_BOUNCES,
+                   "visibility": "none"}
         chosen = select(rows, suite="matrix", scene=scene, vpls=256, **default)
         by_lever = {row["lever"]: row["direct_rel_mse"] for row in chosen}
         values = [max(by_lever.get(lever, float("nan")), 1e-8) for lever, _ in order]

@@ -105,6 +105,8 @@ class Idle final : public Backend {
     void barrier(Barrier) override {}
     void begin_pass(std::string_view, std::uint32_t, const PassTargets*) override {}
     void end_pass() override {}
+    std::uint64_t texture_digest(ObjectId) override { return 0; }
+    std::uint64_t buffer_digest(ObjectId) override { return 0; }
 
  private:
     ObjectId created_ = 0;

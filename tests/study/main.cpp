@@ -129,6 +129,40 @@ void add_measure(CLI::App& app, int& status) {
     });
 }
 
+void add_animate(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("animate", "error and flicker over the frames of a script");
+    const auto study = std::make_shared<AnimateStudy>();
+    const auto size = std::make_shared<std::string>();
+    const auto context = std::make_shared<std::string>("egl");
+    part.add_option("SCRIPT", study->script, "a .json file, or the name of a shipped script")->required();
+    part.add_option("--reference-dir", study->references, "the folder that keeps the frames' references")
+        ->required();
+    part.add_option("--points", study->points,
+                    R"(as for `measure`; "fresh_seeds": true: another in each frame)")
+        ->required();
+    part.add_option("--size", *size, "WxH, pixels")->required();
+    part.add_option("--samples", study->samples, "paths a pixel of the references, even")->required();
+    part.add_option("--bounces", study->bounces, "of the references' indirect light; default: any");
+    part.add_option("--seed", study->seed, "of the references");
+    part.add_option("--frames", study->frames, "default: the script's")->check(CLI::Range(2, 100000));
+    part.add_option("--context", *context, "default: egl")->check(CLI::IsMember({"egl", "osmesa"}));
+    part.callback([=, &status] {
+        study->size = size_named(*size);
+        study->context = *context == "egl" ? ContextKind::egl : ContextKind::osmesa;
+        status = animate(*study);
+    });
+}
+
+void add_moves(CLI::App& app, int& status) {
+    CLI::App& part =
+        *app.add_subcommand("moves", "what a frame costs after nothing, the camera or a light moved");
+    const auto study = std::make_shared<MovesStudy>();
+    part.add_option("--vpls", study->vpls)->check(CLI::Range(1, 65536));
+    part.add_option("--rounds", study->rounds, "after a first one that does not count")
+        ->check(CLI::Range(1, 1000));
+    part.callback([=, &status] { status = moves(*study); });
+}
+
 void add_compare(CLI::App& app) {
     CLI::App& part =
         *app.add_subcommand("compare", "error of a picture against its reference, by every measure");
@@ -154,6 +188,8 @@ int run(int count, char** arguments) {
     add_reference(app, status);
     add_baseline(app, status);
     add_measure(app, status);
+    add_animate(app, status);
+    add_moves(app, status);
     add_compare(app);
     try {
         app.parse(count, arguments);

@@ -15,22 +15,44 @@ Config = dict[str, Any]
 FORWARD = ["forward", "tiled-forward", "forward+", "clustered-forward"]
 DEFERRED = ["deferred", "tiled-deferred", "clustered-deferred"]
 PATHS = FORWARD + DEFERRED
-DEFAULT_PATH, DEFAULT_BOUNCES, DEFAULT_BOUND = "deferred", 3, 1.0
+DEFAULT_PATH, DEFAULT_BOUNCES, DEFAULT_BOUND, DEFAULT_VISIBILITY = "deferred", 8, 1.0, "maps"
 UNBOUNDED = "infinity"
 
 # name: the part of the configuration that it sets. "none", against which the others are measured, has every lever off,
-# and says so: what is measured must not change with the app's defaults.
+# and says so: what is measured must not change with the app's defaults. The maps of no light may be left out for want
+# of memory: a map of twice the side takes four times as much, and the large hall has 256 cubes.
 LEVERS: dict[str, Config] = {
-    "none": {"shadows": {"cube_resolution": 512, "map_resolution": 1024}},
-    "shadow-maps-half": {"shadows": {"cube_resolution": 256, "map_resolution": 512}},
-    "shadow-maps-double": {"shadows": {"cube_resolution": 1024, "map_resolution": 2048}},
+    "none": {
+        "shadows": {"cube_resolution": 512, "map_resolution": 1024},
+        "vpls": {"visibility": "none", "budget": 0},
+        "refinement": {"enabled": False},
+    },
+    "shadow-maps-half": {"shadows": {"cube_resolution": 256, "map_resolution": 512, "budget_mib": 8192}},
+    "shadow-maps-double": {"shadows": {"cube_resolution": 1024, "map_resolution": 2048, "budget_mib": 8192}},
+}
+
+# How a VPL finds out what it sees: an axis of its own.
+MAP_RESOLUTION = 64  # texels a side of a VPL's depth map
+VISIBILITIES: dict[str, Config] = {
+    "none": {"visibility": "none"},
+    "maps": {"visibility": "maps", "map_resolution": MAP_RESOLUTION},
+    "maps-16": {"visibility": "maps", "map_resolution": 16},
+    "maps-32": {"visibility": "maps", "map_resolution": 32},
+    "maps-128": {"visibility": "maps", "map_resolution": 128},
+    "rays": {"visibility": "rays"},
 }
 
 COUNTS = [16, 64, 256, 1024, 4096, 16384]
+SEEING_COUNTS = [16, 64, 256, 1024]  # of VPLs that look out for obstacles, one by one
 BOUNDS = [0.1, 0.3, 1.0, 3.0, UNBOUNDED]
 BOUNCES = [0, 1, 2, 3, 5, 8]
 TABLE_COUNTS = [128, 192, 256, 320, 384, 448, 512]  # of the student report
 TRACER_SAMPLES = [4**i for i in range(7)]
+
+# An odd number of columns and an even one of rows: the camera looks straight into the Cornell box, whose creases run
+# from the corners of a picture at 45 degrees. With both even, or both odd, they would run through the centres of pixels,
+# which then show either wall as rounding has it, in the renderer the one and in the reference the other.
+SIZE, SMALL, QUICK = (127, 96), (63, 48), (63, 64)
 
 
 @dataclass(frozen=True)
@@ -73,7 +95,7 @@ class Group:
 def point_id(axes: Config) -> str:
     """Names a point within its group, and its files: no character in it is special to file systems."""
     bound = "none" if axes["bound"] == UNBOUNDED else f"{axes['bound']:g}"
-    name = f"{axes['path']}-v{axes['vpls']}-b{axes['bounces']}-g{bound}".replace("+", "-plus")
+    name = f"{axes['path']}-v{axes['vpls']}-b{axes['bounces']}-g{bound}-{axes['visibility']}".replace("+", "-plus")
     return name if axes["lever"] == "none" else f"{name}-{axes['lever']}"
 
 
@@ -96,12 +118,14 @@ def point(
     path: str = DEFAULT_PATH,
     bounces: int = DEFAULT_BOUNCES,
     bound: float | str = DEFAULT_BOUND,
+    visibility: str = DEFAULT_VISIBILITY,
     lever: str = "none",
     seeds: tuple[int, ...] | None = None,
 ) -> Point:
-    axes = {"path": path, "vpls": vpls, "bounces": bounces, "bound": bound, "lever": lever}
-    config = {"path": path, "vpls": {"count": vpls, "bounces": bounces, "geometry_bound": bound}}
-    config = merged(merged(config, LEVERS["none"]), LEVERS[lever])
+    axes = {"path": path, "vpls": vpls, "bounces": bounces, "bound": bound, "visibility": visibility, "lever": lever}
+    config = merged(LEVERS["none"], LEVERS[lever])
+    vpls_config = {"count": vpls, "bounces": bounces, "geometry_bound": bound, **VISIBILITIES[visibility]}
+    config = merged(config, {"path": path, "vpls": vpls_config})
     return Point(axes, config, seeds_of(vpls) if seeds is None else seeds)
 
 
@@ -110,60 +134,99 @@ def distinct(points: Iterable[Point]) -> tuple[Point, ...]:
     return tuple({each.id: each for each in points}.values())
 
 
-def sweep(counts: list[int]) -> tuple[Point, ...]:
-    """Every axis by itself around the default, for each number of VPLs, and plain instant radiosity: all VPLs,
-    unbounded, forward and deferred."""
+def blind(vpls: int, path: str = DEFAULT_PATH, **axes: Any) -> Point:
+    """Of VPLs that shine through everything."""
+    return point(vpls, path=path, visibility="none", **axes)
+
+
+def plain(counts: list[int]) -> list[Point]:
+    """Instant radiosity as the student report has it, forward and deferred: all VPLs, unbounded, blind. Forward takes
+    several times as long: what is learnt from 16,384 VPLs is learnt from deferred."""
+    dearest = {"forward": 4096, "deferred": 16384}
+    return [blind(n, path, bound=UNBOUNDED) for path, most in dearest.items() for n in counts if n <= most]
+
+
+def short_sweep() -> tuple[Point, ...]:
+    """What is measured on every scene, and so what a default is chosen from: every path, and every axis by itself
+    around the default."""
     return distinct(
-        [point(n, path=path) for path in PATHS for n in counts if n <= dearest(path)]
-        + [point(n, bound=bound) for bound in BOUNDS for n in counts]
-        + [point(n, path="forward", bound=UNBOUNDED) for n in counts if n <= dearest("forward")]
-        + [point(n, bounces=bounces) for bounces in BOUNCES for n in counts if 64 <= n <= 4096]
-        + [point(n, lever=lever) for lever in LEVERS for n in counts if n in (256, 1024)]
+        [point(n, path=path) for path in PATHS for n in (64, 256)]
+        + [point(16)]
+        + [point(256, bound=bound) for bound in BOUNDS]
+        + [point(256, bounces=bounces) for bounces in (1, 3)]
+        + [point(256, visibility="maps-32")]
+        + [blind(n) for n in (64, 256, 1024)]
+        + [blind(256, path) for path in PATHS]
+        + [blind(256, lever=lever) for lever in LEVERS]
+        + plain([64, 256, 1024])
     )
 
 
-def dearest(path: str) -> int:
-    """The most VPLs of the matrix that a path is asked for: forward ones take several times as long, and what is
-    learnt from 16,384 VPLs is learnt from one of them."""
-    return 16384 if path in DEFERRED else 4096
-
-
-def paths_only(counts: list[int]) -> tuple[Point, ...]:
-    return distinct(point(n, path=path) for path in PATHS for n in counts)
+def sweep() -> tuple[Point, ...]:
+    """The same with more VPLs, with every kind of visibility, and blind VPLs for the account of energy."""
+    return distinct(
+        [
+            *short_sweep(),
+            *[point(n, bound=bound) for bound in (DEFAULT_BOUND, UNBOUNDED) for n in SEEING_COUNTS],
+            *[point(256, bounces=bounces) for bounces in BOUNCES],
+            *[point(256, visibility=visibility) for visibility in VISIBILITIES],
+            *[point(n, visibility="rays") for n in (16, 64)],
+            *[blind(n) for n in COUNTS],
+            *[blind(1024, bounces=bounces) for bounces in BOUNCES],
+            *plain(COUNTS),
+        ]
+    )
 
 
 def matrix_groups() -> list[Group]:
-    """Error against a reference of any depth, and time. The scenes that few VPLs settle get all counts."""
-    size, reference = (128, 96), Reference(samples=4096)
+    """Error against a reference of any depth, and time. Small scenes get more of everything."""
+    exact, sketch = Reference(samples=2048), Reference(samples=512)
     in_full = [
-        Group("matrix", scene, size, reference, 3, sweep(COUNTS), tuple(TRACER_SAMPLES))
-        for scene in ("cornell", "corner", "two-rooms", "furnace")
+        Group("matrix", scene, SIZE, exact, 3, sweep(), tuple(samples))
+        for scene, samples in {
+            "cornell": TRACER_SAMPLES,
+            "corner": TRACER_SAMPLES[:6],
+            "two-rooms": TRACER_SAMPLES[:6],
+            "furnace": TRACER_SAMPLES[:6],
+        }.items()
     ]
     in_short = [
-        Group("matrix", scene, size, Reference(samples=1024), 3, sweep([64, 256, 1024]), tuple(TRACER_SAMPLES[:5]))
+        Group("matrix", scene, SIZE, sketch, 3, short_sweep(), tuple(TRACER_SAMPLES[:4]))
         for scene in ("fins", "glass", "hall-256", "atrium")
     ]
     return in_full + in_short
 
 
 def convergence_groups() -> list[Group]:
-    """Error against a reference of the same number of bounces: all that is left is the VPLs' noise, what bounding
-    the geometry term takes away, and what shines through walls."""
-    points = distinct(point(n, bound=bound) for bound in BOUNDS for n in COUNTS)
-    reference = Reference(samples=4096, bounces=DEFAULT_BOUNCES)
-    scenes = ("plates", "sphere", "corner", "furnace", "cornell", "two-rooms")
-    return [Group("convergence", scene, (64, 48), reference, 0, points) for scene in scenes]
+    """Error against a reference of the same number of bounces: all that is left is the VPLs' noise, and what bounding
+    the geometry term takes away. Where nothing hides anything VPLs may be blind, and so many; where something does,
+    they are measured blind as well."""
+    reference = Reference(samples=2048, bounces=DEFAULT_BOUNCES)
+    all_blind = tuple(blind(n, bound=bound) for bound in BOUNDS for n in COUNTS)
+    seeing = tuple(point(n, bound=bound) for bound in BOUNDS for n in SEEING_COUNTS)
+    default_blind = tuple(blind(n) for n in COUNTS)
+    points = {scene: all_blind for scene in OPEN}
+    points |= {scene: distinct([*seeing, *default_blind, point(4096), *rays()]) for scene in HIDDEN}
+    return [Group("convergence", scene, SMALL, reference, 0, of_scene) for scene, of_scene in points.items()]
+
+
+def rays() -> list[Point]:
+    return [point(n, visibility="rays") for n in (64, 256, 1024)]
+
+
+OPEN = ("plates", "sphere", "corner", "furnace")  # scenes in which light reaches everything
+HIDDEN = ("cornell", "two-rooms")  # and in which walls and blocks hide some of it
 
 
 def table_groups() -> list[Group]:
-    """The student report's table. Its times count, not its errors: the reference is a mere sketch."""
-    points = tuple(point(n, path=path, seeds=(0,)) for n in TABLE_COUNTS for path in PATHS)
+    """The student report's table, blind as its VPLs are. Its times count: the reference is a mere sketch."""
+    points = tuple(blind(n, path, seeds=(0,)) for n in TABLE_COUNTS for path in PATHS)
     return [Group("table", "cornell", (320, 240), Reference(samples=16), 3, points)]
 
 
 def growth_groups() -> list[Group]:
     """Times as triangles and as pixels grow; the references are mere sketches."""
-    points = tuple(point(64, path=path, seeds=(0,)) for path in ("forward", "forward+", "deferred", "tiled-deferred"))
+    points = tuple(blind(64, path, seeds=(0,)) for path in ("forward", "forward+", "deferred", "tiled-deferred"))
     triangles = [
         Group("triangles", f"hills-{cells}", (160, 120), Reference(samples=2), 3, points)
         for cells in (8, 32, 128, 256)
@@ -179,13 +242,22 @@ def quick_groups() -> list[Group]:
     """What the checks of --quick look at. Samples: so many that the reference's noise stays below what is asserted."""
     samples = {"plates": 8192, "sphere": 1024, "cornell": 1024, "corner": 1024, "furnace": 1024, "two-rooms": 256}
     counts = [16, 64, 256, 1024]
-    points = distinct(
-        [point(n) for n in counts]
-        + [point(n, bound=UNBOUNDED) for n in counts]
-        + [point(256, path=path) for path in PATHS]
+    blind_too = distinct(
+        [blind(n) for n in counts]
+        + [blind(n, bound=UNBOUNDED) for n in counts]
+        + [blind(256, path) for path in PATHS]
     )
+    seeing = distinct([point(n) for n in counts] + [point(256, path=path) for path in PATHS] + [blind(1024)])
     return [
-        Group("quick", scene, (64, 64), Reference(count, DEFAULT_BOUNCES), 1, points, (1, 4, 16, 64))
+        Group(
+            "quick",
+            scene,
+            QUICK,
+            Reference(count, DEFAULT_BOUNCES),
+            1,
+            blind_too if scene in OPEN else seeing,
+            (1, 4, 16, 64),
+        )
         for scene, count in samples.items()
     ]
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
 
@@ -157,25 +158,32 @@ std::vector<double> relative_errors(const Picture& picture, const Picture& refer
     return errors;
 }
 
-double flicker(std::span<const Picture> frames, std::span<const Picture> reference_frames,
-               std::span<const Mask> hits) {
+std::vector<double> flicker_of_pairs(std::span<const Picture> frames,
+                                     std::span<const Picture> reference_frames, std::span<const Mask> hits) {
     require_sequences(frames, reference_frames, hits);
     const auto count = static_cast<double>(frames.size());
     glm::dvec3 mean(0.0);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         mean += mean_vector(reference_frames[i], mask_of(hits, i)) / count;
     }
-    double sum = 0.0;
+    std::vector<double> pairs;
+    pairs.reserve(frames.size() - 1);
     for (std::size_t next = 1; next < frames.size(); ++next) {
         const auto change = [next](std::span<const Picture> sequence, std::size_t pixel) {
             return glm::dvec3(sequence[next].pixels[pixel]) - glm::dvec3(sequence[next - 1].pixels[pixel]);
         };
         const Mask hit = both(mask_of(hits, next - 1), mask_of(hits, next));
-        sum += mean_over(frames[next].pixels.size(), hit, [&](std::size_t i) {
+        pairs.push_back(mean_over(frames[next].pixels.size(), hit, [&](std::size_t i) {
             return relative_square(change(frames, i), change(reference_frames, i), square(mean));
-        });
+        }));
     }
-    return sum / (count - 1.0);
+    return pairs;
+}
+
+double flicker(std::span<const Picture> frames, std::span<const Picture> reference_frames,
+               std::span<const Mask> hits) {
+    const std::vector<double> pairs = flicker_of_pairs(frames, reference_frames, hits);
+    return std::accumulate(pairs.begin(), pairs.end(), 0.0) / static_cast<double>(pairs.size());
 }
 
 }  // namespace candela::study

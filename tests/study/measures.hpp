@@ -41,11 +41,16 @@ struct Errors {
                                                   const sandbox::Picture& reference,
                                                   std::span<const std::uint8_t> hit = {});
 
-/// How much of what changes from frame to frame is error: the relMSE between the differences of consecutive
-/// frames and those of the reference, mean(|Δa - Δr|² / (|Δr|² + 0.01 |m|²)) over the pixels that count in
-/// both frames, averaged over the pairs. m is the mean vector of the reference's frames, not of their
-/// differences, so that a still reference has a flicker as well. `hits` holds a mask a frame, or none for all
-/// pixels. Throws as `measure` does, and where there are fewer than two frames.
+/// How much of what changes from frame to frame is error, for each pair of consecutive frames: the relMSE
+/// between their difference and that of the reference, mean(|Δa - Δr|² / (|Δr|² + 0.01 |m|²)) over the pixels
+/// that count in both. m is the mean vector of all the reference's frames, not of their differences, so that
+/// a still reference has a flicker as well. `hits` holds a mask a frame, or none for all pixels. Throws as
+/// `measure` does, and where there are fewer than two frames.
+[[nodiscard]] std::vector<double> flicker_of_pairs(std::span<const sandbox::Picture> frames,
+                                                   std::span<const sandbox::Picture> reference_frames,
+                                                   std::span<const Mask> hits = {});
+
+/// The mean of `flicker_of_pairs`.
 [[nodiscard]] double flicker(std::span<const sandbox::Picture> frames,
                              std::span<const sandbox::Picture> reference_frames,
                              std::span<const Mask> hits = {});

@@ -191,6 +191,19 @@ TEST_SUITE("flicker") {
         CHECK(flicker(frames, reference) == about(0.25 * 0.25 / (0.01 * 4.0)));
     }
 
+    TEST_CASE("each pair of frames has a flicker of its own, and their mean is that of all") {
+        // As above: |Δa|² = 3 · 1 and 0, each over 0.01 · 3 · 2².
+        const std::vector<Picture> reference(3, constant({2, 2}, glm::vec3(2.0F)));
+        const std::vector<Picture> frames{constant({2, 2}, glm::vec3(2.0F)),
+                                          constant({2, 2}, glm::vec3(3.0F)),
+                                          constant({2, 2}, glm::vec3(3.0F))};
+        const std::vector<double> pairs = flicker_of_pairs(frames, reference);
+        REQUIRE(pairs.size() == 2);
+        CHECK(pairs[0] == about(1.0 / 0.04));
+        CHECK(pairs[1] == 0.0);
+        CHECK(flicker(frames, reference) == about(0.5 / 0.04));
+    }
+
     TEST_CASE("what moves in the reference is part of the measure") {
         // Δr = 2 in each channel, Δa = 1; m = 2: 1 / (4 + 0.04).
         const std::vector<Picture> reference{constant({2, 2}, glm::vec3(1.0F)),

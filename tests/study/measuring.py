@@ -8,6 +8,7 @@ from typing import Any
 import program
 import progress
 from matrix import Group, Point
+from motion import Motion, Take
 from session import STUDY, Study, pictures_of
 
 
@@ -85,9 +86,49 @@ def announce_once(study: Study) -> None:
         print(f"study: about {left} min left, going by the first points", file=sys.stderr)
 
 
-def measure(study: Study, groups: list[Group]) -> None:
+def expect_motion(study: Study, motion: Motion) -> None:
+    for take in study.missing_takes(motion):
+        study.forecast.expect("motion", progress.motion_units(motion, take))
+    if study.missing_takes(motion) and not study.frame_references(motion).exists():
+        study.forecast.expect("reference", progress.tracer_units(motion, motion.reference.samples * motion.frames))
+
+
+def play(study: Study, motion: Motion, take: Take) -> None:
+    """The line that is noted holds all frames of the take."""
+    lines: list[dict[str, Any]] = []
+    last = time.monotonic()
+
+    def listen(line: dict[str, Any]) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if line["kind"] == "reference":
+            study.forecast.record("reference", progress.tracer_units(motion, motion.reference.samples), now - last)
+        elif line["kind"] == "frame":
+            study.forecast.record("motion", progress.motion_units(motion, take) / motion.frames, now - last)
+        last = now
+        lines.append(line)
+        study.bar.show(f"{motion.name} {take.id}")
+
+    fault = program.animate(
+        str(STUDY), study.script(motion), study.frame_references(motion), motion, take, listen
+    )
+    study.note({"key": study.motion_key(motion, take), "group": motion.name, "id": take.id, **told(lines, fault)})
+
+
+def told(lines: list[dict[str, Any]], fault: str) -> dict[str, Any]:
+    """What became of a take: its frames and its flicker, or why there are none."""
+    of_kind = {kind: [line for line in lines if line["kind"] == kind] for kind in ("frame", "flicker", "failed")}
+    if fault or of_kind["failed"] or not of_kind["flicker"]:
+        words = [line["message"] for line in of_kind["failed"]]
+        return {"kind": "failed", "message": fault or (words + ["was not measured"])[0]}
+    return {"kind": "motion", "frames": of_kind["frame"], "flicker": of_kind["flicker"][0]}
+
+
+def measure(study: Study, groups: list[Group], motions: list[Motion]) -> None:
     for group in groups:
         expect(study, group)
+    for motion in motions:
+        expect_motion(study, motion)
     if study.forecast.seconds_left() > 0:
         left = progress.clock(study.forecast.seconds_left())
         print(f"study: about {left} min, a guess until the first points are measured", file=sys.stderr)
@@ -102,6 +143,9 @@ def measure(study: Study, groups: list[Group]) -> None:
             measure_points(study, group, points)
         except RuntimeError as error:
             fail_all(study, group, points, str(error))
+    for motion in motions:
+        for take in study.missing_takes(motion):
+            play(study, motion, take)
     study.bar.clear()
 
 

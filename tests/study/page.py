@@ -4,6 +4,7 @@ import html
 import pathlib
 import shutil
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from PIL import Image
@@ -60,9 +61,9 @@ def copied(source: str, out: pathlib.Path, name: str) -> str | None:
 
 
 def shown_points(rows: Sequence[Row], best: str | None) -> list[Row]:
-    """The default with few and many VPLs, some VPLs unbounded, and the best default."""
+    """The default with few and many VPLs, some VPLs unbounded, some blind, and the best default."""
     wanted = [matrix.point(count).id for count in SHOWN_COUNTS]
-    wanted += [matrix.point(256, bound=matrix.UNBOUNDED).id, *([best] if best else [])]
+    wanted += [matrix.point(256, bound=matrix.UNBOUNDED).id, matrix.blind(256).id, *([best] if best else [])]
     found = {row["id"]: row for row in rows}
     return [found[name] for name in dict.fromkeys(wanted) if name in found]
 
@@ -80,8 +81,6 @@ def strip(out: pathlib.Path, scene: str, rows: Sequence[Row], best: str | None) 
 
 
 def pictures(out: pathlib.Path, rows: Sequence[Row], best: str | None) -> str:
-    shutil.rmtree(out / "pictures", ignore_errors=True)
-    (out / "pictures").mkdir()
     chosen = select(rows, suite="matrix")
     by_scene = {scene: select(chosen, scene=scene) for scene in dict.fromkeys(row["scene"] for row in chosen)}
     strips = [strip(out, scene, of_scene, best) for scene, of_scene in by_scene.items()]
@@ -106,19 +105,59 @@ def table(columns: dict[str, str], rows: Iterable[Row]) -> str:
     return element("table", element("tr", head) + "".join(body))
 
 
-def without_visibility(rows: Sequence[Row]) -> str:
-    """What VPLs that shine through walls cost: the error that their number does not take away."""
+def left_over(rows: Sequence[Row]) -> str:
+    """The error that the number of VPLs does not take away."""
     found = []
     for scene in dict.fromkeys(row["scene"] for row in rows if row["suite"] == "convergence"):
-        chosen = select(rows, suite="convergence", scene=scene, bound=matrix.DEFAULT_BOUND)
+        visibility = matrix.DEFAULT_VISIBILITY if scene in matrix.HIDDEN else "none"
+        axes = {"scene": scene, "bound": matrix.DEFAULT_BOUND, "visibility": visibility}
+        chosen = select(rows, suite="convergence", **axes)
         found += [max(chosen, key=lambda row: row["vpls"])] if chosen else []
     columns = {"scene": "", "id": "configuration", "vpls": "VPLs", "indirect_rel_mse": "relMSE, indirect",
                "indirect_bias": "bias, indirect", "reference_noise": "the reference's own noise, relMSE"}
     note = (
-        "With the most VPLs, against a reference of as many bounces: what is left is what shines through walls, where "
-        "there are any, and what bounding the geometry term takes away."
+        "With the most VPLs, against a reference of as many bounces: what is left is noise, what bounding the geometry "
+        "term takes away, and what maps of few texels let through."
     )
     return element("h2", "What is left at the most VPLs") + element("p", note) + table(columns, found) if found else ""
+
+
+def visibility_costs(out: pathlib.Path, rows: Sequence[Row], costs: Sequence[Row]) -> str:
+    """What VPLs that shine through walls cost, as figures and as pictures."""
+    if not costs:
+        return ""
+    columns = {"scene": "", "vpls": "VPLs", "none": "relMSE, no visibility", "maps": "maps", "rays": "rays",
+               "none_to_maps": "no visibility / maps", "reference_noise": "the reference's own noise, relMSE"}
+    strips = [visibility_strip(out, line["scene"], rows) for line in costs]
+    note = "Indirect light against a reference of as many bounces."
+    heading = element("h2", "What missing VPL visibility costs")
+    return heading + element("p", note) + table(columns, costs) + "".join(strips)
+
+
+def visibility_strip(out: pathlib.Path, scene: str, rows: Sequence[Row]) -> str:
+    found = {row["id"]: row for row in select(rows, suite="matrix", scene=scene)}
+    figures = []
+    for visibility in ("none", "maps", "rays"):
+        row = found.get(matrix.point(256, visibility=visibility).id)
+        for kind, caption in (("picture", f"256 VPLs, visibility: {visibility}"), ("heat", "its relative error")):
+            source = copied(row[kind], out, f"{scene}-visibility-{visibility}-{kind}.png") if row else None
+            figures += [picture(source, caption)] if source else []
+    return element("h3", scene) + element("div", "".join(figures), class_="pictures") if figures else ""
+
+
+def flicker(table_rows: Sequence[Row]) -> str:
+    if not table_rows:
+        return ""
+    columns = {"script": "", "fresh": "fresh samples", "fixed": "fixed samples", "incremental": "incremental",
+               "incremental_to_fresh": "incremental / fresh", "incremental_to_fixed": "incremental / fixed",
+               "noise": "the reference's own", "excess_frames": "frames above 1.2 × the error of fixed samples",
+               "most_debt": "largest debt"}
+    note = (
+        "Flicker of the indirect light: relMSE between its changes from frame to frame and those of the reference. "
+        "Where a light jumps and then stands still, as in teleport and toggle, VPLs made anew are done at once, and "
+        "incremental ones spread the change over the frames that follow."
+    )
+    return element("h2", "Flicker") + element("p", note) + table(columns, table_rows)
 
 
 def charts(made: dict[str, dict[str, str]]) -> str:
@@ -139,26 +178,35 @@ def default_choice(best: dict[str, Any] | None) -> str:
     return element("h2", "The best default") + element("p", text)
 
 
+@dataclass(frozen=True)
+class Findings:
+    """Charts by heading, the best default, and small tables."""
+
+    charts: dict[str, dict[str, str]]
+    best: dict[str, Any] | None
+    flicker: Sequence[Row]
+    visibility: Sequence[Row]
+
+
 def write(
-    out: pathlib.Path,
-    rows: Sequence[Row],
-    made: dict[str, dict[str, str]],
-    best: dict[str, Any] | None,
-    machine: dict[str, Any],
-    provenance: dict[str, Any],
+    out: pathlib.Path, rows: Sequence[Row], found: Findings, machine: dict[str, Any], provenance: dict[str, Any]
 ) -> None:
     """index.html, and in pictures/ what it shows besides charts."""
     facts = {**machine, **provenance}
     about = ", ".join(f"{name.replace('_', ' ')}: {html.escape(str(value))}" for name, value in facts.items())
     points = element("summary", f"All {len(rows)} points") + table(COLUMNS, rows)
+    shutil.rmtree(out / "pictures", ignore_errors=True)
+    (out / "pictures").mkdir()
     body = [
         element("h1", "Candela: speed against accuracy"),
         element("p", about),
         element("p", 'All figures: <a href="results.csv">results.csv</a>, <a href="results.json">results.json</a>.'),
-        default_choice(best),
-        charts(made),
-        without_visibility(rows),
-        pictures(out, rows, best["id"] if best else None),
+        default_choice(found.best),
+        charts(found.charts),
+        flicker(found.flicker),
+        visibility_costs(out, rows, found.visibility),
+        left_over(rows),
+        pictures(out, rows, found.best["id"] if found.best else None),
         element("h2", "Points"),
         element("details", points),
     ]

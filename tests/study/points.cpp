@@ -10,7 +10,7 @@
 namespace candela::study {
 namespace {
 
-constexpr std::array members{"id", "config", "seeds"};
+constexpr std::array members{"id", "config", "seeds", "fresh_seeds"};
 
 [[noreturn]] void fail(const std::string& fault) {
     throw std::invalid_argument(fault);
@@ -58,12 +58,20 @@ std::vector<std::uint32_t> seeds_of(const Json& point) {
     return seeds.get<std::vector<std::uint32_t>>();
 }
 
+bool fresh_seeds_of(const Json& point) {
+    const Json fresh = point.value("fresh_seeds", Json(false));
+    if (!fresh.is_boolean()) {
+        fail("\"fresh_seeds\" is neither true nor false");
+    }
+    return fresh.get<bool>();
+}
+
 Point read_point(const Json& point) {
     if (!point.is_object()) {
         fail("is not an object");
     }
     require_known_members(point);
-    return {id_of(point), request_of(point), seeds_of(point)};
+    return {id_of(point), request_of(point), seeds_of(point), fresh_seeds_of(point)};
 }
 
 }  // namespace

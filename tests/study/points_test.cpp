@@ -36,6 +36,15 @@ TEST_SUITE("points") {
         CHECK(points[1].seeds == std::vector<std::uint32_t>{0});
     }
 
+    TEST_CASE("seeds are the same in all frames, unless fresh ones are asked for") {
+        const auto points = points_of(R"([{"id": "a"}, {"id": "b", "fresh_seeds": true}])");
+        REQUIRE(points.size() == 2);
+        CHECK_FALSE(points[0].fresh_seeds);
+        CHECK(points[1].fresh_seeds);
+        CHECK(fault_of(R"([{"id": "a", "fresh_seeds": 1}])") ==
+              "points.json: point 0: \"fresh_seeds\" is neither true nor false");
+    }
+
     TEST_CASE("the configuration is handed on as it is, known to the renderer or not") {
         CHECK(points_of(R"([{"id": "a", "config": {"lever": {"x": 1}}}])")[0].request ==
               R"({"lever":{"x":1}})");

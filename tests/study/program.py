@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from matrix import Group, Point
+from motion import Motion, Take
 
 Line = dict[str, Any]
 OnLine = Callable[[Line], None]
@@ -92,6 +93,21 @@ def trace_baseline(
         if end.fault:
             return end.fault
     return ""
+
+
+def animate(
+    program: str, script: pathlib.Path, references: pathlib.Path, motion: Motion, take: Take, on_line: OnLine
+) -> str:
+    """Plays one configuration through the script. Returns what went wrong, empty where nothing did."""
+    wanted = motion.reference
+    size = f"{motion.size[0]}x{motion.size[1]}"
+    options = ["--size", size, "--samples", str(wanted.samples), "--seed", str(wanted.seed)]
+    options += [] if wanted.bounces is None else ["--bounces", str(wanted.bounces)]
+    with tempfile.NamedTemporaryFile("w", suffix=".json", encoding="utf-8") as points:
+        json.dump([{"id": take.id, "config": take.config, "fresh_seeds": take.fresh_seeds}], points)
+        points.flush()
+        command = [program, "animate", str(script), "--reference-dir", str(references), "--points", points.name]
+        return stream([*command, *options, "--frames", str(motion.frames)], on_line).fault
 
 
 def running(order: Sequence[str], lines: Sequence[Line]) -> str:

@@ -5,30 +5,50 @@ import time
 from dataclasses import dataclass, field
 
 from matrix import Group, Point
+from motion import Motion, Take
 
 # Seconds for a unit of each kind of work, until it has been seen: what four cores of a server do.
-GUESSES = {"reference": 2e-7, "tracer": 2e-7, "errors": 1.0, "time": 1.0}
+GUESSES = {"reference": 2e-7, "tracer": 2e-7, "errors": 1.0, "time": 1.0, "motion": 1.0}
 FRAME_OVERHEAD = 0.012  # s, of a frame that shades nothing
-SECONDS_PER_EVALUATION = {"forward": 3.5e-9, "deferred": 1.0e-9}  # one VPL on one pixel
+SECONDS_PER_EVALUATION = {"none": 1.0e-9, "maps": 5.0e-9, "rays": 4.0e-8}  # one VPL on one pixel, deferred
+FORWARD = 3.0  # times as long
+SECONDS_PER_TEXEL = 9.0e-8  # of a VPL's map that is drawn
 
 
 def frame_seconds(group: Group, one: Point) -> float:
-    """What a frame may take; only its proportions matter once frames have been seen."""
-    each = SECONDS_PER_EVALUATION["deferred" if "deferred" in one.axes["path"] else "forward"]
+    """What a frame may take that makes no VPLs; only proportions matter once frames have been seen."""
+    each = SECONDS_PER_EVALUATION[one.axes["visibility"].partition("-")[0]]
+    each *= 1.0 if "deferred" in one.axes["path"] else FORWARD
     return FRAME_OVERHEAD + group.size[0] * group.size[1] * one.axes["vpls"] * each
 
 
+def drawing_seconds(one: Point) -> float:
+    """What drawing the maps of all VPLs may take."""
+    vpls = one.config["vpls"]
+    texels = vpls["map_resolution"] ** 2 if vpls["visibility"] == "maps" else 0
+    return vpls["count"] * texels * SECONDS_PER_TEXEL
+
+
 def errors_units(group: Group, one: Point) -> float:
-    """Direct and indirect light, for every seed."""
-    return 2 * len(one.seeds) * frame_seconds(group, one)
+    """Indirect light for every seed, and all light once."""
+    return (len(one.seeds) + 1) * (frame_seconds(group, one) + drawing_seconds(one))
 
 
 def time_units(group: Group, one: Point) -> float:
-    """In every round, and in one to warm up, a frame from another view and one with everything made anew."""
-    return 2 * (group.rounds + 1) * frame_seconds(group, one) if group.rounds else 0.0
+    """In every round a frame to warm up, one from another view and one with everything made anew."""
+    return group.rounds * (3 * frame_seconds(group, one) + 2 * drawing_seconds(one))
 
 
-def tracer_units(group: Group, samples: int) -> float:
+def motion_units(motion: Motion, take: Take) -> float:
+    """As if all maps were drawn in every frame, unless few may be."""
+    vpls = take.config["vpls"]
+    drawn = min(vpls["budget"] or vpls["count"], vpls["count"])
+    shading = motion.size[0] * motion.size[1] * vpls["count"] * SECONDS_PER_EVALUATION["maps"]
+    drawing = drawn * vpls["map_resolution"] ** 2 * SECONDS_PER_TEXEL
+    return motion.frames * (2 * FRAME_OVERHEAD + shading + drawing)
+
+
+def tracer_units(group: Group | Motion, samples: int) -> float:
     return float(group.size[0] * group.size[1] * samples)
 
 

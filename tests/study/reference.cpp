@@ -1,26 +1,16 @@
 #include <fmt/format.h>
 
 #include "sandbox/scene.hpp"
-#include "tests/study/bench.hpp"
 #include "tests/study/reference_files.hpp"
 #include "tests/study/scene_hash.hpp"
 #include "tests/study/study.hpp"
+#include "tests/study/tracing.hpp"
 
 namespace candela::study {
-namespace {
-
-reference::Estimate trace(const ReferenceStudy& study) {
-    const sandbox::Scene scene = sandbox::load_scene(study.scene);
-    const reference::Settings settings{
-        .size = study.size, .samples = study.samples, .bounces = study.bounces, .seed = study.seed};
-    return reference::trace(reference::Scene(scene.world), first_camera(scene.world), settings);
-}
-
-}  // namespace
 
 int reference(const ReferenceStudy& study) {
     const Request request{.scene_hash = scene_hash(study.scene),
-                          .tracer = CANDELA_TRACER,
+                          .tracer = std::string(tracer_name()),
                           .size = study.size,
                           .samples = study.samples,
                           .bounces = study.bounces,
@@ -29,7 +19,7 @@ int reference(const ReferenceStudy& study) {
         fmt::print("{}: holds this reference already\n", study.out.string());
         return 0;
     }
-    const Reference traced{request, trace(study)};
+    const Reference traced = trace_request(sandbox::load_scene(study.scene).world, request);
     write_reference(study.out, study.scene.filename().string(), traced);
     const Noise of_halves = noise(traced.estimate);
     fmt::print("{}: {} samples a pixel in {:.1f} s; relMSE of its noise {:.1e} (indirect), {:.1e} (total)\n",

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 using sandbox::Picture;
 
 constexpr const char* description_file = "reference.json";
-constexpr std::array picture_files{"direct.pfm", "indirect.pfm", "half0.pfm",
-                                   "half1.pfm",  "hit.pfm",      "edge.pfm"};
+constexpr std::array picture_files{"direct.pfm", "indirect.pfm", "half0.pfm",      "half1.pfm",
+                                   "hit.pfm",    "edge.pfm",     "direct-fine.pfm"};
 
 Picture mask_picture(const Mask& mask, glm::ivec2 size) {
     Picture picture{size, {}};
@@ -79,7 +79,8 @@ void write_into(const fs::path& folder, const std::string& scene, const Referenc
                               estimate.halves[0],
                               estimate.halves[1],
                               mask_picture(estimate.hit, estimate.direct.size),
-                              mask_picture(estimate.edge, estimate.direct.size)};
+                              mask_picture(estimate.edge, estimate.direct.size),
+                              reference.direct_fine};
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         write_pfm(folder / picture_files.at(i), pictures.at(i));
     }
@@ -176,6 +177,7 @@ Reference read_reference(const fs::path& folder) {
     reference.estimate.halves = {picture(2), picture(3)};
     reference.estimate.hit = picture_mask(picture(4));
     reference.estimate.edge = picture_mask(picture(5));
+    reference.direct_fine = picture(6);
     return reference;
 }
 
@@ -208,6 +210,26 @@ Picture sum(Picture a, const Picture& b) {
         a.pixels[i] += b.pixels[i];
     }
     return a;
+}
+
+Picture difference(Picture a, const Picture& b) {
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        a.pixels[i] -= b.pixels[i];
+    }
+    return a;
+}
+
+Picture scaled_down(const Picture& picture, int factor) {
+    const glm::ivec2 size = picture.size / factor;
+    const auto share = 1.0F / static_cast<float>(factor * factor);
+    Picture small{size, std::vector<glm::vec3>(static_cast<std::size_t>(size.x) * size.y)};
+    for (int y = 0; y < size.y * factor; ++y) {
+        for (int x = 0; x < size.x * factor; ++x) {
+            small.pixels[static_cast<std::size_t>(y / factor) * size.x + x / factor] +=
+                share * picture.pixels[static_cast<std::size_t>(y) * picture.size.x + x];
+        }
+    }
+    return small;
 }
 
 }  // namespace candela::study

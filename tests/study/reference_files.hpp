@@ -23,11 +23,15 @@ struct Request {
     bool operator==(const Request&) const = default;
 };
 
-/// A reference as it lies in a folder: direct.pfm, indirect.pfm, half0.pfm, half1.pfm, the masks hit.pfm and
-/// edge.pfm in black and white, and reference.json.
+/// Points along a side of the square of them in each pixel that fine direct light is the mean of.
+inline constexpr int fine_side = 4;
+
+/// A reference as it lies in a folder: direct.pfm, indirect.pfm, half0.pfm, half1.pfm, direct-fine.pfm, the
+/// masks hit.pfm and edge.pfm in black and white, and reference.json.
 struct Reference {
     Request request;
     reference::Estimate estimate;
+    sandbox::Picture direct_fine;  ///< direct light, the mean over the pixel in place of its centre
 };
 
 /// relMSE of the mean of the halves, estimated from how far they are from each other.
@@ -60,5 +64,9 @@ void replace_folder(const std::filesystem::path& folder,
 
 /// Pixel by pixel; both are of the same size.
 [[nodiscard]] sandbox::Picture sum(sandbox::Picture a, const sandbox::Picture& b);
+[[nodiscard]] sandbox::Picture difference(sandbox::Picture a, const sandbox::Picture& b);
+
+/// The means of squares of `factor` x `factor` pixels, of which the picture is a whole number.
+[[nodiscard]] sandbox::Picture scaled_down(const sandbox::Picture& picture, int factor);
 
 }  // namespace candela::study

@@ -39,6 +39,7 @@ Reference sample() {
     reference.estimate.hit = {1, 1, 1, 1, 1, 0};
     reference.estimate.edge = {0, 1, 0, 0, 1, 0};
     reference.estimate.seconds = 0.25;
+    reference.direct_fine = picture_of({0.4F, 0.9F, 0.2F});
     return reference;
 }
 
@@ -66,8 +67,26 @@ TEST_SUITE("reference files") {
             CHECK(read.estimate.hit == written.estimate.hit);
             CHECK(read.estimate.edge == written.estimate.edge);
             CHECK(read.estimate.seconds == written.estimate.seconds);
+            CHECK(read.direct_fine.pixels == written.direct_fine.pixels);
         }
         CHECK(folder.file_count() == 1);
+    }
+
+    TEST_CASE("scaled down, a pixel is the mean of a square") {
+        Picture picture{{4, 2}, {}};
+        for (int i = 0; i < 8; ++i) {
+            picture.pixels.emplace_back(static_cast<float>(i), 1.0F, 0.0F);
+        }
+        const Picture small = scaled_down(picture, 2);
+        CHECK(small.size == glm::ivec2(2, 1));
+        // (0 + 1 + 4 + 5) / 4 and (2 + 3 + 6 + 7) / 4, all of them exact.
+        CHECK(small.pixels == std::vector<glm::vec3>{{2.5F, 1.0F, 0.0F}, {4.5F, 1.0F, 0.0F}});
+    }
+
+    TEST_CASE("a difference undoes a sum") {
+        const Picture a = picture_of({0.5F, 1.0F, 0.25F});
+        CHECK(difference(sum(a, picture_of(glm::vec3(2.0F))), a).pixels ==
+              picture_of(glm::vec3(2.0F)).pixels);
     }
 
     TEST_CASE("the noise of the mean is a quarter of the halves' relMSE") {

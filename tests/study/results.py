@@ -14,6 +14,7 @@ import machine
 import matrix
 from analysis import Row
 from matrix import Group, Point
+from motion import Motion, Take
 from session import APP, STUDY, Study, pictures_of
 
 FILES = ("picture", "heat")  # columns that name files of the build folder
@@ -45,7 +46,7 @@ def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
     line = record["errors"]
     row["reference_noise"] = line["noise"]["indirect"]
     for part, errors in line["errors"].items():
-        row.update(flat(f"{part}_", errors))
+        row.update(flat(f"{part}_", errors or {}))  # nothing may lie off all edges
     row.update(flat("", {name: line[name] for name in ("flip", "work", "memory")}))
     vpls = line.get("vpls") or {"alive": 0, "paths": 0, "flux": {}}
     row.update({"alive": vpls["alive"], "paths": vpls["paths"], **shares(vpls["flux"])})
@@ -88,6 +89,32 @@ def tracer_rows(study: Study, groups: list[Group]) -> list[Row]:
     return rows
 
 
+FRAME_FIGURES = ("full_ms", "traced", "maps_drawn", "debt", "stale", "refined")
+
+
+def motion_row(motion: Motion, take: Take, record: journal.Record | None) -> Row:
+    """One configuration in one script; what is known of each frame as lists."""
+    row: Row = {"suite": motion.suite, "scene": motion.script, "id": take.id, "failed": ""}
+    row.update({"width": motion.size[0], "height": motion.size[1], "config": take.config})
+    if record is None or "motion" not in record:
+        return {**row, "failed": (record or {}).get("failed", {}).get("message", "was not measured")}
+    line = record["motion"]
+    for part in ("indirect", "total"):
+        row[f"{part}_flicker"] = line["flicker"][part]
+        row[f"{part}_rel_mse"] = [frame["errors"][part]["rel_mse"] for frame in line["frames"]]
+    row.update({"flicker_noise": line["flicker"]["noise"], "flicker_of_pairs": line["flicker"]["indirect_pairs"]})
+    return {**row, **{name: [frame[name] for frame in line["frames"]] for name in FRAME_FIGURES}}
+
+
+def motion_rows(study: Study, motions: list[Motion]) -> list[Row]:
+    study.records = journal.fold(journal.read(study.journal))
+    return [
+        motion_row(motion, take, study.records.get(study.motion_key(motion, take)))
+        for motion in motions
+        for take in motion.takes
+    ]
+
+
 def rounded(value: Any) -> Any:
     """Floats to five digits, which is more than repeats."""
     if isinstance(value, float):
@@ -124,9 +151,11 @@ def app_default() -> dict[str, Any]:
 
 
 def is_app_default(best: Row, default: dict[str, Any], points: tuple[Point, ...]) -> bool:
-    """Whether the chosen point sets nothing but what the app does anyway."""
+    """Whether the chosen point sets nothing but what the app does anyway, but for what makes no difference to a still
+    picture: how many VPLs may be made anew in a frame."""
     config = next(one.config for one in points if one.id == best["id"])
-    return same(matrix.merged(default, config), default)
+    aside = {"vpls": {"budget": default["vpls"]["budget"]}}
+    return same(matrix.merged(matrix.merged(default, config), aside), default)
 
 
 def same(a: Any, b: Any) -> bool:
@@ -147,9 +176,9 @@ def choice(rows: list[Row], groups: list[Group]) -> dict[str, Any] | None:
     agrees = is_app_default(best, app_default(), points)
     reason = (
         f"of the configurations on the front of error and cost over {best['scenes']} scenes it has the least relMSE of"
-        f" the total light, {best['error']:.3g} in the geometric mean, among those that cost at most"
-        f" {analysis.COST_FACTOR:g} times what 256 unbounded VPLs do, deferred and without visibility:"
-        f" {best['frame_ms']:.2f} times after a move of the camera, {best['full_ms']:.2f} with everything made anew"
+        f" the total light, {best['error']:.3g} in the geometric mean, among those whose frame after a move of the"
+        f" camera costs at most {analysis.COST_FACTOR:g} times what 256 unbounded VPLs do, deferred and without"
+        f" visibility: {best['frame_ms']:.2f} times, and {best['full_ms']:.2f} with everything made anew at once"
     )
     return {"id": best["id"], "reason": reason, "is_default_of_app": agrees}
 

@@ -6,13 +6,16 @@ from typing import Any
 import journal
 import machine
 import matrix
+import motion
 import progress
 import scenes
 from matrix import Group, Point
+from motion import Motion, Take
 
 BUILD = scenes.ROOT / "build"
 STUDY = BUILD / "release" / "candela-study"
 APP = BUILD / "release" / "candela"
+ANIMATIONS = scenes.ROOT / "sandbox" / "animations"
 SCENES = BUILD / "study" / "scenes"  # those that are not shipped
 
 
@@ -62,6 +65,32 @@ class Study:
     def misses_tracer(self, group: Group) -> bool:
         found = self.records.get(self.keys(group)["tracer"], {})
         return bool(group.tracer_samples) and "tracer" not in found
+
+    def motion_key(self, played: Motion, take: Take) -> str:
+        """Of one configuration in one script; the script's own text counts."""
+        content = scenes.content_hash(scenes.find(motion.scene_of(played, ANIMATIONS), SCENES))
+        text = motion.script_text(played, ANIMATIONS)
+        circumstances = {"scene": content, "script": text, "machine": self.machine, "program": self.program}
+        return motion.key_of(played, take, circumstances)
+
+    def missing_takes(self, played: Motion) -> list[Take]:
+        known = lambda take: "motion" in self.records.get(self.motion_key(played, take), {})  # noqa: E731
+        return [take for take in played.takes if not known(take)]
+
+    def script(self, played: Motion) -> pathlib.Path:
+        """The script's file, which is written where none is shipped."""
+        shipped = ANIMATIONS / f"{played.script}.json"
+        if shipped.exists():
+            return shipped
+        written = BUILD / "study" / "scripts" / f"{played.script}.json"
+        written.parent.mkdir(parents=True, exist_ok=True)
+        written.write_text(motion.script_text(played, ANIMATIONS), encoding="utf-8")
+        return written
+
+    def frame_references(self, played: Motion) -> pathlib.Path:
+        """The folder of the frames' references, which are known within it by what they show."""
+        request = {**vars(played.reference), "size": played.size, "tracer": self.tracer}
+        return BUILD / "study" / "references" / f"frames-{matrix.digest(request)}"
 
     def note(self, line: dict[str, Any]) -> None:
         journal.append(self.journal, line)

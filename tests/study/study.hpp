@@ -65,4 +65,29 @@ struct MeasureStudy {
 /// Error, work, memory and times of configurations, a line of JSON as each is known.
 int measure(const MeasureStudy& study);
 
+/// Which points are played through which script.
+struct AnimateStudy {
+    std::filesystem::path script;      ///< a file, or the name of a shipped one; it names its scene
+    std::filesystem::path references;  ///< the folder of the frames' references, each in a folder of its own
+    std::filesystem::path points;      ///< see read_points; of seeds only the first counts
+    glm::uvec2 size{1};                ///< pixels
+    std::uint32_t samples = 0;         ///< of the references, and so on: see reference::Settings
+    std::optional<std::uint32_t> bounces;
+    std::uint32_t seed = 0;
+    int frames = 0;  ///< 0: as many as the script has
+    ContextKind context = ContextKind::egl;
+};
+/// Error, time and work of each frame of a script, a line of JSON each, and a point's flicker at its end.
+/// Frames that show the same share a reference.
+int animate(const AnimateStudy& study);
+
+/// What a frame costs in which nothing, the camera or a light moved.
+struct MovesStudy {
+    glm::uvec2 size{128, 96};
+    std::uint32_t vpls = 256;
+    int rounds = 15;
+};
+/// Prints ratios of what frames spend before shading, and on VPLs, in the Cornell box.
+int moves(const MovesStudy& study);
+
 }  // namespace candela::study

@@ -10,20 +10,23 @@ import pathlib
 import subprocess
 import sys
 
+import analysis
 import checks
 import growth
 import journal
 import machine
 import matrix
+import motion
 import results
 import scenes
 from analysis import Row
 from matrix import Group
+from motion import Motion
 from measuring import measure
-from session import BUILD, SCENES, STUDY, Study
+from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth"]
-PROGRAM_PARTS = ["graph", "shading", "paths"]
+SUITES = ["matrix", "table", "growth", "motion"]
+PROGRAM_PARTS = ["graph", "shading", "paths", "moves"]
 RESULTS = scenes.ROOT / "tests" / "study" / "results"
 
 
@@ -43,7 +46,9 @@ def arguments() -> argparse.Namespace:
     if given.quick and given.part:
         parser.error("--quick is a part by itself")
     require_known(parser, "--part", given.part, parts)
-    require_known(parser, "--scenes", given.scenes, [group.scene for group in planned(given.quick, given.part, None)])
+    moving = [motion.scene_of(each, ANIMATIONS) for each in planned_motions(given.quick, given.part, None)]
+    still = [group.scene for group in planned(given.quick, given.part, None)]
+    require_known(parser, "--scenes", given.scenes, still + moving)
     whole = not (given.quick or given.part or given.scenes)
     given.out = (given.out or (RESULTS if whole else BUILD / "study")).resolve()
     return given
@@ -57,14 +62,22 @@ def require_known(parser: argparse.ArgumentParser, flag: str, given: list[str] |
 
 def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Group]:
     """All groups to measure, in order."""
-    groups = {
+    groups: dict[str, list[Group]] = {
         "matrix": matrix.matrix_groups() + matrix.convergence_groups(),
         "table": matrix.table_groups(),
         "growth": matrix.growth_groups(),
+        "motion": [],
     }
     wanted = parts or SUITES
     chosen = matrix.quick_groups() if quick else [group for name in SUITES if name in wanted for group in groups[name]]
     return [group for group in chosen if only is None or group.scene in only]
+
+
+def planned_motions(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Motion]:
+    """All scripts to play, in order."""
+    wanted = motion.motions() if not parts or "motion" in parts else []
+    chosen = motion.quick_motions() if quick else wanted
+    return [each for each in chosen if only is None or motion.scene_of(each, ANIMATIONS) in only]
 
 
 def lights_rows(study: Study) -> list[Row]:
@@ -87,6 +100,7 @@ def run_program_part(part: str) -> None:
     commands = {
         "graph": [["graph", "--benchmark_counters_tabular=true"]],
         "shading": [["shading", cornell]],
+        "moves": [["moves"]],
         "paths": [
             ["paths", cornell, "--vpls", "256"],
             ["paths", hall, "--rounds", "3"],
@@ -98,16 +112,21 @@ def run_program_part(part: str) -> None:
         subprocess.run([STUDY, *command], check=True)
 
 
-def report(study: Study, groups: list[Group], lights: list[Row]) -> None:
+def report(study: Study, groups: list[Group], motions: list[Motion], lights: list[Row]) -> None:
     """Tables, charts and the page. Matplotlib is needed here and nowhere else."""
     import charts
+    import motion_charts
     import page
 
     rows, tracer = results.rows_of(study, groups), results.tracer_rows(study, groups)
     best = results.choice(rows, groups)
-    results.write_results(study, groups, rows, {"tracer": results.rounded(tracer), "lights": lights, "best": best})
+    played = results.motion_rows(study, motions)
+    flicker, costs = analysis.flicker_table(played), analysis.visibility_costs(rows)
+    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
+    results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
-    page.write(study.out, rows, made, best, study.machine, machine.provenance(STUDY))
+    made |= motion_charts.draw(played, study.out)
+    page.write(study.out, rows, page.Findings(made, best, flicker, costs), study.machine, machine.provenance(STUDY))
     print(f"study: {study.out / 'index.html'}")
     if best:
         same = "what the app does by default" if best["is_default_of_app"] else "NOT what the app does by default"
@@ -119,20 +138,23 @@ def main() -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     study = Study(given.out)
     groups = planned(given.quick, given.part, given.scenes)
+    motions = planned_motions(given.quick, given.part, given.scenes)
     measured = given.quick or not given.part or any(part in SUITES for part in given.part)
     if measured:
-        measure(study, groups)
+        measure(study, groups, motions)
     if given.quick:
         rows, tracer = results.rows_of(study, groups), results.tracer_rows(study, groups)
-        results.write_results(study, groups, rows, {"tracer": tracer})
-        return checks.run(rows, tracer)
+        played = results.motion_rows(study, motions)
+        results.write_results(study, groups, rows, {"tracer": tracer, "motions": played})
+        return checks.run(rows, tracer, played)
     if measured:
         whole = given.scenes is None and (not given.part or "growth" in given.part)
-        report(study, groups, lights_rows(study) if whole else [])
+        report(study, groups, motions, lights_rows(study) if whole else [])
     for part in PROGRAM_PARTS:
         if not given.part or part in given.part:
             run_program_part(part)
-    failed = [row for row in results.rows_of(study, groups) if row["failed"]] if measured else []
+    failed = [*results.rows_of(study, groups), *results.motion_rows(study, motions)] if measured else []
+    failed = [row for row in failed if row["failed"]]
     for row in failed:
         print(f"study: {row['scene']} {row['id']} failed: {row['failed']}", file=sys.stderr)
     return 1 if failed else 0

@@ -14,6 +14,8 @@ import analysis  # noqa: E402
 import checks  # noqa: E402
 import journal  # noqa: E402
 import matrix  # noqa: E402
+import measuring  # noqa: E402
+import motion  # noqa: E402
 import program  # noqa: E402
 import progress  # noqa: E402
 import results  # noqa: E402
@@ -58,7 +60,7 @@ class Slopes(unittest.TestCase):
 
 
 def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
-    base = {"path": "deferred", "vpls": 256, "bounces": 3, "bound": 1.0, "lever": "none"}
+    base = {"path": "deferred", "vpls": 256, "bounces": 8, "bound": 1.0, "visibility": "maps", "lever": "none"}
     figures = {"frame_ms": cost, "full_ms": cost, "total_rel_mse": error}
     return {"suite": "matrix", "scene": scene, "id": name, "failed": "", **base, **figures, **axes}
 
@@ -66,10 +68,10 @@ def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dic
 class BestDefault(unittest.TestCase):
     def rows(self, scene: str, scale: float) -> list[dict[str, object]]:
         return [
-            row(scene, "yardstick", 10 * scale, 0.5, bound="infinity"),
+            row(scene, "yardstick", 10 * scale, 0.5, bound="infinity", visibility="none"),
             row(scene, "good", 15 * scale, 0.1),
             row(scene, "cheap", 5 * scale, 0.4),
-            row(scene, "dear", 21 * scale, 0.01),
+            row(scene, "dear", 51 * scale, 0.01),
         ]
 
     def test_is_the_least_error_within_the_cost(self) -> None:
@@ -77,9 +79,11 @@ class BestDefault(unittest.TestCase):
         self.assertEqual(best["id"], "good")
         self.assertAlmostEqual(best["cost"], 1.5)
 
-    def test_counts_the_dearer_of_both_frames(self) -> None:
+    def test_counts_frames_after_a_move_of_the_camera(self) -> None:
         rows = self.rows("a", 1.0)
-        rows[1]["full_ms"] = 21.0
+        rows[1]["full_ms"] = 51.0
+        self.assertEqual(analysis.best_default(rows)["id"], "good")
+        rows[1]["frame_ms"] = 51.0
         self.assertEqual(analysis.best_default(rows)["id"], "cheap")
 
     def test_passes_over_what_was_not_measured_everywhere(self) -> None:
@@ -108,18 +112,31 @@ class Matrix(unittest.TestCase):
         self.assertEqual(len(names), len(set(names)))
 
     def test_sweep_has_every_axis(self) -> None:
-        axes = [one.axes for one in matrix.sweep(matrix.COUNTS)]
+        axes = [one.axes for one in matrix.sweep()]
         for name, values in (
             ("path", matrix.PATHS),
             ("vpls", matrix.COUNTS),
             ("bound", matrix.BOUNDS),
             ("bounces", matrix.BOUNCES),
+            ("visibility", matrix.VISIBILITIES),
             ("lever", matrix.LEVERS),
         ):
             self.assertEqual({each[name] for each in axes}, set(values))
 
     def test_has_the_yardstick(self) -> None:
-        self.assertIn(analysis.YARDSTICK, [one.axes for one in matrix.sweep([256])])
+        self.assertIn(analysis.YARDSTICK, [one.axes for one in matrix.short_sweep()])
+
+    def test_the_yardstick_has_every_lever_off(self) -> None:
+        config = matrix.blind(256, bound=matrix.UNBOUNDED).config
+        self.assertEqual(config["vpls"]["visibility"], "none")
+        self.assertEqual(config["vpls"]["budget"], 0)
+        self.assertFalse(config["refinement"]["enabled"])
+
+    def test_shadow_levers_leave_no_light_without_a_map(self) -> None:
+        # 256 cubes of six faces of 1,024² texels of four bytes take 6 GiB.
+        for name in ("shadow-maps-half", "shadow-maps-double"):
+            shadows = matrix.blind(256, lever=name).config["shadows"]
+            self.assertGreaterEqual(shadows["budget_mib"] * 2**20, 256 * 6 * shadows["cube_resolution"] ** 2 * 4)
 
     def test_levers_join_the_rest_of_their_group(self) -> None:
         base = {"vpls": {"count": 1}, "path": "forward"}
@@ -135,6 +152,67 @@ class Matrix(unittest.TestCase):
         self.assertEqual(key, matrix.key_of(group, one, {"scene": "a"}))
         self.assertNotEqual(key, matrix.key_of(group, one, {"scene": "b"}))
         self.assertNotEqual(key, matrix.key_of(group, other, {"scene": "a"}))
+
+
+def take_row(name: str, errors: list[float], flicker: float) -> dict[str, object]:
+    base = {"suite": "motion", "scene": "walk", "id": name, "failed": "", "flicker_noise": 0.001, "debt": [0, 3, 1]}
+    return {**base, "indirect_rel_mse": errors, "indirect_flicker": flicker}
+
+
+class Motions(unittest.TestCase):
+    def rows(self) -> list[dict[str, object]]:
+        return [
+            take_row("fresh", [0.1, 0.1, 0.1], 4.0),
+            take_row("fixed", [0.1, 0.1, 0.1], 0.5),
+            take_row("incremental", [0.1, 0.13, 0.11], 0.125),
+        ]
+
+    def test_the_table_has_ratios_and_frames_that_are_worse(self) -> None:
+        (line,) = analysis.flicker_table(self.rows())
+        self.assertAlmostEqual(line["incremental_to_fresh"], 0.125 / 4.0)
+        self.assertAlmostEqual(line["incremental_to_fixed"], 0.25)
+        self.assertEqual((line["excess_frames"], line["most_debt"]), (1, 3))
+
+    def test_a_script_that_lacks_a_take_is_left_out(self) -> None:
+        self.assertEqual(analysis.flicker_table(self.rows()[:2]), [])
+
+    def test_incremental_vpls_that_flicker_are_noticed(self) -> None:
+        self.assertTrue(all(holds for _, holds, _ in checks.flicker_falls(self.rows())))
+        rows = self.rows()
+        rows[2]["indirect_flicker"] = 0.6
+        self.assertEqual([holds for _, holds, _ in checks.flicker_falls(rows)], [True, False])
+        rows[2]["failed"] = "crashed"
+        self.assertEqual([holds for _, holds, _ in checks.flicker_falls(rows)], [False, False])
+
+    def test_a_take_without_its_flicker_failed(self) -> None:
+        frame, flicker = {"kind": "frame"}, {"kind": "flicker"}
+        self.assertEqual(measuring.told([frame, frame, flicker], "")["frames"], [frame, frame])
+        self.assertEqual(measuring.told([frame], "")["kind"], "failed")
+        self.assertEqual(measuring.told([frame, flicker], "crashed")["message"], "crashed")
+        own_words = {"kind": "failed", "message": "its own words"}
+        self.assertEqual(measuring.told([frame, own_words], "")["message"], "its own words")
+
+    def test_takes_differ_in_nothing_but_budget_and_seeds(self) -> None:
+        fresh, fixed, incremental = motion.takes()
+        self.assertEqual(fresh.config, fixed.config)
+        self.assertEqual(matrix.merged(incremental.config, {"vpls": {"budget": 0}}), fixed.config)
+
+    def test_keys_tell_takes_and_scripts_apart(self) -> None:
+        walk = motion.quick_motions()[0]
+        keys = {motion.key_of(walk, take, {"script": text}) for take in walk.takes for text in ("a", "b")}
+        self.assertEqual(len(keys), 6)
+
+
+class VisibilityCosts(unittest.TestCase):
+    def test_compares_what_was_measured_all_three_ways(self) -> None:
+        def point(visibility: str, vpls: int, error: float) -> dict[str, object]:
+            measured = {"suite": "convergence", "indirect_rel_mse": error, "reference_noise": 0.001}
+            return row("rooms", f"{visibility}-{vpls}", 1.0, 0.0, visibility=visibility, vpls=vpls, **measured)
+
+        rows = [point("none", 256, 2.0), point("maps", 256, 0.2), point("rays", 256, 0.1), point("none", 1024, 2.0)]
+        (line,) = analysis.visibility_costs(rows)
+        self.assertEqual((line["vpls"], line["none"], line["maps"], line["rays"]), (256, 2.0, 0.2, 0.1))
+        self.assertAlmostEqual(line["none_to_maps"], 10.0)
 
 
 class Journal(unittest.TestCase):
@@ -208,14 +286,15 @@ for round in range(rounds):
 class Program(unittest.TestCase):
     def measured(self, *names: str) -> dict[str, list[str]]:
         """By point, the kinds of its lines, or a failure's words."""
-        axes = [{"path": name, "vpls": 1, "bounces": 1, "bound": 1, "lever": "none"} for name in names]
+        plain = {"vpls": 1, "bounces": 1, "bound": 1, "visibility": "none", "lever": "none"}
+        axes = [{"path": name, **plain} for name in names]
         points = tuple(matrix.Point(each, {}, (0,)) for each in axes)
         group = matrix.Group("suite", "scene", (4, 4), matrix.Reference(2), 2, points)
         found: dict[str, list[str]] = {name: [] for name in names}
 
         def take(line: dict[str, str]) -> None:
             told = line["message"] if line["kind"] == "failed" else line["kind"]
-            found[line["id"].removesuffix("-v1-b1-g1")].append(told)
+            found[line["id"].removesuffix("-v1-b1-g1-none")].append(told)
 
         with tempfile.TemporaryDirectory() as folder:
             fake = pathlib.Path(folder) / "fake"
@@ -279,6 +358,17 @@ class Checks(unittest.TestCase):
     def test_a_failed_point_is_noticed(self) -> None:
         found = list(checks.all_measured([row("a", "p", 1.0, 0.5, failed="crashed")]))
         self.assertFalse(found[0][1])
+
+    def test_rooms_that_leak_are_noticed(self) -> None:
+        def rows(seeing: float) -> list[dict[str, object]]:
+            return [
+                row("two-rooms", f"p-{visibility}", 1.0, 0.5, vpls=1024, visibility=visibility, indirect_rel_mse=error)
+                for visibility, error in (("none", 1.0), ("maps", seeing))
+            ]
+
+        self.assertTrue(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.19))))
+        self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.21))))
+        self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.19)[1:])))
 
     def test_a_path_that_strays_is_noticed(self) -> None:
         rows = [row("a", path, 1.0, 0.5, path=path) for path in matrix.PATHS]

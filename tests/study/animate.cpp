@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "renderer/context/headless.hpp"
+#include "sandbox/animation_script.hpp"
+#include "sandbox/scene.hpp"
+#include "tests/study/frame_hash.hpp"
+#include "tests/study/rendering.hpp"
+#include "tests/study/scene_hash.hpp"
+#include "tests/study/study.hpp"
+#include "tests/study/tracing.hpp"
+
+namespace candela::study {
+namespace {
+
+using sandbox::Picture;
+
+/// A script, and the scene that it moves.
+struct Play {
+    sandbox::Script script;
+    std::filesystem::path scene;
+    World world;
+    sandbox::Animation animation;
+    int frames = 0;
+};
+
+Play load_play(const AnimateStudy& study) {
+    sandbox::Script script = sandbox::load_script(study.script);
+    const auto file = sandbox::scene_of(script);
+    if (!file) {
+        throw std::invalid_argument(fmt::format("{}: names no scene", script.path.string()));
+    }
+    World world = sandbox::load_scene(*file).world;
+    sandbox::Animation animation(script, world);
+    const int frames = study.frames > 0 ? study.frames : script.frames;
+    return {std::move(script), *file, std::move(world), std::move(animation), frames};
+}
+
+/// The reference of each frame, apart as `flicker` takes them.
+struct Truth {
+    std::vector<Picture> direct;
+    std::vector<Picture> indirect;
+    std::vector<Picture> total;
+    std::vector<Picture> halves[2];
+    std::vector<Mask> hits;
+};
+
+/// Taken from its folder, or traced and put there. All frames have the same seed: their noise is then nearly
+/// the same, and what changes from one to the next is what moves.
+Reference reference_of(const Play& play, const std::string& hash, const AnimateStudy& study) {
+    const Request request{.scene_hash = hash,
+                          .tracer = std::string(tracer_name()),
+                          .size = study.size,
+                          .samples = study.samples,
+                          .bounces = study.bounces,
+                          .seed = study.seed};
+    const std::filesystem::path folder = study.references / hash;
+    if (holds(folder, request)) {
+        return read_reference(folder);
+    }
+    Reference traced = trace_request(play.world, request);
+    write_reference(folder, play.scene.filename().string(), traced);
+    return traced;
+}
+
+void add(Truth& truth, const reference::Estimate& estimate) {
+    truth.direct.push_back(estimate.direct);
+    truth.indirect.push_back(estimate.indirect);
+    truth.total.push_back(reference::total(estimate));
+    truth.halves[0].push_back(estimate.halves[0]);
+    truth.halves[1].push_back(estimate.halves[1]);
+    truth.hits.push_back(estimate.hit);
+}
+
+Truth trace_frames(Play& play, const AnimateStudy& study) {
+    const std::string hash_of_scene = scene_hash(play.scene);
+    std::map<std::string, Reference> known;
+    Truth truth;
+    for (int frame = 0; frame < play.frames; ++frame) {
+        const std::string hash = frame_hash(hash_of_scene, play.script, frame);
+        if (!known.contains(hash)) {
+            play.animation.apply(play.world, frame);
+            known.emplace(hash, reference_of(play, hash, study));
+            print_line({{"kind", "reference"}, {"frame", frame}, {"frames", play.frames}});
+        }
+        add(truth, known.at(hash).estimate);
+    }
+    return truth;
+}
+
+/// What a point makes of the script.
+struct Take {
+    std::vector<Picture> indirect;
+    std::vector<Picture> total;
+};
+
+/// All light at once is what a user waits for; direct light comes from a renderer beside it, and indirect
+/// light is the rest.
+struct Stage {
+    Bench all;
+    Bench direct;
+};
+
+Configuration without_indirect(Configuration configuration) {
+    configuration.indirect = false;
+    return configuration;
+}
+
+/// Milliseconds of the frame with all light.
+double play_frame(Stage& stage, Take& take) {
+    const double ms = stage.all.frame({});
+    stage.direct.frame({});
+    take.total.push_back(finite_picture(stage.all));
+    take.indirect.push_back(difference(take.total.back(), finite_picture(stage.direct)));
+    return ms;
+}
+
+Json frame_line(const Point& point, int frame, double ms, const Report& report, const Take& take,
+                const Truth& truth) {
+    const VplReport vpls = report.vpls.value_or(VplReport{});
+    const Mask& hit = truth.hits[frame];
+    return {{"id", point.id},
+            {"kind", "frame"},
+            {"frame", frame},
+            {"errors",
+             {{"indirect", to_json(measure(take.indirect[frame], truth.indirect[frame], hit))},
+              {"total", to_json(measure(take.total[frame], truth.total[frame], hit))}}},
+            {"full_ms", ms},
+            {"traced", vpls.traced},
+            {"maps_drawn", vpls.maps_drawn},
+            {"debt", vpls.debt},
+            {"stale", vpls.stale},
+            {"refined", report.refined}};
+}
+
+/// `noise` is what the reference's own noise adds to the indirect light's flicker: halves of variance v
+/// differ by 2v in the mean square, and their mean has v/2.
+Json flicker_line(const Point& point, const Take& take, const Truth& truth) {
+    return {{"id", point.id},
+            {"kind", "flicker"},
+            {"indirect", flicker(take.indirect, truth.indirect, truth.hits)},
+            {"total", flicker(take.total, truth.total, truth.hits)},
+            {"indirect_pairs", flicker_of_pairs(take.indirect, truth.indirect, truth.hits)},
+            {"noise", flicker(truth.halves[0], truth.halves[1], truth.hits) / 4.0}};
+}
+
+Json play_point(const gl::GetProc& get_proc, Play& play, const Truth& truth, const AnimateStudy& study,
+                const Point& point) {
+    Configuration configuration = configuration_of(point);
+    Stage stage{Bench(get_proc, play.world, study.size), Bench(get_proc, play.world, study.size)};
+    stage.all.configure(configuration);
+    stage.direct.configure(without_indirect(configuration));
+    Take take;
+    for (int frame = 0; frame < play.frames; ++frame) {
+        play.animation.apply(play.world, frame);
+        if (point.fresh_seeds) {
+            // Apart by more than refinement or any list of seeds would use up.
+            configuration.vpls.seed = point.seeds.front() + 4096U * static_cast<std::uint32_t>(frame);
+            stage.all.configure(configuration);
+        }
+        const double ms = play_frame(stage, take);
+        print_line(frame_line(point, frame, ms, stage.all.renderer().report(), take, truth));
+    }
+    return flicker_line(point, take, truth);
+}
+
+}  // namespace
+
+int animate(const AnimateStudy& study) {
+    const std::vector<Point> points = read_points(read_json(study.points), study.points.string());
+    Play play = load_play(study);
+    const Truth truth = trace_frames(play, study);
+    const auto context = HeadlessContext::create(study.context);
+    context->make_current();
+    for (const Point& point : points) {
+        static_cast<void>(
+            attempt(point, [&] { return play_point(context->get_proc(), play, truth, study, point); }));
+    }
+    return 0;
+}
+
+}  // namespace candela::study

@@ -1,0 +1,51 @@
+#include "tests/study/frame_hash.hpp"
+
+#include <doctest/doctest.h>
+
+#include "sandbox/animation_script.hpp"
+
+using namespace candela;
+using namespace candela::study;
+
+namespace {
+
+constexpr const char* scene = "0123456789abcdef";
+
+/// A lamp that stands still for two frames, then moves for two.
+sandbox::Script script_of(const char* members = "") {
+    return sandbox::read_script(
+        std::string(R"({"frames": 4, )") + members +
+        R"("tracks": [{"node": "lamp", "translation": [[1, [0, 0, 0]], [3, [0, 1, 0]]]}]})");
+}
+
+}  // namespace
+
+TEST_SUITE("frame hash") {
+    TEST_CASE("frames that show the same have one hash, others have their own") {
+        const sandbox::Script script = script_of();
+        const std::string still = frame_hash(scene, script, 0);
+        CHECK(still.size() == 16);
+        CHECK(frame_hash(scene, script, 1) == still);
+        CHECK(frame_hash(scene, script, 2) != still);
+        CHECK(frame_hash(scene, script, 3) != frame_hash(scene, script, 2));
+    }
+
+    TEST_CASE("after its end a script stands still or begins anew") {
+        CHECK(frame_hash(scene, script_of(), 7) == frame_hash(scene, script_of(), 3));
+        const sandbox::Script loop = script_of(R"("loop": true, )");
+        CHECK(frame_hash(scene, loop, 6) == frame_hash(scene, loop, 2));
+    }
+
+    TEST_CASE("another scene, node or kind of value is another frame") {
+        const auto hash = [](const char* track) {
+            return frame_hash(
+                scene, sandbox::read_script(std::string(R"({"frames": 1, "tracks": [)") + track + "]}"), 0);
+        };
+        const std::string first = hash(R"({"node": "a", "translation": [[0, [1, 1, 1]]]})");
+        CHECK(hash(R"({"node": "b", "translation": [[0, [1, 1, 1]]]})") != first);
+        CHECK(hash(R"({"node": "a", "scale": [[0, [1, 1, 1]]]})") != first);
+        CHECK(hash(R"({"node": "a", "enabled": [[0, true]]})") !=
+              hash(R"({"node": "a", "enabled": [[0, false]]})"));
+        CHECK(frame_hash("other", script_of(), 0) != frame_hash(scene, script_of(), 0));
+    }
+}

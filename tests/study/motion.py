@@ -1,0 +1,96 @@
+"""What moves: scripts, each played through by several configurations against a reference of every frame."""
+
+import json
+import pathlib
+from dataclasses import dataclass
+
+import matrix
+from matrix import Config, Reference
+
+SCRIPTS = {"orbit-light": 60, "flicker-walk": 60, "door-opens": 60, "teleport": 60, "toggle": 60}  # frames
+VPLS = 256
+BUDGET = 8
+STILL_FRAMES = 64  # that refinement takes the mean of
+
+
+@dataclass(frozen=True)
+class Take:
+    """One configuration in one script; `fresh_seeds`: other VPLs in every frame, even if nothing moves."""
+
+    id: str
+    config: Config
+    fresh_seeds: bool = False
+
+
+@dataclass(frozen=True)
+class Motion:
+    """`script` is the name of a shipped one, or "still-SCENE": a scene in which nothing moves."""
+
+    suite: str
+    script: str
+    size: tuple[int, int]
+    reference: Reference
+    frames: int
+    takes: tuple[Take, ...]
+
+    @property
+    def name(self) -> str:
+        return f"{self.suite}/{self.script}/{self.size[0]}x{self.size[1]}"
+
+
+def config(vpls: int, budget: int, refined: bool = False) -> Config:
+    """The default of the matrix, with so many VPLs that may be made in a frame."""
+    base = matrix.point(vpls).config
+    return matrix.merged(base, {"vpls": {"budget": budget}, "refinement": {"enabled": refined}})
+
+
+def takes() -> tuple[Take, ...]:
+    """All VPLs made anew with each move, from other samples or from the same ones, and a few of them a frame."""
+    return (
+        Take("fresh", config(VPLS, 0), fresh_seeds=True),
+        Take("fixed", config(VPLS, 0)),
+        Take("incremental", config(VPLS, BUDGET)),
+    )
+
+
+def motions() -> list[Motion]:
+    """References of as many bounces as the VPLs have: what is left is noise."""
+    reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)
+    moving = [Motion("motion", script, matrix.SMALL, reference, frames, takes()) for script, frames in SCRIPTS.items()]
+    refined = tuple(Take(f"refined-{vpls}", config(vpls, 0, refined=True)) for vpls in (64, 256))
+    exact = Reference(samples=2048, bounces=matrix.DEFAULT_BOUNCES)
+    still = [
+        Motion("refinement", f"still-{scene}", matrix.SMALL, exact, STILL_FRAMES, refined) for scene in matrix.HIDDEN
+    ]
+    return moving + still
+
+
+def quick_motions() -> list[Motion]:
+    """Few samples will do: their noise is nearly the same in all frames, a twentieth of what is asserted."""
+    reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)
+    return [Motion("quick", "flicker-walk", (47, 36), reference, 12, takes())]
+
+
+def scene_of(motion: Motion, shipped: pathlib.Path) -> str:
+    """The name of the scene that moves. `shipped`: the folder of scripts."""
+    if motion.script.startswith("still-"):
+        return motion.script.removeprefix("still-")
+    return json.loads((shipped / f"{motion.script}.json").read_text(encoding="utf-8"))["scene"]
+
+
+def script_text(motion: Motion, shipped: pathlib.Path) -> str:
+    if motion.script.startswith("still-"):
+        return json.dumps({"scene": motion.script.removeprefix("still-"), "frames": motion.frames, "tracks": []})
+    return (shipped / f"{motion.script}.json").read_text(encoding="utf-8")
+
+
+def key_of(motion: Motion, take: Take, circumstances: Config) -> str:
+    request = {
+        "motion": motion.suite,
+        "size": motion.size,
+        "reference": vars(motion.reference),
+        "frames": motion.frames,
+        "take": vars(take),
+        **circumstances,
+    }
+    return matrix.digest(request)

@@ -1,0 +1,80 @@
+"""Charts of what moves, and of what stands still while sets of VPLs are averaged."""
+
+import itertools
+import pathlib
+from collections.abc import Sequence
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+
+import charts
+from analysis import Row, select
+from charts import BLUE, GREEN, ORANGE, RED, Made
+from motion import BUDGET, VPLS
+
+STYLES = {
+    "fresh": (ORANGE, f"all {VPLS} VPLs made anew, fresh samples"),
+    "fixed": (BLUE, f"all {VPLS} VPLs made anew, fixed samples"),
+    "incremental": (RED, f"incremental, {BUDGET} VPLs and maps a frame"),
+}
+REFINED = {"refined-64": (GREEN, "o", "sets of 64 VPLs"), "refined-256": (BLUE, "s", "sets of 256 VPLs")}
+
+
+def scripts_panels(error: Axes, flicker: Axes, rows: Sequence[Row]) -> None:
+    """A column of the chart: one script."""
+    for row in rows:
+        colour, label = STYLES[row["id"]]
+        error.plot(row["indirect_rel_mse"], color=colour, linewidth=1.3, label=label)
+        pairs = [max(value, 1e-7) for value in row["flicker_of_pairs"]]
+        flicker.plot(range(1, len(pairs) + 1), pairs, color=colour, linewidth=1.1)
+    flicker.axhline(rows[0]["flicker_noise"], color="#777777", linestyle=":", linewidth=1)
+    error.set(yscale="log", title=rows[0]["scene"])
+    flicker.set(yscale="log", xlabel="frame", ylim=(1e-7, None))
+    for axes in (error, flicker):
+        axes.minorticks_off()
+
+
+def scripts(played: Sequence[Row], out: pathlib.Path) -> Made:
+    rows = select(played, suite="motion")
+    names = list(dict.fromkeys(row["scene"] for row in rows))
+    if not names:
+        return {}
+    size = (max(3.0 * len(names), 6.0), 6.0)
+    figure, grid = plt.subplots(2, len(names), figsize=size, squeeze=False, sharex="col")
+    for column, name in enumerate(names):
+        scripts_panels(grid[0][column], grid[1][column], select(rows, scene=name))
+    grid[0][0].set_ylabel("relMSE of the indirect light")
+    grid[1][0].set_ylabel("flicker from the frame before\n(dotted: the reference's own noise)")
+    charts.legend_below(figure, grid[0][0], 3)
+    charts.save(figure, out, "motion")
+    caption = "Error and flicker of the indirect light over the frames of each script. Below 1e-7 nothing changes."
+    return {"motion": caption}
+
+
+def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
+    rows = select(played, suite="refinement")
+    names = list(dict.fromkeys(row["scene"] for row in rows))
+    if not names:
+        return {}
+    size = (max(5.4 * len(names), 6.0), 3.7)
+    figure, grid = plt.subplots(1, 2 * len(names), figsize=size, sharey=True, squeeze=False)
+    for (frames, time), name in zip(grid[0].reshape(-1, 2), names):
+        for row in select(rows, scene=name):
+            colour, marker, label = REFINED[row["id"]]
+            errors = row["indirect_rel_mse"]
+            style = {"color": colour, "marker": marker, "markersize": 3, "linewidth": 1.1, "label": label}
+            frames.plot(range(1, len(errors) + 1), errors, **style)
+            time.plot(list(itertools.accumulate(row["full_ms"])), errors, **style)
+        frames.set(xlabel="frames")
+        time.set(xlabel="ms, summed")
+        for axes in (frames, time):
+            axes.set(xscale="log", yscale="log", title=name.removeprefix("still-"))
+    grid[0][0].set_ylabel("relMSE of the indirect light")
+    charts.legend_below(figure, grid[0][0], 2)
+    charts.save(figure, out, "refinement")
+    return {"refinement": "While nothing moves, each frame adds VPLs of its own to the mean."}
+
+
+def draw(played: Sequence[Row], out: pathlib.Path) -> dict[str, Made]:
+    """By heading, what was written."""
+    return {"While things move": scripts(played, out), "While nothing moves": refinement(played, out)}

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <string_view>
+
+#include "renderer/context/headless.hpp"
+#include "sandbox/animation_script.hpp"
+#include "sandbox/scene.hpp"
+#include "tests/study/bench.hpp"
+#include "tests/study/study.hpp"
+
+namespace candela::study {
+namespace {
+
+constexpr std::uint32_t budget = 8;
+
+/// Milliseconds, and how many passes took them.
+struct Share {
+    double ms = 0.0;
+    int passes = 0;
+};
+
+/// What the last frame spent on the passes that are asked for.
+template <class Wanted>
+Share share_of(Renderer& renderer, Wanted wanted) {
+    Share share;
+    const FrameReport frame = renderer.take_frames(true).back();
+    for (const PassReport& pass : frame.passes) {
+        if (pass.ran && wanted(pass.name)) {
+            share.ms += std::max(pass.cpu_ms, pass.gpu_ms);
+            ++share.passes;
+        }
+    }
+    return share;
+}
+
+bool is_of_vpls(std::string_view pass) {
+    return pass.starts_with("vpl-");
+}
+
+/// The frame's last passes, which every deferred frame has to run.
+bool is_before_shading(std::string_view pass) {
+    return pass != "deferred" && pass != "transparent" && pass != "tone-map";
+}
+
+Configuration configuration_of(std::uint32_t vpls, std::uint32_t vpl_budget) {
+    Configuration configuration;
+    configuration.path = ShadingPath::deferred;
+    configuration.vpls.count = vpls;
+    configuration.vpls.budget = vpl_budget;
+    configuration.visibility.method = VplVisibility::maps;
+    configuration.refinement.enabled = false;
+    return configuration;
+}
+
+struct Figures {
+    std::vector<double> still;   ///< a still frame, over what a full one spends before shading
+    std::vector<double> camera;  ///< ms of the VPLs' passes after a move of the camera
+    int camera_passes = 0;       ///< the most of them that ran
+    std::vector<double>
+        light;  ///< VPLs' passes after a move of the light: incremental over full regeneration
+};
+
+/// `full` makes all VPLs anew whenever the light moves, `incremental` a few of them.
+void play_round(Bench& full, Bench& incremental, int round, Figures& figures) {
+    incremental.frame({});
+    const Share moved = share_of(incremental.renderer(), is_of_vpls);
+    full.frame({});
+    const Share regenerated = share_of(full.renderer(), is_of_vpls);
+    const double still_ms = full.frame({});
+    full.frame({0.01F * static_cast<float>(round + 1), 0.0F});
+    const Share camera = share_of(full.renderer(), is_of_vpls);
+    full.renderer().invalidate();
+    full.frame({});
+    const Share before_shading = share_of(full.renderer(), is_before_shading);
+    // The first round compiles shaders and uploads the scene; it does not count.
+    if (round == 0) {
+        return;
+    }
+    figures.still.push_back(still_ms / before_shading.ms);
+    figures.camera.push_back(camera.ms);
+    figures.camera_passes = std::max(figures.camera_passes, camera.passes);
+    figures.light.push_back(moved.ms / regenerated.ms);
+}
+
+Figures play(const gl::GetProc& get_proc, const sandbox::Script& script, const MovesStudy& study) {
+    World world = sandbox::load_scene(sandbox::scene_of(script).value()).world;
+    const sandbox::Animation animation(script, world);
+    Bench full(get_proc, world, study.size);
+    Bench incremental(get_proc, world, study.size);
+    full.configure(configuration_of(study.vpls, 0));
+    incremental.configure(configuration_of(study.vpls, budget));
+    Figures figures;
+    for (int round = 0; round <= study.rounds; ++round) {
+        animation.apply(world, round);
+        play_round(full, incremental, round, figures);
+    }
+    return figures;
+}
+
+}  // namespace
+
+int moves(const MovesStudy& study) {
+    const auto context = HeadlessContext::create(ContextKind::egl);
+    context->make_current();
+    fmt::print("Cornell box, {} VPLs with maps, {} x {}, deferred, medians of {} interleaved rounds\n",
+               study.vpls, study.size.x, study.size.y, study.rounds);
+    for (const char* name : {"flicker-walk", "orbit-light"}) {
+        const Figures figures = play(context->get_proc(), sandbox::load_script(name), study);
+        fmt::print("{}:\n", name);
+        fmt::print("  still frame / a full one's time before shading: {:.3f}\n", median(figures.still));
+        fmt::print("  camera moved: {} passes of VPLs ran, {:.2f} ms\n", figures.camera_passes,
+                   median(figures.camera));
+        fmt::print("  light moved, VPLs' passes: budget {} / full regeneration: {:.3f}\n", budget,
+                   median(figures.light));
+    }
+    return 0;
+}
+
+}  // namespace candela::study

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string_view>
+
+#include "tests/study/reference_files.hpp"
+
+namespace candela::study {
+
+/// Stands for the path tracer's sources.
+[[nodiscard]] std::string_view tracer_name();
+
+/// Traces what is asked for, as the world's first camera sees it. Throws std::invalid_argument if there is
+/// none.
+[[nodiscard]] Reference trace_request(const World& world, const Request& request);
+
+}  // namespace candela::study
