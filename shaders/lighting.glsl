@@ -32,7 +32,8 @@ vec3 irradiance_from_light(Light light, Surface surface) {
 // whose form factor on its axis is R² / (R² + r²) and not R² / r² (Howell et al., "Thermal Radiation Heat Transfer",
 // configuration factor of a disc). Square to it that would darken creases, where a wall takes up half of the floor's sky
 // from however near: there the VPL is seen as if it sank behind its own surface, by R at contact and R²/r farther off,
-// which leaves the half, to within R over the wall's height. Multiplied by flux/π the term is the irradiance.
+// which leaves the half, to within R over the wall's height. Where no crease is, but a surface crosses the VPL's plane, this
+// sets in over a twentieth of R, not at once. Multiplied by flux/π the term is the irradiance.
 float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float height = -dot(vpl.normal, to_vpl);
@@ -42,7 +43,8 @@ float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_sunk = to_vpl - depth * vpl.normal;
     float distance2 = max(dot(to_sunk, to_sunk), 1e-12);
     float cos_surface = max(dot(surface.normal, to_sunk), 0.0);
-    return cos_surface * (height + depth) / (distance2 * (distance2 + facing * vpl_radius2));
+    float onset = smoothstep(0.0, 0.05, height * inversesqrt(vpl_radius2));
+    return cos_surface * (height + onset * depth) / (distance2 * (distance2 + facing * vpl_radius2));
 }
 
 // Geometry term times the share of the light that nothing holds back; that is looked up only where there is light.

@@ -278,10 +278,9 @@ std::span<const NamedConfiguration> named_configurations() {
         }
         add("direct", "the default path without indirect light",
             [](Configuration& c) { c.indirect = false; });
-        add("many-vpls", "the default path with 2048 VPLs and five bounces", [](Configuration& c) {
-            c.vpls.count = 2048;
-            c.vpls.bounces = 5;
-        });
+        add("many-vpls", "the default path with 2048 VPLs", [](Configuration& c) { c.vpls.count = 2048; });
+        add("rays", "the default path; what VPLs see is traced, ray by ray",
+            [](Configuration& c) { c.visibility.method = VplVisibility::rays; });
         return named;
     }();
     return configurations;

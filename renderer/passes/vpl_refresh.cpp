@@ -201,6 +201,25 @@ bool needs_checks(const RefreshInputs& now, const VplMemory& memory, bool scene_
     return !settled && !located;
 }
 
+/// Finds out what has become of the memory: asks `check` of paths and `read_records` for VPLs on the GPU, if
+/// anything changed that they depend on.
+template <class Check, class ReadRecords>
+VplChecks check_memory(const RefreshState& last, const RefreshInputs& now, const Check& check,
+                       const ReadRecords& read_records) {
+    VplChecks checks;
+    const std::vector<Box> moved =
+        moved_boxes(last.inputs.geometry, last.inputs.placement, now.geometry, now.placement);
+    const bool scene_changed = !moved.empty() || last.inputs.materials != now.materials;
+    if (!now.plan.paths.empty() && needs_checks(now, last.memory, scene_changed)) {
+        checks.paths = checked_lengths(check(order_checks(now, last.memory, scene_changed)));
+    }
+    if (now.has_maps && !moved.empty()) {
+        checks.moved = moved;
+        checks.records = recorded_vpls(read_records());
+    }
+    return checks;
+}
+
 }  // namespace
 
 std::vector<Box> moved_boxes(const SceneGeometry& before, const ScenePlacement& placed_before,
@@ -264,21 +283,15 @@ DueVpls add_vpl_refresh(FrameGraph& graph, Gpu& gpu, const SceneData& scene, con
                 return;
             }
 
-            VplChecks checks;
-            const std::vector<Box> boxes =
-                moved_boxes(last->inputs.geometry, last->inputs.placement, inputs.geometry, inputs.placement);
-            const bool scene_changed = !boxes.empty() || last->inputs.materials != inputs.materials;
-            if (!inputs.plan.paths.empty() && needs_checks(inputs, last->memory, scene_changed)) {
-                checks.paths =
-                    checked_lengths(check_paths(gpu, run, program, tracing, light_buffer, handles,
-                                                order_checks(inputs, last->memory, scene_changed)));
-            }
-            if (has_maps && !boxes.empty()) {
-                gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-                checks.moved = boxes;
-                checks.records =
-                    recorded_vpls(read_back(gpu, run, handles.out.records, std::max(settings.count, 1U)));
-            }
+            const VplChecks checks = check_memory(
+                *last, inputs,
+                [&](const CheckOrder& order) {
+                    return check_paths(gpu, run, program, tracing, light_buffer, handles, order);
+                },
+                [&] {
+                    gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+                    return read_back(gpu, run, handles.out.records, std::max(settings.count, 1U));
+                });
             VplMemory memory = schedule(inputs.plan, inputs.lights, last->memory, checks, limits);
             run.set(handles.out.paths, memory.paths);
             run.set(handles.state, {std::move(inputs), std::move(memory)});

@@ -255,7 +255,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: memories are left alone, and wha
 }
 
 TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what passes with side effects have made is not overwritten") {
-    int prints = 0;
+    unsigned prints = 0;
     const TextureHandle first =
         fill("draw", texture("page", Lifetime::persistent), [](Execution&) { return 1U; });
     const TextureHandle printed = graph.add("print", [&](Pass& pass) {

@@ -234,10 +234,9 @@ TEST_SUITE("VPL visibility") {
         const Entity dark = scene.camera;
         const Entity lit = add(scene.world, looking({-0.3F, 1.7F, 1.7F}, {-2.5F, 0.85F, -0.4F}),
                                Camera{.vertical_fov = 1.2F});
-        for (const auto& [method, resolution] :
-             {std::pair{VplVisibility::maps, 64U}, std::pair{VplVisibility::rays, 64U}}) {
+        for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays}) {
             CAPTURE(to_string(method));
-            Configuration configuration = indirect_only(method, resolution);
+            Configuration configuration = indirect_only(method, 64);
             configuration.vpls.bounces = 3;
             scene.camera = lit;
             const double bright = mean(picture(scene, configuration));
@@ -278,8 +277,9 @@ TEST_SUITE("VPL visibility") {
         configuration.visibility.method = VplVisibility::rays;
         CHECK(relative_error(picture(scene, configuration), lit) < 1e-6);
         // Along its edges a texel that sees one wall darkens the other, over a strip as wide as the texel.
-        for (const auto& [resolution, most] : {std::pair{32U, 0.03}, std::pair{128U, 0.01}}) {
-            CAPTURE(resolution);
+        for (const auto& bound : {std::pair{32U, 0.03}, std::pair{128U, 0.01}}) {
+            const auto [resolution, most] = bound;
+            CAPTURE(bound.first);
             configuration.visibility = {VplVisibility::maps, resolution};
             const double share = mean(picture(scene, configuration)) / mean(lit);
             CHECK(share <= 1.0);

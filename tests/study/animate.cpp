@@ -120,13 +120,14 @@ double play_frame(Stage& stage, Take& take) {
 Json frame_line(const Point& point, int frame, double ms, const Report& report, const Take& take,
                 const Truth& truth) {
     const VplReport vpls = report.vpls.value_or(VplReport{});
-    const Mask& hit = truth.hits[frame];
+    const auto at = static_cast<std::size_t>(frame);
+    const Mask& hit = truth.hits[at];
     return {{"id", point.id},
             {"kind", "frame"},
             {"frame", frame},
             {"errors",
-             {{"indirect", to_json(measure(take.indirect[frame], truth.indirect[frame], hit))},
-              {"total", to_json(measure(take.total[frame], truth.total[frame], hit))}}},
+             {{"indirect", to_json(measure(take.indirect[at], truth.indirect[at], hit))},
+              {"total", to_json(measure(take.total[at], truth.total[at], hit))}}},
             {"full_ms", ms},
             {"traced", vpls.traced},
             {"maps_drawn", vpls.maps_drawn},

@@ -178,6 +178,11 @@ def sweep() -> tuple[Point, ...]:
     )
 
 
+def every_path() -> tuple[Point, ...]:
+    """For scenes so large that a frame takes software a second: how the paths compare in them."""
+    return distinct([point(64, path=path, seeds=(0,)) for path in PATHS] + [blind(64, seeds=(0,))])
+
+
 def matrix_groups() -> list[Group]:
     """Error against a reference of any depth, and time. Small scenes get more of everything."""
     exact, sketch = Reference(samples=2048), Reference(samples=512)
@@ -190,11 +195,12 @@ def matrix_groups() -> list[Group]:
             "furnace": TRACER_SAMPLES[:6],
         }.items()
     ]
-    in_short = [
-        Group("matrix", scene, SIZE, sketch, 3, short_sweep(), tuple(TRACER_SAMPLES[:4]))
-        for scene in ("fins", "glass", "hall-256", "atrium")
+    in_short = [Group("matrix", "glass", SIZE, sketch, 3, short_sweep(), tuple(TRACER_SAMPLES[:4]))]
+    large = [
+        Group("matrix", scene, SIZE, sketch, 2, every_path(), tuple(TRACER_SAMPLES[:3]))
+        for scene in ("fins", "hall-256", "atrium")
     ]
-    return in_full + in_short
+    return in_full + in_short + large
 
 
 def convergence_groups() -> list[Group]:
