@@ -28,7 +28,7 @@ vec3 irradiance_from_light(Light light, Surface surface) {
 }
 
 // Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997), kept from growing
-// beyond 1/R², R² being vpl_radius2, in two ways, as the surface turns to the VPL. Facing it, the VPL stands for a disc,
+// beyond 4/3 of 1/R², R² being vpl_radius2, in two ways, as the surface turns to the VPL. Facing it, the VPL stands for a disc,
 // whose form factor on its axis is R² / (R² + r²) and not R² / r² (Howell et al., "Thermal Radiation Heat Transfer",
 // configuration factor of a disc). Square to it that would darken creases, where a wall takes up half of the floor's sky
 // from however near: there the VPL is seen as if it sank behind its own surface, by R at contact and R²/r farther off,

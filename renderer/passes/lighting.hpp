@@ -44,8 +44,9 @@ struct Lighting {
 
 /// Squared distance R², in m², from which on a VPL's light hardly grows: shaders/lighting.glsl. N VPLs share
 /// the area A of the scene's surfaces; R is the diameter of a disc of A/N, R² = 4 A / (π N), the least error
-/// in the Cornell box with shadows of VPLs (tests/study). The geometry term is at most 1/R², and `bound`
-/// scales that; at infinity the VPL is a point. R shrinks as N grows, and the energy that it costs vanishes.
+/// in the Cornell box with shadows of VPLs (tests/study). The geometry term is at most 4/3 of 1/R², and
+/// `bound` scales that; at infinity the VPL is a point. R shrinks as N grows, and the energy that it costs
+/// vanishes.
 [[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
 
 /// Words to define in shaders that include lighting.glsl.

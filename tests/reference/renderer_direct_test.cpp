@@ -19,20 +19,6 @@ constexpr int samples_across = 4;
 // else meet pixels' centres, where it is up to rounding which of two walls is seen.
 constexpr glm::uvec2 sampled_size{640, 479};
 
-sandbox::Picture shrunk(const sandbox::Picture& picture) {
-    sandbox::Picture small{picture.size / samples_across, {}};
-    small.pixels.assign(static_cast<std::size_t>(small.size.x) * static_cast<std::size_t>(small.size.y),
-                        glm::vec3(0.0F));
-    for (int y = 0; y < small.size.y * samples_across; ++y) {
-        for (int x = 0; x < small.size.x * samples_across; ++x) {
-            const glm::vec3 sample = picture.pixels[static_cast<std::size_t>(y * picture.size.x + x)];
-            small.pixels[static_cast<std::size_t>(y / samples_across * small.size.x + x / samples_across)] +=
-                sample / static_cast<float>(samples_across * samples_across);
-        }
-    }
-    return small;
-}
-
 /// relMSE of the renderer's direct light.
 struct DirectErrors {
     double samples;  ///< sample by sample, away from edges
@@ -52,7 +38,9 @@ class DirectLight : public PathFixture {
         CHECK(renderer.report().lights.without_shadow == 0);
         const std::vector<std::uint8_t> away = reference::without(truth.hit, truth.edge);
         return {study::measure(picture, truth.direct, away).rel_mse,
-                study::measure(shrunk(picture), shrunk(truth.direct)).rel_mse};
+                study::measure(study::scaled_down(picture, samples_across),
+                               study::scaled_down(truth.direct, samples_across))
+                    .rel_mse};
     }
 
     /// The bounds that are asked for hold at the last of the resolutions, and the error falls on the way

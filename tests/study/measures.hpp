@@ -62,4 +62,7 @@ void require_comparable(const sandbox::Picture& picture, const sandbox::Picture&
 /// The first pixel, from the top left, that holds NaN or infinity.
 [[nodiscard]] std::optional<glm::ivec2> first_not_finite(const sandbox::Picture& picture);
 
+/// The means of squares of `factor` x `factor` pixels; what is left over at the right and below is cut off.
+[[nodiscard]] sandbox::Picture scaled_down(const sandbox::Picture& picture, int factor);
+
 }  // namespace candela::study

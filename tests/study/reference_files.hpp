@@ -66,7 +66,4 @@ void replace_folder(const std::filesystem::path& folder,
 [[nodiscard]] sandbox::Picture sum(sandbox::Picture a, const sandbox::Picture& b);
 [[nodiscard]] sandbox::Picture difference(sandbox::Picture a, const sandbox::Picture& b);
 
-/// The means of squares of `factor` x `factor` pixels, of which the picture is a whole number.
-[[nodiscard]] sandbox::Picture scaled_down(const sandbox::Picture& picture, int factor);
-
 }  // namespace candela::study
