@@ -407,11 +407,17 @@ TEST_CASE("graph verify: of random graphs the pass with an undeclared input is n
         }
         const auto& accesses = graph.passes[culprit].accesses;
         is_checked &= std::ranges::any_of(accesses, &random_graph::Access::write);
+        // Of what a pass with side effects has put into an import nobody can tell whether it is still the
+        // same.
+        const auto reads_import = [&](const random_graph::Access& access) {
+            return !access.write && graph.resources[access.resource].lifetime == Lifetime::imported;
+        };
+        is_checked &= std::ranges::none_of(accesses, reads_import);
         machine.provide(host);
+        (void)machine.run();
         machine.sabotage(culprit);
         std::string message;
         try {
-            (void)machine.run();
             machine.runtime().verify(machine.world());
         } catch (const GraphError& error) {
             message = error.what();
