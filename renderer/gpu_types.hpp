@@ -65,11 +65,15 @@ struct Shadow {
 
 struct Vpl {
     glm::vec3 position;
-    std::uint32_t path;
-    glm::vec3 normal;
-    std::uint32_t bounce;
-    glm::vec3 flux;
     std::uint32_t map;
+    glm::vec3 normal;
+    float pad0;
+    glm::vec3 flux;
+    float pad1;
+    glm::vec3 edges_up;
+    float pad2;
+    glm::vec3 edges_down;
+    float pad3;
 };
 
 using BvhNode = candela::BvhNode;

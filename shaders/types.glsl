@@ -58,12 +58,16 @@ struct Shadow {
 #define SHADOW_ORTHOGRAPHIC 2u
 
 struct Vpl {
-    vec3 position;  // metres, on the surface
-    uint path;      // that placed it
-    vec3 normal;    // unit; it emits into this half-space
-    uint bounce;    // 1 for the first surface that the light meets
-    vec3 flux;      // reflected flux, lm or W as the lights have it; zero: not alive
-    uint map;       // tile of its depth map in the atlas
+    vec3 position;    // metres, on the surface
+    uint map;         // tile of its depth map in the atlas
+    vec3 normal;      // unit; it emits into this half-space
+    float pad0;
+    vec3 flux;        // reflected flux, lm or W as the lights have it; zero: not alive
+    float pad1;
+    vec3 edges_up;    // 1/m, of its surface along +x, +y, +z: vpl_edges.glsl; 0: none near
+    float pad2;
+    vec3 edges_down;  // along -x, -y, -z
+    float pad3;
 };
 
 struct BvhNode {

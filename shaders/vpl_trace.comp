@@ -4,6 +4,7 @@
 // so that a later frame can keep the leading bounces that are still right and give them other flux.
 #include "bindings.glsl"
 #include "types.glsl"
+#include "vpl_edges.glsl"
 #include "vpl_path.glsl"
 
 layout(local_size_x = 32) in;
@@ -37,6 +38,14 @@ float first_window(Light light, VplRecord first) {
     return range_window(distance(light.position, first.position), light.range);
 }
 
+Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint tile) {
+    Vpl vpl = Vpl(position, tile, normal, 0.0, flux, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    if (flux == vec3(0.0)) return vpl;
+    vpl.edges_up = surface_edges(position, normal, 1.0);
+    vpl.edges_down = surface_edges(position, normal, -1.0);
+    return vpl;
+}
+
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= path_count) return;
@@ -45,7 +54,7 @@ void main() {
 
     for (uint i = 0u; i < path.vpl_count; ++i) {
         uint place = path.first_vpl + i;
-        vpls[place] = Vpl(vec3(0.0), id, vec3(0.0), i + 1u, vec3(0.0), places[place].tile);
+        vpls[place] = make_vpl(vec3(0.0), vec3(0.0), vec3(0.0), places[place].tile);
     }
     FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     VplRecord record = VplRecord(vec3(0.0), VPL_PLACED, vec3(0.0), 0.0, vec3(1.0), 0.0);
@@ -71,7 +80,7 @@ void main() {
         }
         reflected = path.flux * (place.weight * window) * record.throughput;
         account.absorbed += carried - reflected;
-        vpls[path.first_vpl + bounce - 1u] = Vpl(record.position, id, record.normal, bounce, reflected, place.tile);
+        vpls[path.first_vpl + bounce - 1u] = make_vpl(record.position, record.normal, reflected, place.tile);
 
         if (bounce == max_bounces) {
             account.truncated += reflected;

@@ -36,8 +36,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
             .records = vpl_records(graph)};
         if (configuration.vpls.budget > 0) {
             frame.vpl_clock = graph.import_value<VplClock>("vpl clock");
-            due = add_vpl_refresh(graph, gpu, scene, tracing, due, frame.lights, buffers.lights,
-                                  *frame.vpl_clock, configuration.vpls,
+            due = add_vpl_refresh(graph, gpu, scene, tracing,
+                                  {due, frame.lights, buffers.lights, *frame.vpl_clock}, configuration.vpls,
                                   configuration.visibility.method == VplVisibility::maps);
         }
         frame.vpls = add_vpl_trace(graph, gpu, tracing, due, buffers.lights);

@@ -240,15 +240,13 @@ std::vector<Box> moved_boxes(const SceneGeometry& before, const ScenePlacement& 
 }
 
 DueVpls add_vpl_refresh(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Tracing& tracing,
-                        const DueVpls& all, ValueHandle<LightTable> lights,
-                        BufferHandle<gpu::Light> light_buffer, ValueHandle<VplClock> clock,
-                        const VplSettings& settings, bool has_maps) {
+                        const RefreshSources& sources, const VplSettings& settings, bool has_maps) {
     return graph.add("vpl-refresh", [&](Pass& pass) {
         pass.remembers();
-        pass.read(all.paths);
-        pass.read(lights);
-        pass.read(light_buffer, Usage::storage);
-        pass.read(clock);
+        pass.read(sources.all.paths);
+        pass.read(sources.lights);
+        pass.read(sources.light_buffer, Usage::storage);
+        pass.read(sources.clock);
         pass.read(scene.layout);
         pass.read(scene.placement);
         read_tracing(pass, tracing);
@@ -260,17 +258,17 @@ DueVpls add_vpl_refresh(FrameGraph& graph, Gpu& gpu, const SceneData& scene, con
         };
         const RefreshHandles handles{.state = pass.write(graph.value<RefreshState>("vpl memory")),
                                      .out = {.paths = pass.write(graph.value<VplPaths>("vpl schedule")),
-                                             .records = pass.write(all.records, Usage::storage)},
+                                             .records = pass.write(sources.all.records, Usage::storage)},
                                      .checked = scratch(gpu::CheckedPath{}, "checked paths", Usage::copy),
                                      .tiles = scratch(std::uint32_t{}, "checked tiles", Usage::copy),
                                      .checks = scratch(gpu::PathCheck{}, "path checks", Usage::storage)};
         pass.run([=, &gpu, &program, layout = scene.layout, placement = scene.placement](Execution& run) {
-            RefreshInputs inputs{.plan = run.value(all.paths),
-                                 .lights = run.value(lights),
+            RefreshInputs inputs{.plan = run.value(sources.all.paths),
+                                 .lights = run.value(sources.lights),
                                  .geometry = run.value(layout).geometry,
                                  .placement = run.value(placement),
                                  .materials = run.value(layout).materials,
-                                 .clock = run.value(clock),
+                                 .clock = run.value(sources.clock),
                                  .settings = settings,
                                  .has_maps = has_maps};
             const RefreshState* last = run.find(handles.state);
@@ -286,7 +284,7 @@ DueVpls add_vpl_refresh(FrameGraph& graph, Gpu& gpu, const SceneData& scene, con
             const VplChecks checks = check_memory(
                 *last, inputs,
                 [&](const CheckOrder& order) {
-                    return check_paths(gpu, run, program, tracing, light_buffer, handles, order);
+                    return check_paths(gpu, run, program, tracing, sources.light_buffer, handles, order);
                 },
                 [&] {
                     gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

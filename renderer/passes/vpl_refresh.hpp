@@ -24,16 +24,22 @@ struct VplClock {
 [[nodiscard]] std::vector<Box> moved_boxes(const SceneGeometry& before, const ScenePlacement& placed_before,
                                            const SceneGeometry& now, const ScenePlacement& placed_now);
 
+/// What a schedule is made from.
+struct RefreshSources {
+    DueVpls all;  ///< the plan, with all of it due
+    ValueHandle<LightTable> lights;
+    BufferHandle<gpu::Light> light_buffer;
+    ValueHandle<VplClock> clock;
+};
+
 /// Node `vpl-refresh` (compute, then CPU): keeps what still holds of the VPLs of the frame before, and
 /// schedules what is to be made anew within the budget. Everything is made anew in its first run, in a new
 /// epoch, after a change of settings, and for each further set of VPLs that refinement asks for; when
 /// refinement falls back, the VPLs of the last set are kept and replaced within the budget. Where lights or
 /// geometry changed it tests the paths on the GPU and waits for the result: one synchronisation in such a
-/// frame, none in others. `all` is the plan with all of it due.
+/// frame, none in others.
 [[nodiscard]] DueVpls add_vpl_refresh(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                      const Tracing& tracing, const DueVpls& all,
-                                      ValueHandle<LightTable> lights, BufferHandle<gpu::Light> light_buffer,
-                                      ValueHandle<VplClock> clock, const VplSettings& settings,
-                                      bool has_maps);
+                                      const Tracing& tracing, const RefreshSources& sources,
+                                      const VplSettings& settings, bool has_maps);
 
 }  // namespace candela

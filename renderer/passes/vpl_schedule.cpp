@@ -1,16 +1,15 @@
 #include "renderer/passes/vpl_schedule.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <map>
 #include <numbers>
 #include <numeric>
 #include <optional>
 #include <tuple>
 
 #include "renderer/passes/emission_cells.hpp"
+#include "renderer/passes/vpl_weights.hpp"
 
 namespace candela {
 namespace {
@@ -19,25 +18,6 @@ constexpr std::uint32_t no_tile = 0xffffffffU;
 // A path of a moving light is worth moving where the empty circle that it would fill is this many times as
 // large as the cell that it leaves. Each move shows as a change of light, so that it must be worth it.
 constexpr double worthwhile_gain = 16.0;
-
-using LightKey = std::tuple<Entity, gpu::LightKind>;
-
-/// The paths of one light; plans have them in a row.
-struct PathRange {
-    std::uint32_t first;
-    std::uint32_t last;  ///< one behind
-};
-
-std::vector<PathRange> ranges_of(const std::vector<gpu::Path>& paths) {
-    std::vector<PathRange> ranges;
-    for (std::uint32_t i = 0; i < paths.size(); ++i) {
-        if (i == 0 || paths[i].light != paths[i - 1].light) {
-            ranges.push_back({i, i});
-        }
-        ranges.back().last = i + 1;
-    }
-    return ranges;
-}
 
 /// Mean of the channels.
 double mean_of(glm::vec3 colour) {
@@ -71,6 +51,7 @@ class Draft {
           settings_(settings),
           left_(settings.budget),
           moved_(moved_lights(lights, memory)),
+          by_light_(paths_by_light(plan.paths, lights)),
           next_{.paths = plan,
                 .memories = std::vector<PathMemory>(plan.paths.size()),
                 .maps = memory.maps,
@@ -148,25 +129,11 @@ class Draft {
 
     /// Paths of moving lights, from where they are dense to where they are sparse.
     void spread() {
-        for (const PathRange range : ranges_of(next_.paths.paths)) {
-            const bool moves = moved_[path(range.first).light] != 0;
-            for (std::uint32_t bounces = longest(range); moves && bounces > 0; --bounces) {
-                spread(range, bounces);
-            }
-        }
-    }
-
-    void weigh() {
-        for (const PathRange range : ranges_of(next_.paths.paths)) {
-            const auto settled = [&](std::uint32_t i) {
-                return memory(i).canonical && path(i).length == path(i).vpl_count;
-            };
-            const auto all = indices(range, [](std::uint32_t) { return true; });
-            if (std::ranges::all_of(all, settled)) {
-                continue;
-            }
-            for (std::uint32_t bounce = 0; bounce < longest(range); ++bounce) {
-                weigh(range, bounce);
+        for (const LightPaths& light : by_light_) {
+            const bool moves = moved_[path(light.first).light] != 0;
+            for (std::uint32_t bounces = longest_path(next_.paths.paths, light); moves && bounces > 0;
+                 --bounces) {
+                spread(light, bounces);
             }
         }
     }
@@ -243,66 +210,30 @@ class Draft {
         return found;
     }
 
-    template <class Predicate>
-    static std::vector<std::uint32_t> indices(PathRange range, Predicate predicate) {
-        std::vector<std::uint32_t> found;
-        for (std::uint32_t i = range.first; i < range.last; ++i) {
-            if (predicate(i)) {
-                found.push_back(i);
-            }
-        }
-        return found;
+    [[nodiscard]] const LightPaths& paths_beside(std::uint32_t i) const {
+        return *std::ranges::upper_bound(by_light_, i, {}, &LightPaths::last);
     }
 
-    std::uint32_t longest(PathRange range) {
-        std::uint32_t bounces = 0;
-        for (std::uint32_t i = range.first; i < range.last; ++i) {
-            bounces = std::max(bounces, path(i).vpl_count);
-        }
-        return bounces;
-    }
-
-    [[nodiscard]] gpu::LightKind kind_of(std::uint32_t i) {
-        return lights_.entries[path(i).light].light.kind;
-    }
-
-    std::vector<glm::dvec3> starts_of(const std::vector<std::uint32_t>& paths) {
-        std::vector<glm::dvec3> points;
-        points.reserve(paths.size());
-        for (const std::uint32_t i : paths) {
-            points.push_back(to_emission_domain(kind_of(i), memory(i).start));
-        }
-        return points;
-    }
-
-    PathRange range_around(std::uint32_t i) {
-        PathRange range{i, i + 1};
-        while (range.first > 0 && path(range.first - 1).light == path(i).light) {
-            --range.first;
-        }
-        while (range.last < next_.memories.size() && path(range.last).light == path(i).light) {
-            ++range.last;
-        }
-        return range;
+    [[nodiscard]] EmissionCells cells_of(gpu::LightKind kind, const std::vector<std::uint32_t>& paths) const {
+        return emission_cells(starts_on_sphere(next_, kind, paths), emission_domain(kind));
     }
 
     /// Where those paths of the light of path `i` are sparsest that get as far as it; nothing if none do.
     std::optional<glm::vec2> thinnest_place(std::uint32_t i) {
+        const LightPaths& light = paths_beside(i);
         const auto present =
-            indices(range_around(i), [&](std::uint32_t j) { return path(j).length >= path(i).vpl_count; });
-        const auto thinnest =
-            thinnest_places(emission_cells(starts_of(present), emission_domain(kind_of(i))), 1);
+            paths_of(light, [&](std::uint32_t j) { return path(j).length >= path(i).vpl_count; });
+        const auto thinnest = thinnest_places(cells_of(light.kind, present), 1);
         if (thinnest.empty()) {
             return std::nullopt;
         }
-        return glm::vec2(from_emission_domain(kind_of(i), thinnest.front().centre));
+        return glm::vec2(from_emission_domain(light.kind, thinnest.front().centre));
     }
 
     /// Moves paths of so many bounces, among all that get as far.
-    void spread(PathRange range, std::uint32_t bounces) {
-        const auto there = indices(range, [&](std::uint32_t i) { return path(i).length >= bounces; });
-        const EmissionDomain domain = emission_domain(kind_of(range.first));
-        const EmissionCells cells = emission_cells(starts_of(there), domain);
+    void spread(const LightPaths& light, std::uint32_t bounces) {
+        const auto there = paths_of(light, [&](std::uint32_t i) { return path(i).length >= bounces; });
+        const EmissionCells cells = cells_of(light.kind, there);
         const std::vector<EmptyCircle> places = thinnest_places(cells, left_);
         std::vector<std::uint32_t> densest(there.size());
         std::iota(densest.begin(), densest.end(), 0U);
@@ -316,66 +247,8 @@ class Draft {
                 return;
             }
             left_ -= bounces;
-            begin(there[densest[k]], glm::vec2(from_emission_domain(kind_of(range.first), places[k].centre)));
+            begin(there[densest[k]], glm::vec2(from_emission_domain(light.kind, places[k].centre)));
         }
-    }
-
-    void weigh(PathRange range, std::uint32_t bounce) {
-        const auto planned = indices(range, [&](std::uint32_t i) { return path(i).vpl_count > bounce; });
-        const auto there = indices(range, [&](std::uint32_t i) { return path(i).length > bounce; });
-        const std::vector<double> factors = departures(planned, bounce);
-        const EmissionDomain domain = emission_domain(kind_of(range.first));
-        std::vector<double> shares = emission_cells(starts_of(there), domain).areas;
-        double of_all = 0.0;
-        for (std::size_t k = 0; k < there.size(); ++k) {
-            const auto in_plan = std::ranges::lower_bound(planned, there[k]) - planned.begin();
-            shares[k] *= factors[static_cast<std::size_t>(in_plan)];
-            of_all += shares[k];
-        }
-        double sum = 0.0;
-        for (const std::uint32_t i : planned) {
-            sum += static_cast<double>(weight(i, bounce));
-        }
-        for (std::size_t k = 0; k < there.size(); ++k) {
-            weight(there[k], bounce) = static_cast<float>(sum * shares[k] / of_all);
-        }
-    }
-
-    float& weight(std::uint32_t i, std::uint32_t bounce) {
-        return next_.paths.places[path(i).first_vpl + bounce].weight;
-    }
-
-    /// By how much the plan's weight, which all of these paths share, departs from their cells' in the
-    /// diagram of their points of the sequence; the less, the farther a path starts from there, and not at
-    /// all from the mean distance between paths on. So a light's first small move does not show as a change
-    /// from the plan's weights to the cells', nor does its last.
-    std::vector<double> departures(const std::vector<std::uint32_t>& planned, std::uint32_t bounce) {
-        std::vector<glm::dvec3> points;
-        points.reserve(planned.size());
-        for (const std::uint32_t i : planned) {
-            points.push_back(to_emission_domain(kind_of(i), memory(i).canonical_start));
-        }
-        const EmissionDomain domain = emission_domain(kind_of(planned.front()));
-        const double cell = area_of(domain) / static_cast<double>(planned.size());
-        const auto area_of_path = [&](std::uint32_t i) -> double& {
-            return next_.plan_areas[path(i).first_vpl + bounce];
-        };
-        if (area_of_path(planned.front()) == 0.0) {
-            const std::vector<double> areas = emission_cells(points, domain).areas;
-            for (std::size_t k = 0; k < planned.size(); ++k) {
-                area_of_path(planned[k]) = areas[k];
-            }
-        }
-        const std::vector<glm::dvec3> starts = starts_of(planned);
-        std::vector<double> factors;
-        factors.reserve(planned.size());
-        for (std::size_t k = 0; k < planned.size(); ++k) {
-            const double nearness =
-                std::max(0.0, 1.0 - glm::distance(points[k], starts[k]) / std::sqrt(cell));
-            const double area = area_of_path(planned[k]);
-            factors.push_back(area > 0.0 ? glm::mix(1.0, cell / area, nearness) : 1.0);
-        }
-        return factors;
     }
 
     template <class Visit>
@@ -453,47 +326,11 @@ class Draft {
     const ScheduleSettings& settings_;
     std::uint32_t left_;
     std::vector<std::uint8_t> moved_;
+    std::vector<LightPaths> by_light_;
     VplMemory next_;
 };
 
 }  // namespace
-
-std::vector<std::uint32_t> match_paths(const VplPaths& plan, const LightTable& lights,
-                                       const VplMemory& memory) {
-    std::map<std::tuple<LightKey, std::uint32_t>, std::uint32_t> known;
-    for (std::uint32_t k = 0; k < memory.memories.size(); ++k) {
-        const PathMemory& path = memory.memories[k];
-        const gpu::LightKind kind = memory.lights[memory.paths.paths[k].light].light.kind;
-        known.emplace(std::tuple(LightKey(path.light, kind), path.index), k);
-    }
-    std::vector<std::uint32_t> matches;
-    matches.reserve(plan.paths.size());
-    for (const gpu::Path& path : plan.paths) {
-        const LightTable::Entry& light = lights.entries[path.light];
-        const auto found = known.find(std::tuple(LightKey(light.entity, light.light.kind), path.index));
-        matches.push_back(found == known.end() ? no_path : found->second);
-    }
-    return matches;
-}
-
-bool emits_differently(const gpu::Light& a, const gpu::Light& b) {
-    return a.kind != b.kind || a.position != b.position || a.direction != b.direction || a.shape != b.shape ||
-           a.cos_inner != b.cos_inner || a.cos_outer != b.cos_outer;
-}
-
-std::vector<std::uint8_t> moved_lights(const LightTable& lights, const VplMemory& memory) {
-    std::map<LightKey, const gpu::Light*> before;
-    for (const LightTable::Entry& entry : memory.lights) {
-        before.emplace(LightKey(entry.entity, entry.light.kind), &entry.light);
-    }
-    std::vector<std::uint8_t> moved;
-    moved.reserve(lights.entries.size());
-    for (const LightTable::Entry& entry : lights.entries) {
-        const auto found = before.find(LightKey(entry.entity, entry.light.kind));
-        moved.push_back(found != before.end() && emits_differently(entry.light, *found->second) ? 1 : 0);
-    }
-    return moved;
-}
 
 VplMemory schedule_all(const VplPaths& plan, const LightTable& lights, const ScheduleSettings& settings) {
     VplMemory memory{.paths = plan,
@@ -517,8 +354,9 @@ VplMemory schedule(const VplPaths& plan, const LightTable& lights, const VplMemo
     draft.redraw_maps(checks);
     draft.settle();
     draft.spread();
-    draft.weigh();
-    return draft.finish();
+    VplMemory next = draft.finish();
+    weigh_by_cells(next, lights);
+    return next;
 }
 
 }  // namespace candela

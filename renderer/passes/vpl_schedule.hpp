@@ -6,42 +6,9 @@
 #include <vector>
 
 #include "engine/bvh/box.hpp"
-#include "renderer/passes/lights.hpp"
-#include "renderer/passes/vpl_paths.hpp"
+#include "renderer/passes/vpl_memory.hpp"
 
 namespace candela {
-
-/// What is remembered of a scheduled path, beside its records on the GPU.
-struct PathMemory {
-    Entity light;
-    std::uint32_t index = 0;  ///< within the light's sequence
-    /// Traced from its point of the sequence, from its light as it still is, in geometry that is still there:
-    /// full regeneration would give the same.
-    bool canonical = false;
-    bool located = false;             ///< whether the next two are known
-    glm::vec2 start{0.0F};            ///< on the light, in the unit square: shaders/emission.glsl
-    glm::vec2 canonical_start{0.0F};  ///< its point of the sequence
-    bool operator==(const PathMemory&) const = default;
-};
-
-/// A depth map that shows geometry which has since moved.
-struct StaleMap {
-    std::uint32_t age = 0;    ///< schedules since then; 0: the map is up to date
-    float throughput = 0.0F;  ///< of its VPL, mean of the channels
-    bool operator==(const StaleMap&) const = default;
-};
-
-/// A schedule and what the next one builds on.
-struct VplMemory {
-    VplPaths paths;
-    std::vector<PathMemory> memories;  ///< of each path
-    std::vector<StaleMap> maps;        ///< of each tile
-    std::vector<LightTable::Entry> lights;
-    /// Of each place: the cell of its path's point of the sequence among those that get as far, sr; 0: not
-    /// yet worked out.
-    std::vector<double> plan_areas;
-    bool operator==(const VplMemory&) const = default;
-};
 
 /// A VPL as it was recorded, by tile.
 struct RecordedVpl {
@@ -71,19 +38,6 @@ struct ScheduleSettings {
     bool maps = false;         ///< whether VPLs have depth maps
 };
 
-/// Index in the memory of each planned path, `no_path` for those that it does not have: paths are known by
-/// their light's entity and their index in its sequence.
-[[nodiscard]] std::vector<std::uint32_t> match_paths(const VplPaths& plan, const LightTable& lights,
-                                                     const VplMemory& memory);
-inline constexpr std::uint32_t no_path = 0xffffffffU;
-
-/// Whether two states of a light send their paths out differently: it has moved, turned or changed its shape.
-[[nodiscard]] bool emits_differently(const gpu::Light& a, const gpu::Light& b);
-
-/// Of each light of the table, whether it emits differently from what the memory has of it; false for new
-/// ones.
-[[nodiscard]] std::vector<std::uint8_t> moved_lights(const LightTable& lights, const VplMemory& memory);
-
 /// A memory in which all is to be done: the plan as it is, which regenerates everything.
 [[nodiscard]] VplMemory schedule_all(const VplPaths& plan, const LightTable& lights,
                                      const ScheduleSettings& settings);
@@ -99,13 +53,10 @@ inline constexpr std::uint32_t no_path = 0xffffffffU;
 /// their points of the sequence, so that at rest the state becomes that of full regeneration; for lights that
 /// move, into moving paths from where they are much too dense.
 ///
-/// A light whose paths are all canonical has the plan's weights. Otherwise a path carries the flux of its
-/// cell in the Voronoi diagram of starts on the light; bounces further on that of the diagram of those paths
-/// that get there, and the sum at each bounce is the plan's. Paths that have hardly departed from their
-/// points of the sequence carry as much more or less than that as they do there.
-///
 /// Maps of VPLs that are traced are drawn with them; in what is left of the budget those follow that may show
 /// geometry which moved, those first whose VPLs' flux times their age is largest.
+///
+/// What paths carry is shared out by `weigh_by_cells`.
 [[nodiscard]] VplMemory schedule(const VplPaths& plan, const LightTable& lights, const VplMemory& memory,
                                  const VplChecks& checks, const ScheduleSettings& settings);
 

@@ -1,6 +1,7 @@
 #include "renderer/passes/vpl_trace.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/graph/execute.hpp"
 #include "renderer/passes/upload.hpp"
@@ -15,6 +16,11 @@ struct PathBuffers {
     BufferHandle<gpu::Path> paths;
     BufferHandle<gpu::VplPlace> places;
 };
+
+/// Twice the mean distance between VPLs: farther off hardly any sinks, as shaders/lighting.glsl has it.
+float edge_reach(float area, std::uint32_t vpl_count) {
+    return 2.0F * std::sqrt(area / static_cast<float>(vpl_count));
+}
 
 void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
            const Vpls& out) {
@@ -32,6 +38,7 @@ void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tra
     program.set("path_count", path_count);
     program.set("max_bounces", plan.max_bounces);
     program.set("ray_offset", run.value(tracing.metrics).ray_offset());
+    program.set("edge_reach", edge_reach(run.value(tracing.metrics).area, plan.vpl_count));
     program.use();
     gpu.gl().DispatchCompute((path_count + group_size - 1) / group_size, 1, 1);
 }
