@@ -175,9 +175,9 @@ def choice(rows: list[Row], groups: list[Group]) -> dict[str, Any] | None:
         return None
     agrees = is_app_default(best, app_default(), points)
     reason = (
-        f"of the configurations on the front of error and cost over {best['scenes']} scenes it has the least relMSE of"
-        f" the total light, {best['error']:.3g} in the geometric mean, among those whose frame after a move of the"
-        f" camera costs at most {analysis.COST_FACTOR:g} times what 256 unbounded VPLs do, deferred and without"
+        f"of the configurations measured in {best['scenes']} scenes it has the least relMSE of the total light in the"
+        f" scene where it has most, {best['error']:.3g} in {best['worst_scene']}, among those whose frame after a move"
+        f" of the camera costs at most {analysis.COST_FACTOR:g} times what 256 unbounded VPLs do, deferred and without"
         f" visibility: {best['frame_ms']:.2f} times, and {best['full_ms']:.2f} with everything made anew at once"
     )
     return {"id": best["id"], "reason": reason, "is_default_of_app": agrees}

@@ -86,6 +86,17 @@ class BestDefault(unittest.TestCase):
         rows[1]["frame_ms"] = 51.0
         self.assertEqual(analysis.best_default(rows)["id"], "cheap")
 
+    def test_looks_at_the_scene_where_it_is_worst(self) -> None:
+        rows = self.rows("a", 1.0) + self.rows("b", 1.0)
+        rows[1]["total_rel_mse"] = 0.001
+        rows[5]["total_rel_mse"] = 0.45  # of "good", whose mean is still the least
+        best = analysis.best_default(rows)
+        self.assertEqual((best["id"], best["error"], best["worst_scene"]), ("cheap", 0.4, "a"))
+
+    def test_of_equals_takes_the_first_of_the_cheapest(self) -> None:
+        equals = [row("a", name, cost, 0.1) for name, cost in (("slow", 14.0), ("simple", 12.4), ("lists", 12.0))]
+        self.assertEqual(analysis.best_default(self.rows("a", 1.0) + equals)["id"], "simple")
+
     def test_passes_over_what_was_not_measured_everywhere(self) -> None:
         rows = self.rows("a", 1.0) + self.rows("b", 1.0)
         rows[5]["failed"] = "crashed"
