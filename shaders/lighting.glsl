@@ -27,10 +27,11 @@ vec3 irradiance_from_light(Light light, Surface surface) {
     return incident.irradiance * (cos_surface * visibility);
 }
 
-// 1 above the surface that a VPL sits on, 0 from twice as far as its edges on; `aside`: from the VPL, in its plane.
+// 1 above the surface that a VPL sits on, 0 beyond its edges, with a rim a quarter as wide between; `aside`: from the
+// VPL, in its plane. Towards a straight edge `ahead` is the share of the way to it.
 float share_on_surface(Vpl vpl, vec3 aside) {
-    vec3 edges = max(aside * vpl.edges_up, -aside * vpl.edges_down);
-    return clamp(2.0 - max(max(edges.x, edges.y), edges.z), 0.0, 1.0);
+    float ahead = dot(max(aside * vpl.edges_up, -aside * vpl.edges_down), vec3(1.0));
+    return clamp(5.0 - 4.0 * ahead, 0.0, 1.0);
 }
 
 // Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997), kept from growing

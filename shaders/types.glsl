@@ -64,7 +64,7 @@ struct Vpl {
     float pad0;
     vec3 flux;        // reflected flux, lm or W as the lights have it; zero: not alive
     float pad1;
-    vec3 edges_up;    // 1/m, of its surface along +x, +y, +z: vpl_edges.glsl; 0: none near
+    vec3 edges_up;    // 1/m, of its surface along +x, +y, +z, 0 where none is near: vpl_edges.glsl
     float pad2;
     vec3 edges_down;  // along -x, -y, -z
     float pad3;

@@ -3,43 +3,48 @@
 
 uniform float edge_reach;  // metres: how far edges are looked for
 
-const float EDGE_RISE = 1.0 / 32.0;  // of edge_reach: by how much a surface may bend away and still go on
-const int EDGE_BISECTIONS = 4;
+const float EDGE_RISE = 1.0 / 64.0;  // of edge_reach: by how much a surface may bend away and still go on
+const int EDGE_BISECTIONS = 6;
 
-// Whether the plane of a VPL's surface is solid underneath a place above it.
-bool is_above_surface(vec3 place, vec3 normal) {
-    return any_hit(place, -normal, 0.0, 2.0 * EDGE_RISE * edge_reach);
-}
-
-// Distance in metres to the edge along a unit direction in the surface; infinite if there is none, or something that
-// stands on the surface comes first.
+// Distance in metres to the edge along a unit direction in the surface, from a place EDGE_RISE above it; infinite if there
+// is none, or something that stands on the surface comes first.
 float edge_distance(vec3 above, vec3 along, vec3 normal) {
-    float far = closest_hit(above, along, 0.0, edge_reach).t - EDGE_RISE * edge_reach;
-    if (far <= 0.0 || is_above_surface(above + far * along, normal)) return 1.0 / 0.0;
+    float rise = EDGE_RISE * edge_reach;
     float near = 0.0;
-    for (int i = 0; i < EDGE_BISECTIONS; ++i) {
-        float middle = 0.5 * (near + far);
-        if (is_above_surface(above + middle * along, normal)) {
-            near = middle;
+    float far = closest_hit(above, along, 0.0, edge_reach).t - rise;
+    float at = far;
+    for (int i = 0; i <= EDGE_BISECTIONS; ++i) {
+        bool goes_on = any_hit(above + at * along, -normal, 0.0, 2.0 * rise);
+        if (i == 0 && (goes_on || far <= 0.0)) return 1.0 / 0.0;
+        if (goes_on) {
+            near = at;
         } else {
-            far = middle;
+            far = at;
         }
+        at = 0.5 * (near + far);
     }
-    return far;
+    return at;
 }
 
-// Edges in the directions of the world's axes, or against them (`side` -1), each laid into the surface's plane: of a place
-// at the edge in one of them, relative to the VPL, that coordinate's inverse; 0 where there is no edge. Axes within 18
-// degrees of the normal say nothing.
-vec3 surface_edges(vec3 position, vec3 normal, float side) {
+// Edges in the directions of the world's axes and against them, each laid into the surface's plane: the inverse of the
+// distance, times the sine of the angle between axis and normal. Of a straight edge e metres away, whose normal in the
+// plane is m, these are m / e, whichever way the plane lies: their scalar product with a place in the plane, relative to
+// the VPL, is 1 all along the edge. 0 where there is none; axes within 18 degrees of the normal say nothing.
+void surface_edges(vec3 position, vec3 normal, out vec3 edges_up, out vec3 edges_down) {
     vec3 above = position + EDGE_RISE * edge_reach * normal;
-    vec3 edges = vec3(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
+    edges_up = edges_down = vec3(0.0);
+    for (int k = 0; k < 6; ++k) {
+        int axis = k / 2;
         vec3 along = -normal[axis] * normal;
         along[axis] += 1.0;
-        float steepness = length(along);
-        if (steepness < 0.3) continue;
-        edges[axis] = 1.0 / (steepness * edge_distance(above, side * along / steepness, normal));
+        float sine = length(along);
+        if (sine < 0.3) continue;
+        bool up = k % 2 == 0;
+        float edge = sine / edge_distance(above, (up ? along : -along) / sine, normal);
+        if (up) {
+            edges_up[axis] = edge;
+        } else {
+            edges_down[axis] = edge;
+        }
     }
-    return edges;
 }

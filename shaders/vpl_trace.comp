@@ -40,9 +40,7 @@ float first_window(Light light, VplRecord first) {
 
 Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint tile) {
     Vpl vpl = Vpl(position, tile, normal, 0.0, flux, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
-    if (flux == vec3(0.0)) return vpl;
-    vpl.edges_up = surface_edges(position, normal, 1.0);
-    vpl.edges_down = surface_edges(position, normal, -1.0);
+    if (flux != vec3(0.0)) surface_edges(position, normal, vpl.edges_up, vpl.edges_down);
     return vpl;
 }
 

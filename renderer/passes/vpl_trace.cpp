@@ -17,9 +17,9 @@ struct PathBuffers {
     BufferHandle<gpu::VplPlace> places;
 };
 
-/// Twice the mean distance between VPLs: farther off hardly any sinks, as shaders/lighting.glsl has it.
+/// Four times the mean distance between VPLs: farther off hardly any sinks, as shaders/lighting.glsl has it.
 float edge_reach(float area, std::uint32_t vpl_count) {
-    return 2.0F * std::sqrt(area / static_cast<float>(vpl_count));
+    return 4.0F * std::sqrt(area / static_cast<float>(vpl_count));
 }
 
 void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
