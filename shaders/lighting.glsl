@@ -44,7 +44,8 @@ float share_on_surface(Vpl vpl, vec3 aside) {
 float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float height = -dot(vpl.normal, to_vpl);
-    if (height <= 0.0) return 0.0;
+    if (height <= -crease_slack) return 0.0;
+    height = max(height, 0.0);
     float square = 1.0 - max(-dot(vpl.normal, surface.normal), 0.0);
     square *= share_on_surface(vpl, -to_vpl - height * vpl.normal);
     float depth = square * vpl_radius2 * inversesqrt(vpl_radius2 + max(dot(to_vpl, to_vpl), 1e-12));

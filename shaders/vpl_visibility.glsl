@@ -4,6 +4,10 @@
 #include "surface.glsl"
 #include "types.glsl"
 
+// A pixel on the line where two surfaces meet may lie behind the other one, by the rasteriser's rounding of corners to a
+// 256th of a pixel: by so many metres it still counts as before it.
+uniform float crease_slack;
+
 #if defined(VPL_VISIBILITY_MAPS)
 
 #include "vpl_atlas.glsl"
@@ -64,11 +68,11 @@ float vpl_visibility(Vpl vpl, Surface surface) {
 uniform float vpl_ray_offset;  // metres, off both surfaces
 
 float vpl_visibility(Vpl vpl, Surface surface) {
+    vec3 target = vpl.position + vpl_ray_offset * vpl.normal;
     vec3 origin = surface.position + vpl_ray_offset * surface.normal;
-    vec3 to_vpl = vpl.position + vpl_ray_offset * vpl.normal - origin;
-    // A pixel on the line where two surfaces meet may lie behind the other one, by the rasteriser's rounding of corners to
-    // a 256th of a pixel. What is hit this close to it is that other surface.
-    float t_min = 16.0 * vpl_ray_offset / max(length(to_vpl), 1e-30);
+    origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;  // no lower than the target, above its surface
+    vec3 to_vpl = target - origin;
+    float t_min = crease_slack / max(length(to_vpl), 1e-30);
     return any_hit(origin, to_vpl, t_min, 1.0) ? 0.0 : 1.0;
 }
 

@@ -98,6 +98,7 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
     gpu.bind_storage(BINDING_VPLS, run.object(lighting.vpls->vpls));
     const SceneMetrics& metrics = run.value(lighting.metrics);
     program.set("vpl_radius2", vpl_radius2(lighting.geometry_bound, vpls, metrics.area));
+    program.set("crease_slack", 16.0F * metrics.ray_offset());
     if (lighting.vpl_maps) {
         bind_vpl_maps(gpu, run, program, *lighting.vpl_maps, metrics);
     }

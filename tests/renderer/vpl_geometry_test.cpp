@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/renderer/scene_builder.hpp"
+#include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
 
@@ -108,6 +108,28 @@ TEST_SUITE("geometry term") {
                 // to the wall, the lowest rows would be off by an eighth of the peak and more.
                 CHECK(std::abs(found[y] - exact) < 0.07 * peak);
             }
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplGeometry, "no pixel on the line where two walls meet is dark") {
+        // The camera looks straight into a box: its creases run at 45 degrees, through the centres of pixels.
+        const Scene scene = shipped_scene("furnace");
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::indirect;
+        const auto picture = [&](VplVisibility method) {
+            configuration.visibility.method = method;
+            configure(configuration);
+            return render(scene, {96, 96});
+        };
+        const Picture open = picture(VplVisibility::none);
+        // All walls are lit alike, but for what is taken off near VPLs, most in the corners of the box.
+        CHECK(static_cast<double>(std::ranges::min_element(open.pixels, {}, &glm::vec3::r)->r) >
+              0.5 * mean(open));
+        CHECK(worst_error(picture(VplVisibility::rays), open, 0.0) < 1e-4);  // sums in another order
+        // Half of what a map's look-up reads may be the other wall.
+        const Picture mapped = picture(VplVisibility::maps);
+        for (std::size_t i = 0; i < open.pixels.size(); ++i) {
+            CHECK(mapped.pixels[i].r > 0.5F * open.pixels[i].r);
         }
     }
 }
