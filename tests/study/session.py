@@ -20,7 +20,8 @@ SCENES = BUILD / "study" / "scenes"  # those that are not shipped
 
 
 def pictures_of(group: Group) -> pathlib.Path:
-    """Where the group's pictures and heat maps go; those that the page shows are copied from there."""
+    """Where the group's pictures and heat maps go; those that the page shows are copied from there to `Study.out`, which
+    lies elsewhere: its own folder of pictures is made anew with each page."""
     return BUILD / "study" / "pictures" / group.name.replace("/", "-")
 
 

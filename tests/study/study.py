@@ -36,7 +36,7 @@ def names(text: str) -> list[str]:
 
 
 def arguments() -> argparse.Namespace:
-    parts, where = SUITES + PROGRAM_PARTS, "default: tests/study/results for a whole study, else build/study"
+    parts, where = SUITES + PROGRAM_PARTS, "default: tests/study/results for a whole study, else build/study/results"
     parser = argparse.ArgumentParser(prog="tests/study/run", description="Charts Candela's speed against its accuracy.")
     parser.add_argument("--quick", action="store_true", help="a small matrix, and checks of what must hold anywhere")
     parser.add_argument("--scenes", metavar="A,B", type=names, help="only these")
@@ -50,7 +50,7 @@ def arguments() -> argparse.Namespace:
     still = [group.scene for group in planned(given.quick, given.part, None)]
     require_known(parser, "--scenes", given.scenes, still + moving)
     whole = not (given.quick or given.part or given.scenes)
-    given.out = (given.out or (RESULTS if whole else BUILD / "study")).resolve()
+    given.out = (given.out or (RESULTS if whole else BUILD / "study" / "results")).resolve()
     return given
 
 
