@@ -1,4 +1,4 @@
-// Where the surface that a VPL sits on ends, as far as that is near. Of a surface that goes on nothing tells where to.
+// Where the surface that a VPL sits on ends, as far as that is near: what lies beyond does not stand on it.
 #include "bvh.glsl"
 
 uniform float edge_reach;  // metres: how far edges are looked for

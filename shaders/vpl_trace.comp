@@ -38,6 +38,7 @@ float first_window(Light light, VplRecord first) {
     return range_window(distance(light.position, first.position), light.range);
 }
 
+// Edges are looked for anew whenever VPLs are written: what stands around a kept one may have moved.
 Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint tile) {
     Vpl vpl = Vpl(position, tile, normal, 0.0, flux, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     if (flux != vec3(0.0)) surface_edges(position, normal, vpl.edges_up, vpl.edges_down);

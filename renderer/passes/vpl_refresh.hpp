@@ -37,7 +37,7 @@ struct RefreshSources {
 /// epoch, after a change of settings, and for each further set of VPLs that refinement asks for; when
 /// refinement falls back, the VPLs of the last set are kept and replaced within the budget. Where lights or
 /// geometry changed it tests the paths on the GPU and waits for the result: one synchronisation in such a
-/// frame, none in others.
+/// frame, and another for the VPLs themselves where something moved and they have maps; none in others.
 [[nodiscard]] DueVpls add_vpl_refresh(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                       const Tracing& tracing, const RefreshSources& sources,
                                       const VplSettings& settings, bool has_maps);
