@@ -164,6 +164,16 @@ class EditTable : public RenderFixture {
         };
     }
 
+    /// The first frame, and each edit in a scene at rest.
+    void check_all() {
+        check("first frame");
+        for (const Edit& edit : edits()) {
+            come_to_rest();
+            edit.apply();
+            check(edit.name);
+        }
+    }
+
     /// A frame; checks its passes against the row of that name.
     void check(const std::string& name) {
         CAPTURE(name);
@@ -211,24 +221,14 @@ TEST_SUITE("edits") {
             configuration_.path = path;
             configuration_.show = Show::total;
             renderer.invalidate();
-            check("first frame");
-            for (const Edit& edit : edits()) {
-                come_to_rest();
-                edit.apply();
-                check(edit.name);
-            }
+            check_all();
         }
         CHECK(checked_.size() == rows_.size());
     }
 
     TEST_CASE_FIXTURE(EditTable, "without a budget the same passes run, less the one that spreads the work") {
         configuration_.vpls.budget = 0;
-        check("first frame");
-        for (const Edit& edit : edits()) {
-            come_to_rest();
-            edit.apply();
-            check(edit.name);
-        }
+        check_all();
         CHECK(checked_.size() == rows_.size());
     }
 
