@@ -12,4 +12,8 @@ std::unique_ptr<HeadlessContext> HeadlessContext::create(ContextKind kind, const
     return kind == ContextKind::egl ? create_egl_context(options) : create_osmesa_context(options);
 }
 
+bool HeadlessContext::is_built(ContextKind kind) {
+    return kind == ContextKind::egl || has_osmesa();
+}
+
 }  // namespace candela

@@ -32,6 +32,10 @@ class HeadlessContext {
     [[nodiscard]] static std::unique_ptr<HeadlessContext> create(ContextKind kind,
                                                                  const ContextOptions& options = {});
 
+    /// Whether the library was built with contexts of this kind: EGL always, OSMesa where its header was
+    /// there.
+    [[nodiscard]] static bool is_built(ContextKind kind);
+
     HeadlessContext(const HeadlessContext&) = delete;
     HeadlessContext& operator=(const HeadlessContext&) = delete;
     virtual ~HeadlessContext() = default;

@@ -81,4 +81,8 @@ std::unique_ptr<HeadlessContext> create_osmesa_context(const ContextOptions&) {
     }
 }
 
+bool has_osmesa() {
+    return true;
+}
+
 }  // namespace candela

@@ -218,7 +218,7 @@ glm::vec3 lattice_point(int reach) {
     return {x, y, *rc::gen::inRange(-reach, reach + 1)};
 }
 
-TEST_CASE("bvh: hits equal brute force on a lattice") {
+TEST_CASE("bvh: hits equal brute force on a lattice" * doctest::test_suite("random")) {
     CHECK(rc::check("closest and any hit agree", [] {
         Triangles triangles(*rc::gen::inRange<std::size_t>(0, 60));
         for (Triangle& triangle : triangles) {

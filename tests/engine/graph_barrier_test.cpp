@@ -76,7 +76,8 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
     return events;
 }
 
-TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and none that no pair needs") {
+TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and none that no pair needs" *
+          doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.backward_afters = false});
         const bool shuffled = *rc::gen::arbitrary<bool>();

@@ -25,7 +25,8 @@ bool always(const Graph& graph, std::size_t pass) {
     return always;
 }
 
-TEST_CASE("graph: running what is dirty gives what the declaration means, in any legal order") {
+TEST_CASE("graph: running what is dirty gives what the declaration means, in any legal order" *
+          doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false, .backward_afters = false});
         Host host{0, std::vector<Content>(graph.resources.size(), 1)};
@@ -43,7 +44,8 @@ TEST_CASE("graph: running what is dirty gives what the declaration means, in any
     }));
 }
 
-TEST_CASE("graph: frames that remember the last give what the declaration means, in any legal order") {
+TEST_CASE("graph: frames that remember the last give what the declaration means, in any legal order" *
+          doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .backward_afters = false});
         Host host{0, std::vector<Content>(graph.resources.size(), 1)};
@@ -66,7 +68,8 @@ TEST_CASE("graph: frames that remember the last give what the declaration means,
 }
 
 TEST_CASE(
-    "graph: when nothing has changed, only those run that always do, and those that they lack results of") {
+    "graph: when nothing has changed, only those run that always do, and those that they lack results of" *
+    doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false, .backward_afters = false});
         const Host host{0, std::vector<Content>(graph.resources.size(), 1)};

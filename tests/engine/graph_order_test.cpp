@@ -168,7 +168,8 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
 }
 
 TEST_CASE(
-    "graph: random graphs are culled, ordered and given objects as a slow check says, or told as cyclic") {
+    "graph: random graphs are culled, ordered and given objects as a slow check says, or told as cyclic" *
+    doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({});
         const Precedence precedes = precedence(graph);
@@ -185,7 +186,8 @@ TEST_CASE(
     }));
 }
 
-TEST_CASE("graph: shuffled orders are legal, and declaration order holds where it is") {
+TEST_CASE("graph: shuffled orders are legal, and declaration order holds where it is" *
+          doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.backward_afters = false});
         const Precedence precedes = precedence(graph);

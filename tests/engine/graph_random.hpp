@@ -36,8 +36,8 @@ struct Access {
 };
 
 struct Pass {
-    std::vector<Access> accesses;
-    std::set<std::size_t> after;
+    std::vector<Access> accesses{};
+    std::set<std::size_t> after{};
     bool side_effect = false;
     bool reads_world = false;
 };

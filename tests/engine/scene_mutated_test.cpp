@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/engine/malformed_gltf.hpp"
+#include "tests/seed.hpp"
 
 using namespace candela;
 using namespace candela::test;
@@ -66,14 +67,14 @@ void check_edited(const Bytes& sound, unsigned int seed, int rounds) {
 
 }  // namespace
 
-TEST_SUITE("mutated glTF") {
-    TEST_CASE("the Cornell box") {
-        check_edited(read(cornell), 1, 1500);
+TEST_SUITE("random") {
+    TEST_CASE("mutated glTF: the Cornell box") {
+        check_edited(read(cornell), test_seed(1), 1500);
     }
-    TEST_CASE("everything at once, as text") {
-        check_edited(complete_scene().gltf(), 2, 1500);
+    TEST_CASE("mutated glTF: everything at once, as text") {
+        check_edited(complete_scene().gltf(), test_seed(2), 1500);
     }
-    TEST_CASE("everything at once, as binary") {
-        check_edited(complete_scene().glb(), 3, 3000);
+    TEST_CASE("mutated glTF: everything at once, as binary") {
+        check_edited(complete_scene().glb(), test_seed(3), 3000);
     }
 }

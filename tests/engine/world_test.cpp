@@ -387,7 +387,7 @@ void step(const Edit& edit, World& world, Model& model) {
     }
 }
 
-TEST_CASE("world: random edits leave what a plain map holds") {
+TEST_CASE("world: random edits leave what a plain map holds" * doctest::test_suite("random")) {
     using Raw = std::tuple<std::uint8_t, std::uint8_t, std::uint8_t>;
     CHECK(rc::check("world equals model", [](const std::vector<Raw>& script) {
         World world;

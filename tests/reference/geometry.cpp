@@ -76,7 +76,7 @@ RTCRayHit to_embree_query(const Ray& ray) {
 
 /// A look's context: what the filter needs beside Embree's own.
 struct LookContext {
-    RTCIntersectContext embree;
+    embree::QueryContext embree;
     const Geometry* geometry;
     glm::vec3 direction;  ///< of the ray
     std::vector<Hit>* blended;
@@ -99,7 +99,7 @@ Geometry::Geometry(const World& world) {
     measure();
     device_.reset(new_device());
     solids_ = accelerate(blended_group, RTC_SCENE_FLAG_ROBUST);
-    all_ = accelerate(groups_.size(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    all_ = accelerate(groups_.size(), RTC_SCENE_FLAG_ROBUST | embree::filtered_queries);
 }
 
 void Geometry::gather(const World& world) {
@@ -215,28 +215,22 @@ std::optional<Hit> Geometry::to_hit(const RTCRayHit& query) const {
 }
 
 std::optional<Hit> Geometry::closest(const Ray& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRayHit query = to_embree_query(ray);
-    rtcIntersect1(solids_.get(), &context, &query);
+    embree::intersect(solids_.get(), query);
     return to_hit(query);
 }
 
 bool Geometry::is_blocked(const Ray& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
     RTCRay query = to_embree(ray);
-    rtcOccluded1(solids_.get(), &context, &query);
+    embree::occluded(solids_.get(), query);
     return query.tfar < 0.0F;  // Embree's mark of a ray that met something
 }
 
 Sight Geometry::look(const Ray& ray) const {
     Sight sight;
     LookContext context{{}, this, ray.direction, &sight.blended};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.filter = skip_unseen;
     RTCRayHit query = to_embree_query(ray);
-    rtcIntersect1(all_.get(), &context.embree, &query);
+    embree::intersect(all_.get(), query, context.embree, skip_unseen);
     sight.solid = to_hit(query);
 
     if (sight.solid) {

@@ -6,11 +6,11 @@
 #include <type_traits>
 #include <vector>
 
-#include <embree3/rtcore.h>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/ecs/world.hpp"
+#include "tests/reference/embree.hpp"
 #include "tests/reference/materials.hpp"
 
 namespace candela::reference {

@@ -42,28 +42,6 @@ class Changes : public RenderFixture {
     }
 };
 
-/// The picture of the Cornell box in a context of that kind, and the driver's name; nothing without such a
-/// context.
-struct ContextPicture {
-    Picture picture;
-    std::string driver;
-};
-std::optional<ContextPicture> picture_in(ContextKind kind) {
-    std::unique_ptr<HeadlessContext> context;
-    try {
-        context = HeadlessContext::create(kind);
-    } catch (const ContextError&) {
-        return std::nullopt;
-    }
-    context->make_current();
-    TestedRenderer renderer(context->get_proc());
-    REQUIRE(renderer.configure(linear_configuration()).empty());
-    const Scene scene = cornell_box();
-    const RenderTarget target(renderer.device(), size);
-    renderer.render(scene.world, scene.camera, target.target());
-    return ContextPicture{target.read(), renderer.device().renderer()};
-}
-
 }  // namespace
 
 TEST_SUITE("changes") {
@@ -146,18 +124,6 @@ TEST_SUITE("changes") {
         configure(configuration);
         CHECK(render(scene, size) == first);
         CHECK(fresh_picture(scene) == first);
-    }
-
-    TEST_CASE_FIXTURE(Changes, "contexts of one driver give the same picture, bit for bit") {
-        const auto egl = picture_in(ContextKind::egl);
-        const auto osmesa = picture_in(ContextKind::osmesa);
-        context->make_current();
-        REQUIRE((egl || osmesa));
-        if (!egl || !osmesa || egl->driver != osmesa->driver) {
-            MESSAGE("nothing to compare: there are not two contexts of one driver here");
-            return;
-        }
-        CHECK(egl->picture == osmesa->picture);
     }
 
     TEST_CASE("VPLs keep their places while lights move and change a little") {

@@ -114,7 +114,8 @@ TEST_SUITE("emission cells") {
               doctest::Approx(-0.6));
     }
 
-    TEST_CASE("the cells of any points partition the domain, and the largest hole is where it is found") {
+    TEST_CASE("the cells of any points partition the domain, and the largest hole is where it is found" *
+              doctest::test_suite("random")) {
         CHECK(rc::check("areas are not negative and sum to the domain's", [] {
             std::mt19937 random(*rc::gen::arbitrary<unsigned>());
             const EmissionDomain domain = *rc::gen::elementOf(domains);

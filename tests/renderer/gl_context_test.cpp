@@ -81,6 +81,10 @@ TEST_SUITE("gl context") {
     }
 
     TEST_CASE("EGL and OSMesa keep apart in one process") {
+        if (!HeadlessContext::is_built(ContextKind::osmesa)) {
+            MESSAGE("nothing to keep apart: this build is without OSMesa");
+            return;
+        }
         check_that_places_keep_apart({ContextKind::egl, ContextKind::osmesa});
         check_that_places_keep_apart(
             {ContextKind::egl, ContextKind::osmesa, ContextKind::egl, ContextKind::osmesa, ContextKind::egl});
@@ -88,12 +92,9 @@ TEST_SUITE("gl context") {
 
     TEST_CASE("a destroyed context leaves no other disturbed") {
         Place stays(tested_context(), 7);
-        {
-            const Place goes(ContextKind::egl, 1);
-            stays.context->make_current();
-        }
-        {
-            const Place goes(ContextKind::osmesa, 2);
+        for (const ContextKind kind : {ContextKind::egl, ContextKind::osmesa}) {
+            if (!HeadlessContext::is_built(kind)) continue;
+            const Place goes(kind, 1);
             stays.context->make_current();
         }
         stays.context->make_current();

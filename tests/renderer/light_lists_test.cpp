@@ -95,7 +95,7 @@ double mean_lit(const Scene& scene, glm::uvec2 size, std::uint32_t tile_size) {
 TEST_SUITE("light lists") {
     TEST_CASE_FIXTURE(PathFixture, "lists bound by depth hold few lights that reach nothing") {
         const Scene scene = shipped_scene("hall-256");
-        constexpr glm::uvec2 size{320, 240};
+        constexpr glm::uvec2 size{160, 120};
         const auto listed = [&](ShadingPath path) {
             Configuration configuration = direct_only();
             configuration.path = path;
@@ -106,7 +106,7 @@ TEST_SUITE("light lists") {
         const double lit = mean_lit(scene, size, renderer.configuration().lists.tile_size);
         const double bound = listed(ShadingPath::forward_plus);
         const double unbound = listed(ShadingPath::tiled_forward);
-        MESSAGE("hall-256 at 320 × 240: in the mean a tile's surfaces are lit by ", lit,
+        MESSAGE("hall-256 at 160 × 120: in the mean a tile's surfaces are lit by ", lit,
                 " lights; its list holds ", bound, " bound by depth (", bound / lit, " times as many) and ",
                 unbound, " unbound");
         REQUIRE(lit > 1.0);

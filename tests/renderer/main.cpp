@@ -1,4 +1,3 @@
-#define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
 #include <cstdio>
@@ -6,8 +5,9 @@
 #include <vector>
 
 #include "tests/renderer/context_fixture.hpp"
+#include "tests/seed.hpp"
 
-/// doctest's main with two options more: `--context=egl|osmesa`, by default egl, and `--verify`, for
+/// As tests/main.cpp, with two options more: `--context=egl|osmesa`, by default egl, and `--verify`, for
 /// renderers that run clean passes again and compare.
 int main(int argc, char** argv) {
     constexpr std::string_view option = "--context=";
@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
         }
         candela::set_tested_context(kind == "egl" ? candela::ContextKind::egl : candela::ContextKind::osmesa);
     }
+    if (!candela::take_test_seed()) return 2;
     doctest::Context tests(static_cast<int>(others.size()), others.data());
     return tests.run();
 }

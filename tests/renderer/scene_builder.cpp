@@ -231,12 +231,12 @@ PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size,
     const double aspect = extent.x / extent.y;
     const double across = (2.0 * (x + 0.5) / extent.x - 1.0) * aspect;
     const double upwards = 2.0 * (y + 0.5) / extent.y - 1.0;
-    const glm::dvec3 eye(pose.translation);
+    const glm::dvec3 origin(pose.translation);
     if (camera.projection == Camera::Projection::orthographic) {
-        return {eye + static_cast<double>(camera.half_height) * (across * right + upwards * up), forward};
+        return {origin + static_cast<double>(camera.half_height) * (across * right + upwards * up), forward};
     }
     const double tangent = std::tan(static_cast<double>(camera.vertical_fov) / 2.0);
-    return {eye, forward + tangent * (across * right + upwards * up)};
+    return {origin, forward + tangent * (across * right + upwards * up)};
 }
 
 Picture expected_picture(const Scene& scene, glm::uvec2 size, glm::dvec3 point, glm::dvec3 normal,

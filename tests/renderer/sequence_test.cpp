@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/renderer/random_edits.hpp"
+#include "tests/seed.hpp"
 
 using namespace candela;
 
@@ -42,9 +43,9 @@ class Sequence : public RenderFixture {
 
 TEST_SUITE("sequences") {
     TEST_CASE_FIXTURE(Sequence, "after any edits a frame is that of a fresh renderer, bit for bit") {
-        for (const unsigned seed : {1U, 2U, 3U, 4U}) {
-            CAPTURE(seed);
-            RandomEdits edits(cornell_box(), unlimited(), seed);
+        for (const unsigned sequence : {1U, 2U, 3U, 4U}) {
+            CAPTURE(sequence);
+            RandomEdits edits(cornell_box(), unlimited(), test_seed(sequence));
             std::string history;
             for (std::size_t step = 0; step < steps; ++step) {
                 history += edits.next();

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tests/renderer/random_edits.hpp"
+#include "tests/seed.hpp"
 
 using namespace candela;
 
@@ -310,21 +311,21 @@ TEST_SUITE("vpl refresh") {
 
     TEST_CASE_FIXTURE(Refresh,
                       "random edits: every frame keeps account and budget, and debt comes to an end") {
-        for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
-            CAPTURE(seed);
-            const VplVisibility visibility = seed % 2 == 0 ? VplVisibility::maps : VplVisibility::none;
-            RandomEdits edits(cornell_box(), incremental(96, visibility), seed);
+        for (const unsigned sequence : {1U, 2U, 3U, 4U, 5U, 6U}) {
+            CAPTURE(sequence);
+            const VplVisibility visibility = sequence % 2 == 0 ? VplVisibility::maps : VplVisibility::none;
+            RandomEdits edits(cornell_box(), incremental(96, visibility), test_seed(sequence));
             check_edits(edits, 40);
         }
     }
 
     TEST_CASE_FIXTURE(Refresh, "random edits among hundreds of lights, most of them without a path") {
-        for (const unsigned seed : {1U, 2U}) {
-            CAPTURE(seed);
+        for (const unsigned sequence : {1U, 2U}) {
+            CAPTURE(sequence);
             Scene scene = cluttered_room();
             scene.light = add(scene.world, at({0.1F, 1.4F, 0.2F}), PointLight{.intensity = 3.0F});
             add_ranged_lights(scene.world, 300, 0.7F);
-            RandomEdits edits(std::move(scene), incremental(96, VplVisibility::maps), seed);
+            RandomEdits edits(std::move(scene), incremental(96, VplVisibility::maps), test_seed(sequence));
             check_edits(edits, 30);
             CHECK(vpls().paths < renderer.report().lights.count / 2);
         }

@@ -189,6 +189,7 @@ TEST_SUITE("VPL visibility") {
         add(scene.world, at({0.5F, 0.3F, 0.2F}), PointLight{});
         scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
         Configuration configuration = indirect_only(VplVisibility::none);
+        configuration.vpls.count = 64;  // each of which a pixel would miss more than it would one of many
         const Picture lit = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::maps;
         for (const std::uint32_t resolution : resolutions) {
@@ -211,6 +212,7 @@ TEST_SUITE("VPL visibility") {
     TEST_CASE_FIXTURE(VplVisibilityTests, "maps come close to rays as they grow finer") {
         const Scene scene = cornell_box();
         Configuration configuration = indirect_only(VplVisibility::rays);
+        configuration.vpls.count = 96;
         configuration.vpls.bounces = 3;
         const Picture exact = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::none;
@@ -224,7 +226,7 @@ TEST_SUITE("VPL visibility") {
             CHECK(error < 0.7 * coarser);  // more than noise would give
             coarser = error;
         }
-        // 256 texels a side: 16 tiles a layer, and so 16 layers. A texel is 1/100 rad, a blurred edge 2 cm
+        // 256 texels a side: 16 tiles a layer, and so 6 layers. A texel is 1/100 rad, a blurred edge 2 cm
         // wide.
         CHECK(coarser < 0.02);
     }
@@ -254,6 +256,7 @@ TEST_SUITE("VPL visibility") {
         }
         // At the very edge of a shadow the rounding of a position decides about a whole VPL.
         Configuration configuration = indirect_only(VplVisibility::rays);
+        configuration.vpls.count = 64;
         configuration.path = ShadingPath::forward;
         const Picture reference = picture(scene, configuration);
         for (const ShadingPath path : all_shading_paths) {

@@ -1,0 +1,79 @@
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{48, 36};
+
+/// A small picture by every path and every visibility of VPLs.
+std::vector<Configuration> configurations() {
+    std::vector<Configuration> all;
+    for (const ShadingPath path : all_shading_paths) {
+        for (const VplVisibility method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
+            Configuration configuration = linear_configuration(path);
+            configuration.vpls.count = 24;
+            configuration.visibility = {.method = method, .map_resolution = 16};
+            configuration.shadows.cube_resolution = configuration.shadows.map_resolution = 64;
+            all.push_back(configuration);
+        }
+    }
+    return all;
+}
+
+struct Shown {
+    std::string driver;
+    std::vector<Picture> pictures;
+};
+
+/// The Cornell box in a context of that kind. The light then moves, so that VPLs are brought after it.
+Shown show(ContextKind kind) {
+    const auto context = HeadlessContext::create(kind, {.debug = true});
+    context->make_current();
+    TestedRenderer renderer(context->get_proc());
+    const RenderTarget target(renderer.device(), size);
+    Shown shown{renderer.device().renderer(), {}};
+    for (const Configuration& configuration : configurations()) {
+        Scene scene = cornell_box();
+        REQUIRE(renderer.configure(configuration).empty());
+        renderer.invalidate();
+        for (int frame = 0; frame < 2; ++frame) {
+            renderer.render(scene.world, scene.camera, target.target());
+            shown.pictures.push_back(target.read());
+            scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.2F; });
+        }
+    }
+    for (const gl::DebugMessage& message : renderer.device().take_messages()) {
+        INFO(message.text);
+        CHECK_FALSE(message.is_fault());
+    }
+    return shown;
+}
+
+}  // namespace
+
+TEST_SUITE("contexts agree") {
+    TEST_CASE("EGL and OSMesa give the same pictures, bit for bit, where they are one driver") {
+        if (!HeadlessContext::is_built(ContextKind::osmesa)) {
+            MESSAGE("nothing to compare: this build is without OSMesa");
+            return;
+        }
+        const Shown egl = show(ContextKind::egl);
+        const Shown osmesa = show(ContextKind::osmesa);
+        if (egl.driver != osmesa.driver) {
+            MESSAGE("nothing to compare: EGL is ", egl.driver, ", OSMesa is ", osmesa.driver);
+            return;
+        }
+        for (std::size_t i = 0; i < egl.pictures.size(); ++i) {
+            CAPTURE(i);
+            CHECK(mean(egl.pictures[i]) > 0.0);
+            CHECK(egl.pictures[i] == osmesa.pictures[i]);
+        }
+    }
+}
