@@ -10,14 +10,14 @@ namespace candela::sandbox {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json to_json(const glm::dvec3& rgb) {
+OrderedJson to_json(const glm::dvec3& rgb) {
     return {rgb.r, rgb.g, rgb.b};
 }
 
-Json to_json(const FrameReport& frame) {
-    Json passes = Json::array();
+OrderedJson to_json(const FrameReport& frame) {
+    OrderedJson passes = OrderedJson::array();
     for (const PassReport& pass : frame.passes) {
         passes.push_back(
             {{"name", pass.name}, {"ran", pass.ran}, {"cpu_ms", pass.cpu_ms}, {"gpu_ms", pass.gpu_ms}});
@@ -25,15 +25,15 @@ Json to_json(const FrameReport& frame) {
     return {{"index", frame.index}, {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"passes", passes}};
 }
 
-Json to_json(const VplReport& vpls) {
-    Json flux;
+OrderedJson to_json(const VplReport& vpls) {
+    OrderedJson flux;
     for (const EnergyLine& line : energy_lines(vpls.flux)) flux[line.name] = to_json(line.value);
     flux["roulette_error"] = to_json(vpls.flux.roulette_error);
     return {{"requested", vpls.requested}, {"alive", vpls.alive}, {"paths", vpls.paths},
             {"debt", vpls.debt},           {"stale", vpls.stale}, {"flux", flux}};
 }
 
-Json to_json(const LightReport& lights) {
+OrderedJson to_json(const LightReport& lights) {
     return {{"count", lights.count},
             {"with_shadow", lights.with_shadow},
             {"without_shadow", lights.without_shadow},
@@ -44,7 +44,7 @@ Json to_json(const LightReport& lights) {
             {"overflowed_tiles", 0}};
 }
 
-Json to_json(const MemoryUse& memory) {
+OrderedJson to_json(const MemoryUse& memory) {
     return {{"texture_bytes", memory.texture_bytes},
             {"buffer_bytes", memory.buffer_bytes},
             {"shared_by_aliasing_bytes", memory.shared_by_aliasing_bytes}};
@@ -83,22 +83,23 @@ std::string vpl_table(const VplReport& vpls) {
 }  // namespace
 
 std::string to_json(const RunReport& report) {
-    Json frames = Json::array();
+    OrderedJson frames = OrderedJson::array();
     for (const FrameReport& frame : report.frames) frames.push_back(to_json(frame));
-    const Json json = {{"version", CANDELA_VERSION},
-                       {"gl_renderer", report.state.gl_renderer},
-                       {"context", report.context},
-                       {"scene", report.scene},
-                       {"animation", report.animation ? Json(*report.animation) : Json(nullptr)},
-                       {"triangles", report.state.triangles},
-                       {"size", {report.size.x, report.size.y}},
-                       {"config", Json::parse(write_configuration(report.configuration))},
-                       {"frames", frames},
-                       {"vpls", report.state.vpls ? to_json(*report.state.vpls) : Json(nullptr)},
-                       {"lights", to_json(report.state.lights)},
-                       {"memory", to_json(report.state.memory)}};
+    const OrderedJson json = {
+        {"version", CANDELA_VERSION},
+        {"gl_renderer", report.state.gl_renderer},
+        {"context", report.context},
+        {"scene", report.scene},
+        {"animation", report.animation ? OrderedJson(*report.animation) : OrderedJson(nullptr)},
+        {"triangles", report.state.triangles},
+        {"size", {report.size.x, report.size.y}},
+        {"config", OrderedJson::parse(write_configuration(report.configuration))},
+        {"frames", frames},
+        {"vpls", report.state.vpls ? to_json(*report.state.vpls) : OrderedJson(nullptr)},
+        {"lights", to_json(report.state.lights)},
+        {"memory", to_json(report.state.memory)}};
     // A path may hold bytes that are no text.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string to_table(const FrameReport& frame, const Report& state) {

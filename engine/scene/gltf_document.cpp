@@ -27,8 +27,6 @@ using Json = nlohmann::json;
 // deep.
 constexpr int deepest_nesting = 256;
 
-constexpr std::string_view lights_extension = "KHR_lights_punctual";
-
 /// The two parts of a glTF file; a .gltf has no binary part.
 struct Container {
     Bytes json;

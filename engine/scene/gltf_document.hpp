@@ -11,6 +11,9 @@
 
 namespace candela::gltf {
 
+/// Of the extensions that a file may require, the one that is read.
+inline constexpr const char* lights_extension = "KHR_lights_punctual";
+
 /// A checked glTF document with its buffers loaded (`model.buffers[i].data`). Images stay encoded:
 /// `model.images[i]` has its name and either `uri` or `bufferView`. Animations and skins are left out.
 struct Document {

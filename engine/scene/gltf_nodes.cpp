@@ -10,13 +10,13 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "engine/scene/decompose.hpp"
+#include "engine/scene/gltf_document.hpp"
 #include "engine/scene/scene_error.hpp"
 
 namespace candela::gltf {
 
 namespace {
 
-constexpr const char* lights_extension = "KHR_lights_punctual";
 constexpr float half_pi = 1.57079632679489662F;
 
 /// A node on its way to becoming an entity.

@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t group_size = 64;  // as in shaders/light_cells.glsl
+constexpr std::uint32_t cells_a_group = 64;  // as in shaders/light_cells.glsl
 
 void set_grid(const gl::Program& program, const CellGrid& grid) {
     program.set("grid_tiles", grid.tiles);
@@ -100,7 +100,7 @@ LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, con
             set_grid(program, grid);
             set_rays(program, run.value(view));
             program.use();
-            gpu.gl().DispatchCompute((grid.cells() + group_size - 1) / group_size, 1, 1);
+            gpu.gl().DispatchCompute((grid.cells() + cells_a_group - 1) / cells_a_group, 1, 1);
         });
         return out;
     });

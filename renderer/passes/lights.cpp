@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr float hemisphere = 2.0F * std::numbers::pi_v<float>;  // steradians
 
 bool emits(glm::vec3 intensity) {
     return intensity.r > 0.0F || intensity.g > 0.0F || intensity.b > 0.0F;
@@ -36,7 +36,7 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
                       .kind = gpu::LightKind::point,
                       .range = light.range,
                       .intensity = intensity},
-            .flux = intensity * (4.0F * pi),
+            .flux = intensity * (2.0F * hemisphere),
             .casts_shadow = light.casts_shadow};
 }
 
@@ -58,7 +58,7 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
                       .shape = {1.0F / ramp, -cos_outer / ramp},
                       .cos_inner = cos_inner,
                       .cos_outer = cos_outer},
-            .flux = intensity * (2.0F * pi * ((1.0F - cos_inner) + ramp / 3.0F)),
+            .flux = intensity * (hemisphere * ((1.0F - cos_inner) + ramp / 3.0F)),
             .casts_shadow = light.casts_shadow};
 }
 

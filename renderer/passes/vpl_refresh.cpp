@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t group_size = 32;  // as in shaders/vpl_check.comp
+constexpr std::uint32_t checks_a_group = 32;  // as in shaders/vpl_check.comp
 
 /// Everything that a schedule depends on.
 struct RefreshInputs {
@@ -155,7 +155,7 @@ std::vector<gpu::PathCheck> check_paths(const Gpu& gpu, Execution& run, const gl
     program.use();
     // The records are those of the frame before, of which the plan of this frame's barriers does not know.
     gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    gpu.gl().DispatchCompute((path_count + group_size - 1) / group_size, 1, 1);
+    gpu.gl().DispatchCompute((path_count + checks_a_group - 1) / checks_a_group, 1, 1);
     gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     return read_back(gpu, run, handles.checks, order.paths.size());
 }

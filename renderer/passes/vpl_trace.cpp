@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t group_size = 32;  // as in shaders/vpl_trace.comp
+constexpr std::uint32_t paths_a_group = 32;  // as in shaders/vpl_trace.comp
 
 /// What the shader is told of the paths.
 struct PathBuffers {
@@ -40,7 +40,7 @@ void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tra
     program.set("ray_offset", run.value(tracing.metrics).ray_offset());
     program.set("edge_reach", edge_reach(run.value(tracing.metrics).area, plan.vpl_count));
     program.use();
-    gpu.gl().DispatchCompute((path_count + group_size - 1) / group_size, 1, 1);
+    gpu.gl().DispatchCompute((path_count + paths_a_group - 1) / paths_a_group, 1, 1);
 }
 
 }  // namespace

@@ -41,11 +41,6 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
     return false;
 }
 
-template <class T>
-std::uint32_t size_of(const std::vector<T>& list) {
-    return static_cast<std::uint32_t>(list.size());
-}
-
 }  // namespace
 
 Declaration::Declaration() : arena_(std::make_unique<Arena>()) {

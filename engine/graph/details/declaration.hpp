@@ -22,6 +22,12 @@ class Execution;
 
 namespace detail {
 
+/// As indices count.
+template <class T>
+[[nodiscard]] std::uint32_t size_of(const std::vector<T>& list) {
+    return static_cast<std::uint32_t>(list.size());
+}
+
 inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 struct Resource {

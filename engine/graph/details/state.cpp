@@ -18,11 +18,6 @@ std::string describe(const BufferDesc& desc) {
     return fmt::format("{}x{}", desc.count, desc.stride);
 }
 
-template <class T>
-std::uint32_t size_of(const std::vector<T>& list) {
-    return static_cast<std::uint32_t>(list.size());
-}
-
 class StateMaker {
  public:
     explicit StateMaker(const CompiledGraph& graph) : declared_(graph.declared()), plan_(graph.plan()) {}
