@@ -289,12 +289,13 @@ TEST_SUITE("malformed glTF") {
     }
 
     TEST_CASE("a picture that promises more pixels than its bytes can hold is not allocated") {
-        const Bytes png{0x89, 'P', 'N',  'G', 13, 10,   26, 10, 0, 0, 0, 13, 'I',
-                        'H',  'D', 'R',  0,   0,  0x40, 0,  //
-                        0,    0,   0x40, 0,   8,  6,    0,  0,  0, 0, 0, 0,  0};
+        const Bytes png{0x89, 'P', 'N',  'G', 13,  10,   26,  10,  0, 0, 0, 13, 'I',
+                        'H',  'D', 'R',  0,   0,   0x40, 0,                         //
+                        0,    0,   0x40, 0,   8,   6,    0,   0,   0, 0, 0, 0,  0,  // and data, of no bytes
+                        0,    0,   0,    0,   'I', 'D',  'A', 'T', 0, 0, 0, 0};
         GltfBuilder file = complete_scene();
         file.document["images"][0]["uri"] = "data:image/png;base64," + base64(png);
-        CHECK(fault_of(file) == "image 0: its 33 bytes cannot hold 16384 x 16384 pixels");
+        CHECK(fault_of(file) == "image 0: its 45 bytes cannot hold 16384 x 16384 pixels");
     }
 
     TEST_CASE("buffers") {
