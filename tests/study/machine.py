@@ -5,6 +5,7 @@ import hashlib
 import os
 import pathlib
 import platform
+import shutil
 import subprocess
 import sys
 from typing import Any
@@ -34,6 +35,9 @@ def machine() -> dict[str, Any]:
 
 
 def git(*arguments: str) -> str:
+    """What git prints; nothing where it is not installed."""
+    if shutil.which("git") is None:
+        return ""
     return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True).stdout.strip()
 
 
