@@ -41,6 +41,7 @@ std::uint32_t get_unsigned(const Functions& gl, GLenum name) {
 std::vector<std::string> get_extensions(const Functions& gl) {
     std::vector<std::string> names;
     const GLuint count = get_unsigned(gl, GL_NUM_EXTENSIONS);
+    names.reserve(count);
     for (GLuint i = 0; i < count; ++i) {
         names.emplace_back(reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, i)));
     }

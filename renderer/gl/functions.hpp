@@ -243,9 +243,11 @@ using GetProc = std::function<void (*(const char* name))()>;
 
 /// Entry points of one context. `functions.DrawArrays(...)` is glDrawArrays.
 struct Functions {
+    // NOLINTBEGIN(readability-identifier-naming): named as OpenGL has them
 #define CANDELA_GL_MEMBER(name, capitals) PFNGL##capitals##PROC name = nullptr;
     CANDELA_GL_FUNCTIONS(CANDELA_GL_MEMBER)
 #undef CANDELA_GL_MEMBER
+    // NOLINTEND(readability-identifier-naming)
 };
 
 /// Looks up every function. Throws GlError that names the first one missing.

@@ -70,6 +70,7 @@ GraphRuntime::~GraphRuntime() {
 void GraphRuntime::adopt(CompiledGraph graph) {
     detail::State state = detail::make_state(graph);
     std::vector<PassRecord> passes;
+    passes.reserve(state.step_count());
     for (std::uint32_t position = 0; position < state.step_count(); ++position) {
         passes.push_back({state.steps[position].name});
     }
