@@ -187,11 +187,25 @@ std::vector<tinygltf::Image> describe_images(const Json& document) {
     return images;
 }
 
+/// TinyGLTF 2.5 misses the offsets of sparse accessors where a file leaves them at their default.
+void write_sparse_offsets(Json& document) {
+    if (!document.contains("accessors")) {
+        return;
+    }
+    for (Json& accessor : document["accessors"]) {
+        if (accessor.contains("sparse")) {
+            accessor["sparse"]["indices"].emplace("byteOffset", 0);
+            accessor["sparse"]["values"].emplace("byteOffset", 0);
+        }
+    }
+}
+
 /// Everything but buffers and images, which need no parser but more care than it takes.
 tinygltf::Model parse_model(Json document) {
     for (const char* member : {"buffers", "images", "animations", "skins"}) {
         document.erase(member);
     }
+    write_sparse_offsets(document);
     const std::string text = document.dump();
     if (text.size() > std::numeric_limits<unsigned int>::max()) {
         throw SceneError("its JSON exceeds 4 GiB");
