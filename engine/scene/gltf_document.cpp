@@ -187,17 +187,23 @@ std::vector<tinygltf::Image> describe_images(const Json& document) {
     return images;
 }
 
-/// TinyGLTF 2.5 misses the offsets of sparse accessors where a file leaves them at their default.
-void write_sparse_offsets(Json& document) {
-    if (!document.contains("accessors")) {
-        return;
-    }
-    for (Json& accessor : document["accessors"]) {
-        if (accessor.contains("sparse")) {
-            accessor["sparse"]["indices"].emplace("byteOffset", 0);
-            accessor["sparse"]["values"].emplace("byteOffset", 0);
+/// Writes out two defaults that TinyGLTF 2.5 takes amiss: it misses the offsets of sparse accessors, and
+/// writes out of bounds for an accessor without a buffer view, which gets the one whose index is returned,
+/// behind those of the file.
+std::size_t write_defaults(Json& document) {
+    Json& views = document["bufferViews"];
+    views.push_back({{"buffer", 0}, {"byteLength", 1}});
+    const std::size_t none = views.size() - 1;
+    if (document.contains("accessors")) {
+        for (Json& accessor : document["accessors"]) {
+            accessor.emplace("bufferView", none);
+            if (accessor.contains("sparse")) {
+                accessor["sparse"]["indices"].emplace("byteOffset", 0);
+                accessor["sparse"]["values"].emplace("byteOffset", 0);
+            }
         }
     }
+    return none;
 }
 
 /// Everything but buffers and images, which need no parser but more care than it takes.
@@ -205,7 +211,7 @@ tinygltf::Model parse_model(Json document) {
     for (const char* member : {"buffers", "images", "animations", "skins"}) {
         document.erase(member);
     }
-    write_sparse_offsets(document);
+    const std::size_t no_view = write_defaults(document);
     const std::string text = document.dump();
     if (text.size() > std::numeric_limits<unsigned int>::max()) {
         throw SceneError("its JSON exceeds 4 GiB");
@@ -219,6 +225,12 @@ tinygltf::Model parse_model(Json document) {
                                                    static_cast<unsigned int>(text.size()), {});
     if (!parsed || !errors.empty()) {
         throw SceneError(errors.empty() ? "it is not valid glTF" : errors);
+    }
+    model.bufferViews.pop_back();
+    for (tinygltf::Accessor& accessor : model.accessors) {
+        if (accessor.bufferView == static_cast<int>(no_view)) {
+            accessor.bufferView = -1;
+        }
     }
     return model;
 }
