@@ -388,17 +388,22 @@ Host still_host(const Graph& graph) {
     return {0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
 }
 
-/// Whether verification can tell that the pass writes something else when it runs again: it must be one that
-/// runs again, and write something. Of what a pass with side effects has put into an import nobody can tell
-/// whether it is still the same, so that passes that read imports are left out.
-bool can_be_found(const Graph& graph, std::size_t pass) {
-    Machine machine(graph, {});
+/// Runs two frames of a still host, the first of them verified.
+const FrameRecord& second_frame(Machine& machine, const Graph& graph) {
     machine.runtime().set_verification(true);
     machine.provide(still_host(graph));
     (void)machine.run();
     machine.runtime().verify(machine.world());
     machine.provide(still_host(graph));
-    const FrameRecord& record = machine.run();
+    return machine.run();
+}
+
+/// Whether verification can tell that the pass writes something else when it runs again: it must be one that
+/// runs again, and write something. Of what a pass with side effects has put into an import nobody can tell
+/// whether it is still the same, so that passes that read imports are left out.
+bool can_be_found(const Graph& graph, std::size_t pass) {
+    Machine machine(graph, {});
+    const FrameRecord& record = second_frame(machine, graph);
     machine.runtime().verify(machine.world());
     const auto is_verified = [&](const PassRecord& run) {
         return run.name == random_graph::pass_name(pass) && run.verified;
@@ -415,12 +420,7 @@ bool can_be_found(const Graph& graph, std::size_t pass) {
 /// What verification says of a graph in whose second frame `culprit` begins to write something else.
 std::string message_about(const Graph& graph, std::size_t culprit) {
     Machine machine(graph, {});
-    machine.runtime().set_verification(true);
-    machine.provide(still_host(graph));
-    (void)machine.run();
-    machine.runtime().verify(machine.world());
-    machine.provide(still_host(graph));
-    (void)machine.run();
+    (void)second_frame(machine, graph);
     machine.sabotage(culprit);
     try {
         machine.runtime().verify(machine.world());
