@@ -189,7 +189,7 @@ TEST_SUITE("VPL visibility") {
         add(scene.world, at({0.5F, 0.3F, 0.2F}), PointLight{});
         scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
         Configuration configuration = indirect_only(VplVisibility::none);
-        configuration.vpls.count = 64;  // each of which a pixel would miss more than it would one of many
+        configuration.vpls.count = 12;  // each of which a pixel would miss more than it would one of many
         const Picture lit = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::maps;
         for (const std::uint32_t resolution : resolutions) {
