@@ -265,7 +265,16 @@ VplReport Renderer::report_vpls(const Vpls& vpls) const {
             .stale = plan.stale,
             .traced = any_made ? std::accumulate(plan.paths.begin(), plan.paths.end(), 0U, traced) : 0,
             .maps_drawn = any_made ? static_cast<std::uint32_t>(plan.maps_due.size()) : 0,
+            .interleave = frame_.interleave,
+            .lacking_pixels = count_lacking(),
             .flux = sum_up(accounts)};
+}
+
+std::uint32_t Renderer::count_lacking() const {
+    if (!frame_.indirect) {
+        return 0;
+    }
+    return backend_.buffer(runtime_.object(frame_.indirect->lacking)).download<std::uint32_t>().at(3);
 }
 
 LightReport Renderer::report_lights() const {

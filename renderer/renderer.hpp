@@ -53,11 +53,13 @@ struct VplReport {
     std::uint32_t requested = 0;
     std::uint32_t alive = 0;
     std::uint32_t paths = 0;
-    std::uint32_t rays = 0;        ///< segments of the paths, those that hit nothing included
-    std::uint32_t debt = 0;        ///< VPLs that are missing, and depth maps of VPLs that are out of date
-    std::uint32_t stale = 0;       ///< VPLs that light the scene rightly, but will give way to others
-    std::uint32_t traced = 0;      ///< VPLs that were made anew in the last frame
-    std::uint32_t maps_drawn = 0;  ///< depth maps of VPLs that were due in it
+    std::uint32_t rays = 0;            ///< segments of the paths, those that hit nothing included
+    std::uint32_t debt = 0;            ///< VPLs that are missing, and depth maps of VPLs that are out of date
+    std::uint32_t stale = 0;           ///< VPLs that light the scene rightly, but will give way to others
+    std::uint32_t traced = 0;          ///< VPLs that were made anew in the last frame
+    std::uint32_t maps_drawn = 0;      ///< depth maps of VPLs that were due in it
+    std::uint32_t interleave = 1;      ///< n, where a pixel asks one in n² VPLs
+    std::uint32_t lacking_pixels = 0;  ///< that asked more of them, as too few neighbours fitted
     EnergyAccount flux;
 };
 
@@ -139,6 +141,7 @@ class Renderer {
     void set_refinement_clock();
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls) const;
+    [[nodiscard]] std::uint32_t count_lacking() const;
     [[nodiscard]] LightReport report_lights() const;
 
     Gpu gpu_;

@@ -35,6 +35,7 @@ Configuration choose_configuration(const Options& options, bool in_window) {
     override_by(options.bounces, configuration.vpls.bounces);
     override_by(options.seed, configuration.vpls.seed);
     override_by(options.vpl_visibility, configuration.visibility.method);
+    override_by(options.interleave, configuration.interleave);
     const std::vector<std::string> faults = validate(configuration);
     if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
     return configuration;

@@ -143,9 +143,17 @@ void declare(CLI::App& app, Options& options) {
         app, "--vpl-visibility", options.vpl_visibility,
         {{"none", VplVisibility::none}, {"maps", VplVisibility::maps}, {"rays", VplVisibility::rays}},
         "whether walls stop the light of virtual lights: by depth maps, or exactly by rays");
+    add_choice<std::optional<Interleave>, Interleave>(
+        app, "--interleave", options.interleave,
+        {{"auto", Interleave::automatic},
+         {"1", Interleave::one},
+         {"2", Interleave::two},
+         {"4", Interleave::four},
+         {"8", Interleave::eight}},
+        "with N, a pixel asks one in N² VPLs, and takes the rest from its neighbours");
     app.add_option("--animate", options.animate,
                    "a script of light, mesh and camera motion, or the name of a shipped one: door-opens, "
-                   "flicker-walk, orbit-light, teleport, toggle")
+                   "flicker-walk, orbit-camera, orbit-light, teleport, toggle")
         ->type_name("FILE.json|NAME");
     app.add_option("--config", options.config,
                    "configuration; flags override it; in a window it is read again whenever it is saved")

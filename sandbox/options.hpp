@@ -33,6 +33,7 @@ struct Options {
     std::optional<std::uint32_t> bounces;  ///< indirect ones: 1 is light, surface, seen surface
     std::optional<std::uint32_t> seed;
     std::optional<VplVisibility> vpl_visibility;
+    std::optional<Interleave> interleave;
     std::optional<std::filesystem::path> animate;  ///< a script's file, or the name of a shipped one
     std::optional<std::filesystem::path> config;
     bool print_config = false;

@@ -217,6 +217,11 @@ void Panel::draw_configuration(Configuration& wanted) {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("VPLs, and maps of them, made anew in a frame; 0: all that are due");
     draw_visibility(wanted.visibility);
+    combo("interleave", wanted.interleave,
+          std::array{Interleave::automatic, Interleave::one, Interleave::two, Interleave::four,
+                     Interleave::eight});
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("with N, a pixel asks one in N² VPLs, and takes the rest from its neighbours");
     draw_refinement(wanted.refinement);
     ImGui::DragFloat("geometry bound", &wanted.geometry_bound, 0.01F);
     ImGui::Checkbox("shadows", &wanted.shadows.enabled);

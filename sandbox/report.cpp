@@ -29,8 +29,14 @@ OrderedJson to_json(const VplReport& vpls) {
     OrderedJson flux;
     for (const EnergyLine& line : energy_lines(vpls.flux)) flux[line.name] = to_json(line.value);
     flux["roulette_error"] = to_json(vpls.flux.roulette_error);
-    return {{"requested", vpls.requested}, {"alive", vpls.alive}, {"paths", vpls.paths},
-            {"debt", vpls.debt},           {"stale", vpls.stale}, {"flux", flux}};
+    return {{"requested", vpls.requested},
+            {"alive", vpls.alive},
+            {"paths", vpls.paths},
+            {"debt", vpls.debt},
+            {"stale", vpls.stale},
+            {"interleave", vpls.interleave},
+            {"lacking_pixels", vpls.lacking_pixels},
+            {"flux", flux}};
 }
 
 OrderedJson to_json(const LightReport& lights) {
@@ -72,6 +78,9 @@ std::string vpl_table(const VplReport& vpls) {
     std::string table = fmt::format("VPLs             {} alive of {} requested, on {} paths\n", vpls.alive,
                                     vpls.requested, vpls.paths);
     table += fmt::format("  still to make  {}, and {} that will give way to others\n", vpls.debt, vpls.stale);
+    if (vpls.interleave > 1)
+        table += fmt::format("  of which       a pixel asks one in {}; {} pixels asked more\n",
+                             vpls.interleave * vpls.interleave, vpls.lacking_pixels);
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r,
                              line.value.g, line.value.b);

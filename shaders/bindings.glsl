@@ -19,6 +19,10 @@
 // Where light is traced there are no lists.
 #define BINDING_VPL_RECORDS BINDING_LIST_FIRST
 #define BINDING_PATH_CHECKS BINDING_LIST_COUNT
+// Nor where VPLs are gathered.
+#define BINDING_VPL_ORDER BINDING_LIST_FIRST
+#define BINDING_LACKING_MASK BINDING_LIST_COUNT
+#define BINDING_LACKING BINDING_LIST_ENTRIES
 
 #define UNIT_BASE_COLOUR 0
 #define UNIT_SHADOW_CUBES 1
@@ -29,9 +33,11 @@
 #define UNIT_RADIANCE 6
 #define UNIT_VPL_MAPS 7
 #define UNIT_MEAN 8
-#define UNIT_LAST 8
+#define UNIT_INDIRECT 9
+#define UNIT_LAST 9
 
 #define IMAGE_RADIANCE 0
+#define IMAGE_INDIRECT 0
 #define IMAGE_LAST 0
 
 #define ATTRIBUTE_POSITION 0
@@ -40,3 +46,8 @@
 #define ATTRIBUTE_INSTANCE 3
 
 #define BVH_STACK_SIZE 48
+
+#define PIXEL_BLOCK 16      // pixels along an edge of what a work group shades: pixel_block.glsl
+#define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
+#define LIST_GROUP 256      // invocations of the one work group that lists pixels
+#define FILL_GROUP 64       // pixels that a work group asks VPLs for

@@ -7,8 +7,17 @@
 #include "renderer/passes/gbuffer.hpp"
 #include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/transparent.hpp"
+#include "renderer/passes/vpl_gather.hpp"
+#include "renderer/passes/vpl_reconstruct.hpp"
 
 namespace candela {
+namespace {
+
+std::optional<TextureHandle> depth_of(const std::optional<VisibleSurfaces>& surfaces) {
+    return surfaces ? std::optional(surfaces->depth) : std::nullopt;
+}
+
+}  // namespace
 
 FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration, glm::uvec2 size) {
     FrameHandles frame;
@@ -42,55 +51,67 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         }
         frame.vpls = add_vpl_trace(graph, gpu, tracing, due, buffers.lights);
     }
-    std::optional<VplMaps> vpl_maps;
-    if (frame.vpls && configuration.visibility.method == VplVisibility::maps) {
-        vpl_maps = add_vpl_maps(graph, gpu, tracing, *frame.vpls, configuration.visibility);
+    std::optional<VplLight> vpl_light;
+    if (frame.vpls) {
+        vpl_light = VplLight{
+            .vpls = *frame.vpls, .metrics = frame.metrics, .geometry_bound = configuration.geometry_bound};
+        if (configuration.visibility.method == VplVisibility::maps) {
+            vpl_light->maps = add_vpl_maps(graph, gpu, tracing, *frame.vpls, configuration.visibility);
+        } else if (configuration.visibility.method == VplVisibility::rays) {
+            vpl_light->rays = tracing;
+        }
     }
-    std::optional<Tracing> vpl_rays;
-    if (frame.vpls && configuration.visibility.method == VplVisibility::rays) {
-        vpl_rays = tracing;
-    }
+    const bool shows_indirect = vpl_light && configuration.show != Show::direct;
+    frame.interleave = shows_indirect ? interleaving(configuration.interleave, configuration.vpls.count) : 1;
 
     // The surfaces, as far as they are found before they are shaded.
     const PathParts path = parts_of(configuration.path);
-    std::optional<TextureHandle> depth;
+    std::optional<VisibleSurfaces> visible;
     std::optional<Gbuffer> gbuffer;
     if (path.surface == SurfaceStage::gbuffer) {
         gbuffer = add_gbuffer(graph, gpu, scene, view, size);
-        depth = gbuffer->depth;
-    } else if (path.surface == SurfaceStage::forward_after_prepass) {
-        depth = add_depth_prepass(graph, gpu, scene, view, size);
+        visible = {gbuffer->depth, gbuffer->normal};
+    } else if (path.surface == SurfaceStage::forward_after_prepass || frame.interleave > 1) {
+        visible = add_depth_prepass(graph, gpu, scene, view, size);
     }
+    const bool bounds_lists = path.surface != SurfaceStage::forward;
 
     if (path.list == LightList::tile) {
         frame.lists =
-            add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, depth, size, configuration.lists);
+            add_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
+                            bounds_lists ? depth_of(visible) : std::nullopt, size, configuration.lists);
     } else if (path.list == LightList::cluster) {
         frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, frame.metrics, size,
                                          configuration.lists);
     }
 
-    const Lighting lighting{.lights = frame.lights,
-                            .metrics = frame.metrics,
-                            .buffers = buffers,
-                            .shadows = shadows,
-                            .vpls = frame.vpls,
-                            .vpl_maps = vpl_maps,
-                            .vpl_rays = vpl_rays,
-                            .lists = frame.lists,
-                            .show = configuration.show,
-                            .geometry_bound = configuration.geometry_bound};
-    // Blended surfaces lie in front of what bounds the lists in depth.
-    Lighting unbounded = lighting;
-    if (path.list == LightList::tile && depth) {
-        unbounded.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
-                                                  scene.layout, size, configuration.lists);
+    Lighting lighting{.lights = frame.lights,
+                      .buffers = buffers,
+                      .shadows = shadows,
+                      .vpls = vpl_light,
+                      .lists = frame.lists,
+                      .show = configuration.show};
+    // Blended surfaces have no pixels of their own to gather for, and lie in front of what bounds the lists
+    // in depth.
+    Lighting of_blended = lighting;
+    if (path.list == LightList::tile && bounds_lists) {
+        of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
+                                                   scene.layout, size, configuration.lists);
+    }
+
+    if (frame.interleave > 1) {
+        const GatheredVpls gathered =
+            add_vpl_gather(graph, gpu, *visible, *vpl_light, view, frame.interleave, size);
+        frame.indirect =
+            add_vpl_reconstruct(graph, gpu, *visible, gathered, *vpl_light, view, frame.interleave, size);
+        lighting.vpls.reset();
+        lighting.indirect = frame.indirect->irradiance;
     }
 
     const ShadedSurfaces solid =
         gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
-                : add_forward(graph, gpu, scene, lighting, view, depth, size);
-    TextureHandle radiance = add_transparent(graph, gpu, scene, unbounded, view, solid, size);
+                : add_forward(graph, gpu, scene, lighting, view, depth_of(visible), size);
+    TextureHandle radiance = add_transparent(graph, gpu, scene, of_blended, view, solid, size);
     if (frame.refinement) {
         radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, size);
     }

@@ -10,6 +10,7 @@
 #include "renderer/passes/refinement.hpp"
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/view.hpp"
+#include "renderer/passes/vpl_reconstruct.hpp"
 #include "renderer/passes/vpl_refresh.hpp"
 
 namespace candela {
@@ -26,7 +27,9 @@ struct FrameHandles {
     std::optional<ValueHandle<VplClock>> vpl_clock;  ///< imported; none where all VPLs are made anew at once
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::optional<ValueHandle<Refinement>> refinement;
-    std::optional<LightLists> lists;  ///< none where all surfaces visit all lights
+    std::uint32_t interleave = 1;           ///< 1: each pixel asks all VPLs as it is shaded
+    std::optional<IndirectLight> indirect;  ///< none where interleave is 1
+    std::optional<LightLists> lists;        ///< none where all surfaces visit all lights
 };
 
 /// Declares the frame that a valid configuration asks for, at one size of target in pixels.

@@ -17,6 +17,7 @@ constexpr std::array<std::string_view, all_shading_paths.size()> path_names{
     "tiled-deferred", "clustered-forward", "clustered-deferred"};
 constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
 constexpr std::array<std::string_view, 3> visibility_names{"none", "maps", "rays"};
+constexpr std::array<std::string_view, 5> interleave_names{"auto", "1", "2", "4", "8"};
 
 std::span<const std::string_view> names_of(ShadingPath /*type*/) {
     return path_names;
@@ -26,6 +27,10 @@ std::span<const std::string_view> names_of(Show /*type*/) {
 }
 std::span<const std::string_view> names_of(VplVisibility /*type*/) {
     return visibility_names;
+}
+
+std::span<const std::string_view> names_of(Interleave /*type*/) {
+    return interleave_names;
 }
 
 struct Range {
@@ -46,6 +51,7 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("bounces", c.vpls.bounces, {0, 64});
         visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
         visitor.member("budget", c.vpls.budget, {0, 1 << 20});
+        visitor.member("interleave", c.interleave);
         visitor.member("visibility", c.visibility.method);
         visitor.member("map_resolution", c.visibility.map_resolution, {8, 1024});
         visitor.member("geometry_bound", c.geometry_bound, {1e-6, infinity});
@@ -83,7 +89,7 @@ class Writer {
     template <class T>
     void member(const char* name, const T& value, Range /*range*/ = {}) {
         if constexpr (std::is_enum_v<T>) {
-            (*json_)[name] = names_of(value)[static_cast<std::size_t>(value)];
+            (*json_)[name] = as_json(names_of(value)[static_cast<std::size_t>(value)]);
         } else if constexpr (std::is_same_v<T, float>) {
             write_float((*json_)[name], value);
         } else {
@@ -92,6 +98,11 @@ class Writer {
     }
 
  private:
+    /// A name that is a number is written as one.
+    static Json as_json(std::string_view name) {
+        const bool is_number = name.find_first_not_of("0123456789") == std::string_view::npos;
+        return is_number ? Json::parse(name) : Json(name);
+    }
     /// JSON has no infinity; a word stands for it.
     static void write_float(Json& json, float value) {
         if (std::isinf(value)) {
@@ -201,8 +212,9 @@ class Reader {
     requires std::is_enum_v<E>
     void read(const char* name, const Json& json, E& value, Range /*range*/) {
         const auto names = names_of(value);
+        const std::string given = json.is_string() ? json.get<std::string>() : json.dump();
         for (std::size_t i = 0; i < names.size(); ++i) {
-            if (json.is_string() && json.get<std::string>() == names[i]) {
+            if (given == names[i]) {
                 value = static_cast<E>(i);
                 return;
             }
@@ -306,6 +318,10 @@ std::string_view to_string(Show show) {
 }
 std::string_view to_string(VplVisibility visibility) {
     return visibility_names[static_cast<std::size_t>(visibility)];
+}
+
+std::string_view to_string(Interleave interleave) {
+    return interleave_names[static_cast<std::size_t>(interleave)];
 }
 
 }  // namespace candela

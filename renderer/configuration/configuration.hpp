@@ -13,6 +13,7 @@
 #include "renderer/passes/refinement.hpp"
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/tone_map.hpp"
+#include "renderer/passes/vpl_gather.hpp"
 #include "renderer/passes/vpl_maps.hpp"
 #include "renderer/passes/vpl_trace.hpp"
 
@@ -51,6 +52,7 @@ struct Configuration {
     Show show = Show::total;
     bool indirect = true;
     VplSettings vpls;
+    Interleave interleave = Interleave::automatic;
     VplVisibilitySettings visibility;
     float geometry_bound = 1.0F;  ///< factor on the bound of a VPL's geometry term: see vpl_radius2
     ListSettings lists;
@@ -87,5 +89,6 @@ struct NamedConfiguration {
 [[nodiscard]] std::string_view to_string(ShadingPath path);
 [[nodiscard]] std::string_view to_string(Show show);
 [[nodiscard]] std::string_view to_string(VplVisibility visibility);
+[[nodiscard]] std::string_view to_string(Interleave interleave);
 
 }  // namespace candela

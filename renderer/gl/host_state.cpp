@@ -64,6 +64,7 @@ HostState::~HostState() {
         gl.BindImageTexture(image, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
     }
     gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+    gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
     for (std::size_t i = 0; i < capabilities.size(); ++i) {
         if (enabled_[i]) {
             gl.Enable(capabilities[i]);

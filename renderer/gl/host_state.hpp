@@ -10,7 +10,7 @@ namespace candela::gl {
 /// Puts the host's state aside and sets what rendering assumes: depth in [0, 1] (glClipControl), and nothing
 /// enabled that a host may have turned on. At its end the host finds its framebuffers, program, vertex array,
 /// viewport, enables, depth, blending, culling, polygon, colour and clip state as they were. Texture units,
-/// samplers, indexed buffers and the indirect buffer that rendering used are left unbound.
+/// samplers, indexed buffers and the indirect buffers that rendering used are left unbound.
 class HostState {
  public:
     explicit HostState(const Functions& gl);

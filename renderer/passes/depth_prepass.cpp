@@ -5,20 +5,23 @@
 
 namespace candela {
 
-TextureHandle add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                ValueHandle<CameraView> view, glm::uvec2 size) {
+VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                  ValueHandle<CameraView> view, glm::uvec2 size) {
     return graph.add("depth-prepass", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);
         pass.read(view);
-        const gl::Program& program = gpu.program({"mesh_surface.vert", "depth_prepass.frag"});
-        const auto depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
+        const gl::Program& program =
+            gpu.program({"mesh_surface.vert", "depth_prepass.frag"}, {"WITH_NORMALS"});
+        const VisibleSurfaces out{
+            .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target),
+            .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target)};
         pass.run([=, &gpu, &program](Execution& run) {
             begin_surfaces(gpu);
             bind_view(program, run.value(view), size);
             draw_surfaces(gpu, run, scene, program);
         });
-        return depth;
+        return out;
     });
 }
 

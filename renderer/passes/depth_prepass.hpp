@@ -7,8 +7,14 @@
 
 namespace candela {
 
-/// Node `depth-prepass`: depth of the solid surfaces, depth32f, reversed.
-[[nodiscard]] TextureHandle add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                              ValueHandle<CameraView> view, glm::uvec2 size);
+/// The surfaces that the view sees, without what they are made of.
+struct VisibleSurfaces {
+    TextureHandle depth;   ///< depth32f, reversed; 0 where there is nothing
+    TextureHandle normal;  ///< rg32f, octahedral, world space
+};
+
+/// Node `depth-prepass`: depth and normals of the solid surfaces.
+[[nodiscard]] VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                                ValueHandle<CameraView> view, glm::uvec2 size);
 
 }  // namespace candela

@@ -54,7 +54,7 @@ double log_slope(const std::array<std::uint32_t, N>& x, const std::array<double,
     return (N * sxy - sx * sy) / (N * sxx - sx * sx);
 }
 
-class IndirectLight : public RenderFixture {
+class RendererIndirect : public RenderFixture {
  protected:
     double rel_mse(const Scene& scene, const reference::Estimate& truth, const VplSettings& vpls,
                    float bound) {
@@ -94,12 +94,12 @@ class IndirectLight : public RenderFixture {
 }  // namespace
 
 TEST_SUITE("reference: the renderer's indirect light") {
-    TEST_CASE_FIXTURE(IndirectLight, "between two facing plates it converges to the reference") {
+    TEST_CASE_FIXTURE(RendererIndirect, "between two facing plates it converges to the reference") {
         check_convergence(facing_plates(), 1, 4096);
         check_convergence(facing_plates(), 2, 4096);
     }
 
-    TEST_CASE_FIXTURE(IndirectLight, "in a sphere lit from its centre it converges to the reference") {
+    TEST_CASE_FIXTURE(RendererIndirect, "in a sphere lit from its centre it converges to the reference") {
         check_convergence(furnace_sphere(), 1, 512);
     }
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr glm::uvec2 size{48, 36};
 
-/// A small picture by every path and every visibility of VPLs.
+/// A small picture by every path and every visibility of VPLs, and by each path interleaved.
 std::vector<Configuration> configurations() {
     std::vector<Configuration> all;
     for (const ShadingPath path : all_shading_paths) {
@@ -22,6 +22,10 @@ std::vector<Configuration> configurations() {
             configuration.visibility = {.method = method, .map_resolution = 16};
             configuration.shadows.cube_resolution = configuration.shadows.map_resolution = 64;
             all.push_back(configuration);
+            if (method == VplVisibility::maps) {
+                configuration.interleave = Interleave::four;
+                all.push_back(configuration);
+            }
         }
     }
     return all;

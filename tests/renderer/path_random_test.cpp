@@ -47,6 +47,7 @@ struct ScenePlan {
     bool has_vpls = false;
     int tile = 0;
     int slices = 0;
+    int interleave = 0;
 };
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -54,6 +55,7 @@ constexpr std::array ranges{1.0F, 0.3F, 3.0F, 1e-3F, 1e6F, infinity};
 constexpr std::array cones{0.7F, 0.05F, 0.3F, 1.2F, 1.5707963F};
 constexpr std::array tiles{16U, 32U, 64U};
 constexpr std::array slice_counts{24U, 2U, 64U};
+constexpr std::array interleaves{Interleave::one, Interleave::two, Interleave::four, Interleave::eight};
 
 template <class Table>
 int index_of(const Table& table) {
@@ -90,7 +92,8 @@ rc::Gen<ScenePlan> scene_plans() {
                          .has_shadows = *rc::gen::inRange(0, 3) == 1,
                          .has_vpls = *rc::gen::inRange(0, 3) == 1,
                          .tile = index_of(tiles),
-                         .slices = index_of(slice_counts)};
+                         .slices = index_of(slice_counts),
+                         .interleave = index_of(interleaves)};
     });
 }
 
@@ -148,6 +151,7 @@ Scene build(const ScenePlan& plan) {
 Configuration configuration_of(const ScenePlan& plan) {
     Configuration configuration = few_vpls();
     configuration.indirect = plan.has_vpls;
+    configuration.interleave = entry(interleaves, plan.interleave);
     configuration.shadows = {
         .enabled = plan.has_shadows, .cube_resolution = 16, .map_resolution = 32, .budget_mib = 1};
     configuration.lists = {.tile_size = entry(tiles, plan.tile), .slices = entry(slice_counts, plan.slices)};
@@ -160,8 +164,9 @@ std::ostream& operator<<(std::ostream& out, const Steps& steps) {
 
 std::ostream& operator<<(std::ostream& out, const ScenePlan& plan) {
     out << "eye " << plan.eye << " towards " << plan.towards << (plan.orthographic ? " orthographic" : "")
-        << (plan.has_shadows ? " shadows" : "") << (plan.has_vpls ? " VPLs" : "") << ", tiles of "
-        << entry(tiles, plan.tile) << ", slices " << entry(slice_counts, plan.slices) << '\n';
+        << (plan.has_shadows ? " shadows" : "") << (plan.has_vpls ? " VPLs interleaved by " : "")
+        << to_string(entry(interleaves, plan.interleave)) << ", tiles of " << entry(tiles, plan.tile)
+        << ", slices " << entry(slice_counts, plan.slices) << '\n';
     for (const LightPlan& l : plan.lights) {
         out << "light " << l.kind << ' ' << l.from << " towards " << l.towards << " range "
             << entry(ranges, l.range) << " cone " << entry(cones, l.cone) << '\n';

@@ -139,6 +139,7 @@ void RandomEdits::resize() {
 
 void RandomEdits::switch_path() {
     configuration.path = all_shading_paths.at(draw(all_shading_paths.size()));
+    configuration.interleave = static_cast<Interleave>(draw(5));
 }
 
 void RandomEdits::switch_shadows() {

@@ -274,6 +274,7 @@ Configuration linear_configuration(ShadingPath path) {
     Configuration configuration;
     configuration.path = path;
     configuration.tone_map.enabled = false;
+    configuration.interleave = Interleave::one;
     configuration.visibility.method = VplVisibility::none;
     return configuration;
 }

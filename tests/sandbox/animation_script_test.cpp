@@ -211,7 +211,7 @@ TEST_SUITE("animation script") {
              {(folder / "none.json").string(), std::string("orbit"), std::string("/tmp")}) {
             const std::string fault = fault_of([&] { static_cast<void>(load_script(wanted)); });
             CHECK(fault.starts_with(wanted + ": "));
-            CHECK(fault.ends_with("door-opens, flicker-walk, orbit-light, teleport, toggle"));
+            CHECK(fault.ends_with("door-opens, flicker-walk, orbit-camera, orbit-light, teleport, toggle"));
         }
     }
 

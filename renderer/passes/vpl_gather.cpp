@@ -1,0 +1,104 @@
+#include "renderer/passes/vpl_gather.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "engine/graph/execute.hpp"
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+namespace {
+
+// VPLs that each class of pixels asks at least, with interleaving chosen by itself. With fewer, the pixels at
+// edges, whose neighbours do not stand for all classes, are noisy (tests/study/run --part gather).
+constexpr std::uint32_t least_share = 16;
+
+BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPaths> paths) {
+    return graph.add("vpl-deal", [&](Pass& pass) {
+        pass.read(paths);
+        const auto order =
+            pass.write(graph.buffer<std::uint32_t>("vpl order", 1, Lifetime::persistent), Usage::copy);
+        pass.run([=, &gpu](Execution& run) {
+            upload<std::uint32_t>(gpu, run, order, deal_vpls(run.value(paths)));
+        });
+        return order;
+    });
+}
+
+/// Blocks of pixels that hold all `pixels` along an edge.
+std::uint32_t blocks(std::uint32_t pixels) {
+    return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
+}
+
+}  // namespace
+
+std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count) {
+    if (interleave != Interleave::automatic) {
+        return 1U << (static_cast<std::uint32_t>(interleave) - 1U);
+    }
+    std::uint32_t n = 8;
+    while (n > 1 && vpl_count < least_share * n * n) {
+        n /= 2;
+    }
+    return n;
+}
+
+std::vector<std::uint32_t> deal_vpls(const VplPaths& paths) {
+    using Group = std::pair<std::uint32_t, std::uint32_t>;  // light and bounce
+    std::map<Group, std::uint32_t> sizes;
+    for (const gpu::Path& path : paths.paths) {
+        for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
+            ++sizes[{path.light, bounce}];
+        }
+    }
+    std::vector<std::pair<double, std::uint32_t>> dealt;  // place within its group, from 0 to 1, and VPL
+    dealt.reserve(paths.vpl_count);
+    std::map<Group, std::uint32_t> seen;
+    for (const gpu::Path& path : paths.paths) {
+        for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
+            const Group group{path.light, bounce};
+            dealt.emplace_back((seen[group]++ + 0.5) / sizes[group], path.first_vpl + bounce);
+        }
+    }
+    std::ranges::stable_sort(dealt, {}, &std::pair<double, std::uint32_t>::first);
+    std::vector<std::uint32_t> order(dealt.size());
+    std::ranges::transform(dealt, order.begin(), &std::pair<double, std::uint32_t>::second);
+    return order;
+}
+
+GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+                            const VplLight& light, ValueHandle<CameraView> view, std::uint32_t interleave,
+                            glm::uvec2 size) {
+    const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.paths);
+    return graph.add("vpl-gather", [&](Pass& pass) {
+        pass.read(surfaces.normal, Usage::sampled);
+        pass.read(surfaces.depth, Usage::sampled);
+        pass.read(order, Usage::storage);
+        read_vpl_light(pass, light);
+        pass.read(view);
+        pass.parameter(interleave);
+        const gl::Program& program = gpu.program({"vpl_gather.comp"}, vpl_light_variant(light));
+        const GatheredVpls out{
+            .irradiance =
+                pass.write(graph.texture("gathered irradiance", {size, Format::rgba32f}), Usage::storage),
+            .order = order};
+        pass.run([=, &gpu, &program](Execution& run) {
+            const gl::Functions& gl = gpu.gl();
+            gl.BindTextureUnit(UNIT_NORMAL, run.object(surfaces.normal));
+            gl.BindTextureUnit(UNIT_DEPTH, run.object(surfaces.depth));
+            gl.BindImageTexture(IMAGE_INDIRECT, run.object(out.irradiance), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+                                GL_RGBA32F);
+            gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
+            bind_view(program, run.value(view), size);
+            bind_vpl_light(gpu, run, program, light);
+            program.set("interleave", interleave);
+            program.use();
+            const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
+            gl.DispatchCompute(blocks(of_class.x), blocks(of_class.y), interleave * interleave);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

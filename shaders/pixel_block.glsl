@@ -1,0 +1,19 @@
+// A work group of a compute shader that shades takes a block of 16 × 16 pixels. An invocation takes four of them, 8 apart,
+// and fetches each light once for all four; with rays, which cost more than any fetch, it takes one, as software drivers
+// end the loops of an invocation after 65,536 turns in all.
+#include "bindings.glsl"
+
+#ifdef VPL_VISIBILITY_RAYS
+#define SURFACES 1
+#define GROUP_SIDE PIXEL_BLOCK
+#else
+#define SURFACES 4
+#define GROUP_SIDE (PIXEL_BLOCK / 2)
+#endif
+
+layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
+
+// The invocation's pixel s; may lie beyond the target.
+ivec2 block_pixel(int s) {
+    return PIXEL_BLOCK * ivec2(gl_WorkGroupID.xy) + ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(s & 1, s >> 1);
+}

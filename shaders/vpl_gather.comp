@@ -1,0 +1,44 @@
+// Each pixel asks the VPLs of its class's share. A work group takes a block of pixels of one class, `interleave` apart, so
+// that all its invocations walk the same VPLs; work groups are layered by class.
+#include "bindings.glsl"
+#include "pixel_block.glsl"
+#include "vpl_light.glsl"
+#include "vpl_shares.glsl"
+
+layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
+
+uniform mat4 world_from_clip;
+uniform vec2 target_size;
+
+layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
+layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
+layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D gathered;
+
+void main() {
+    uvec2 offset = uvec2(gl_WorkGroupID.z % interleave, gl_WorkGroupID.z / interleave);
+    float depth[SURFACES];
+    Surface surfaces[SURFACES];
+    vec3 irradiance[SURFACES];
+    float nearest = 0.0;
+    for (int s = 0; s < SURFACES; ++s) {
+        ivec2 at = min(int(interleave) * block_pixel(s) + ivec2(offset), ivec2(target_size) - 1);
+        depth[s] = texelFetch(surface_depth, at, 0).r;
+        nearest = max(nearest, depth[s]);
+        PackedSurface stored = PackedSurface(vec3(0.0), texelFetch(surface_normal, at, 0).rg);
+        surfaces[s] = unpack_surface(stored, vec3(vec2(at) + 0.5, depth[s]), target_size, world_from_clip);
+        irradiance[s] = vec3(0.0);
+    }
+    uint classes = interleave * interleave;
+    uint share = share_of_class(offset);
+    uint first = share * vpl_count / classes;
+    uint last = nearest > 0.0 ? (share + 1u) * vpl_count / classes : first;
+    for (uint i = first; i < last; ++i) {
+        Vpl vpl = vpls[vpl_order[i]];
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
+    }
+    // What all VPLs together would send if they were like these. Stores beyond the target are discarded by the GL.
+    for (int s = 0; s < SURFACES; ++s) {
+        ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);
+        imageStore(gathered, at, depth[s] > 0.0 ? vec4(float(classes) * irradiance[s], 1.0) : vec4(0.0));
+    }
+}

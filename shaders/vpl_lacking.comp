@@ -1,0 +1,40 @@
+// Lists the pixels that lack neighbours, row by row, by one work group.
+#include "bindings.glsl"
+
+layout(local_size_x = LIST_GROUP) in;
+
+layout(std430, binding = BINDING_LACKING_MASK) readonly restrict buffer Mask { uint lacking_mask[]; };
+layout(std430, binding = BINDING_LACKING) writeonly restrict buffer Lacking {
+    uint lacking_groups[3];  // for an indirect dispatch
+    uint lacking_count;
+    uint lacking[];          // pixels: x in the lower half, y in the upper
+};
+
+uniform uint mask_words;
+uniform uint row_words;
+
+shared uint counts[LIST_GROUP];  // of each invocation's stretch of the mask
+
+void main() {
+    uint id = gl_LocalInvocationID.x;
+    uint stretch = (mask_words + LIST_GROUP - 1u) / LIST_GROUP;
+    uint first = min(id * stretch, mask_words);
+    uint last = min(first + stretch, mask_words);
+    uint count = 0u;
+    for (uint word = first; word < last; ++word) count += uint(bitCount(lacking_mask[word]));
+    counts[id] = count;
+    barrier();
+    uint index = 0u;
+    for (uint i = 0u; i < id; ++i) index += counts[i];
+    for (uint word = first; word < last; ++word) {
+        for (uint bits = lacking_mask[word]; bits != 0u; bits &= bits - 1u) {
+            uint x = 32u * (word % row_words) + uint(findLSB(bits));
+            lacking[index++] = x | (word / row_words) << 16;
+        }
+    }
+    if (id == LIST_GROUP - 1u) {
+        lacking_count = index;
+        lacking_groups[0] = (index + FILL_GROUP - 1u) / FILL_GROUP;
+        lacking_groups[1] = lacking_groups[2] = 1u;
+    }
+}

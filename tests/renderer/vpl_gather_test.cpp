@@ -1,0 +1,229 @@
+// Interleaved gathering gives what asking all VPLs at every pixel gives, as far as surfaces go on.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr std::array interleaved{Interleave::two, Interleave::four, Interleave::eight};
+
+Configuration indirect_only(Interleave interleave, std::uint32_t vpls) {
+    Configuration configuration = linear_configuration();
+    configuration.show = Show::indirect;
+    configuration.vpls = {.count = vpls, .budget = 0};
+    configuration.interleave = interleave;
+    return configuration;
+}
+
+/// Sum of the squared differences over that of the reference's squares.
+double relative_square(const Picture& picture, const Picture& reference) {
+    double difference = 0.0, square = 0.0;
+    for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+        const glm::dvec3 expected(reference.pixels[i]);
+        const glm::dvec3 off = glm::dvec3(picture.pixels[i]) - expected;
+        difference += glm::dot(off, off);
+        square += glm::dot(expected, expected);
+    }
+    return difference / square;
+}
+
+class VplGatherTests : public PathFixture {
+ protected:
+    Picture picture(const Scene& scene, const Configuration& configuration, glm::uvec2 size) {
+        configure(configuration);
+        return render(scene, size);
+    }
+    double lacking() {
+        const Report report = renderer.report();
+        REQUIRE(report.vpls);
+        return report.vpls->lacking_pixels;
+    }
+};
+
+/// Three lights whose paths make up to four bounces.
+VplPaths three_lights() {
+    LightTable lights;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto flux = static_cast<float>(1U << (2 * i));
+        lights.entries.push_back({.entity = {i, 1}, .light = {}, .flux = glm::vec3(flux)});
+    }
+    return plan_paths(lights, 0.6F, {.count = 1000, .bounces = 4});
+}
+
+}  // namespace
+
+TEST_SUITE("interleaved gathering") {
+    TEST_CASE("by itself it leaves every class sixteen VPLs, and asks all where they are few") {
+        for (std::uint32_t count = 0; count < 5000; ++count) {
+            const std::uint32_t n = interleaving(Interleave::automatic, count);
+            CHECK((n == 1 || n == 2 || n == 4 || n == 8));
+            CHECK((n == 1 || count >= 16 * n * n));
+            CHECK((n == 8 || count < 16 * 4 * n * n));
+        }
+        CHECK(interleaving(Interleave::one, 4096) == 1);
+        CHECK(interleaving(Interleave::eight, 1) == 8);
+    }
+
+    TEST_CASE("each share of the VPLs has its part of every light and bounce") {
+        const VplPaths paths = three_lights();
+        std::vector<std::uint32_t> order = deal_vpls(paths);
+        REQUIRE(order.size() == paths.vpl_count);
+
+        std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>
+            group_of;  // light and bounce, by VPL
+        std::map<std::pair<std::uint32_t, std::uint32_t>, double> sizes;
+        for (const gpu::Path& path : paths.paths) {
+            for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
+                group_of[path.first_vpl + bounce] = {path.light, bounce};
+                sizes[{path.light, bounce}] += 1.0;
+            }
+        }
+        CHECK(sizes.size() == 12);
+        for (const std::size_t classes : {4U, 16U, 64U}) {
+            for (std::size_t share = 0; share < classes; ++share) {
+                std::map<std::pair<std::uint32_t, std::uint32_t>, double> found;
+                const std::size_t last = (share + 1) * order.size() / classes;
+                for (std::size_t i = share * order.size() / classes; i < last; ++i)
+                    ++found[group_of[order[i]]];
+                for (const auto& [group, size] : sizes) {
+                    CAPTURE(group.first);
+                    CAPTURE(group.second);
+                    // Both ends of a share lie within one member of each group of where they are in
+                    // proportion.
+                    const double ends = 1.0 + 2.0 * size * static_cast<double>(sizes.size()) /
+                                                  static_cast<double>(order.size());
+                    CHECK(std::abs(found[group] - size / static_cast<double>(classes)) <= ends);
+                }
+            }
+        }
+        std::ranges::sort(order);
+        std::vector<std::uint32_t> all(order.size());
+        std::iota(all.begin(), all.end(), 0U);
+        CHECK(order == all);
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "on a plane it is what all VPLs give, to rounding") {
+        // So near that the light of a VPL is the same in all the picture.
+        Scene scene = cornell_box();
+        scene.camera = add(scene.world, looking({0.1F, 1.3F, 1.0F}, {0.15F, 1.25F, -1.0F}),
+                           Camera{.vertical_fov = 1e-4F});
+        for (const VplVisibility method : {VplVisibility::none, VplVisibility::rays}) {
+            // Not a multiple of the classes' number, and a picture that holds no whole number of blocks.
+            Configuration configuration = indirect_only(Interleave::one, 300);
+            configuration.visibility.method = method;
+            const Picture all = picture(scene, configuration, {83, 61});
+            CHECK(mean(all) > 0.01);
+            for (const Interleave interleave : interleaved) {
+                CAPTURE(to_string(interleave));
+                configuration.interleave = interleave;
+                // Over a tenth of a millimetre the light of the nearest VPL, half a metre off, changes by
+                // 1e-4.
+                CHECK(worst_error(picture(scene, configuration, {83, 61}), all, 1e-12) < 2e-4);
+                CHECK(lacking() == 0);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "nothing of one surface's light gets onto another's") {
+        // The wall behind is lit and lights nothing of what turns its back to it.
+        Scene scene;
+        const glm::quat towards_z = glm::angleAxis(glm::half_pi<float>(), glm::vec3(1, 0, 0));
+        add(scene.world, Transform{.translation = {0, 0, -1}, .rotation = towards_z},
+            MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+        for (int i = 0; i < 7; ++i) {
+            const float x = 0.25F * static_cast<float>(i - 3);
+            add(scene.world,
+                Transform{.translation = {x, 0.1F * x, 0.1F * static_cast<float>(i)},
+                          .rotation = towards_z,
+                          .scale = glm::vec3(0.1F)},
+                MeshInstance{square(1.0F, diffuse(glm::vec3(0.5F)))});
+        }
+        add(scene.world, at({0, 0, 0.8F}), PointLight{.intensity = 10.0F});
+        scene.camera = add(scene.world, at({0, 0, 3}), Camera{.vertical_fov = 0.8F});
+        // One bounce: all VPLs face the viewer, and so does all that is seen.
+        Configuration configuration = indirect_only(Interleave::one, 256);
+        configuration.vpls.bounces = 1;
+        configuration.visibility.method = VplVisibility::rays;
+        const Picture all = picture(scene, configuration, {96, 72});
+        const auto black = std::ranges::count(all.pixels, glm::vec3(0.0F));
+        for (const Interleave interleave : interleaved) {
+            CAPTURE(to_string(interleave));
+            configuration.interleave = interleave;
+            const Picture shared = picture(scene, configuration, {96, 72});
+            for (std::size_t i = 0; i < all.pixels.size(); ++i) {
+                CHECK((all.pixels[i] != glm::vec3(0.0F) || shared.pixels[i] == glm::vec3(0.0F)));
+            }
+        }
+        CHECK(black > 1000);
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "in the Cornell box it differs by less than the VPLs' own noise") {
+        const Scene scene = cornell_box();
+        Configuration configuration = indirect_only(Interleave::one, 1024);
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+        constexpr glm::uvec2 size{160, 120};
+        const Picture all = picture(scene, configuration, size);
+        configuration.vpls.seed = 1;
+        const double noise = 0.5 * relative_square(picture(scene, configuration, size), all);  // of each seed
+        configuration.vpls.seed = 0;
+        for (const Interleave interleave : interleaved) {
+            CAPTURE(to_string(interleave));
+            configuration.interleave = interleave;
+            const Picture shared = picture(scene, configuration, size);
+            CHECK(is_sane(shared));
+            CHECK(shared != all);
+            CHECK(relative_square(shared, all) < noise);
+            CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.01));
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "where neighbours do not fit, the pixels ask VPLs themselves") {
+        Scene scene = cluttered_room();
+        add(scene.world, at({0.5F, 1.0F, 0.5F}), PointLight{.intensity = 5.0F});
+        constexpr glm::uvec2 size{96, 72};
+        const Picture all = picture(scene, indirect_only(Interleave::one, 256), size);
+        const Picture shared = picture(scene, indirect_only(Interleave::four, 256), size);
+        CHECK(lacking() > 50);
+        CHECK(lacking() < 96 * 72 / 2);
+        CHECK(is_sane(shared));
+        CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.02));
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "all paths agree at each interleaving") {
+        Scene scene = shipped_scene("glass");
+        for (const Interleave interleave : interleaved) {
+            Configuration configuration = few_vpls();
+            configuration.interleave = interleave;
+            configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+            check_paths(scene, {80, 60}, configuration);
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "pictures of one pixel, one row and one column are whole") {
+        const Scene scene = cornell_box();
+        for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(37, 1), glm::uvec2(1, 37)}) {
+            const Picture all = picture(scene, indirect_only(Interleave::one, 256), size);
+            const Picture shared = picture(scene, indirect_only(Interleave::eight, 256), size);
+            CHECK(is_sane(shared));
+            // Half of the VPLs, or a row of eight of 64 shares, stand for all.
+            CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.25));
+        }
+    }
+
+    TEST_CASE_FIXTURE(VplGatherTests, "without lights there is no indirect light") {
+        Scene scene = cluttered_room();
+        const Picture dark = picture(scene, indirect_only(Interleave::four, 256), {32, 24});
+        CHECK(mean(dark) == 0.0);
+    }
+}
