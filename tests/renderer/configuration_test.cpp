@@ -28,6 +28,7 @@ Configuration unusual() {
     c.show = Show::indirect;
     c.indirect = false;
     c.vpls = {.count = 7, .bounces = 5, .seed = 4'000'000'000U};
+    c.interleave = Interleave::four;
     c.geometry_bound = std::numeric_limits<float>::infinity();
     c.shadows = {.enabled = false, .cube_resolution = 16, .map_resolution = 8192, .budget_mib = 0};
     c.tone_map = {.enabled = false, .exposure_ev = -1.7F};
@@ -79,6 +80,13 @@ TEST_SUITE("configuration") {
         CHECK(faults_of(R"({"shadows": {"map_resolution": 8193}})").size() == 1);
         CHECK(faults_of(R"({"vpls": {"geometry_bound": -0.1}})").size() == 1);
         CHECK(faults_of(R"({"tone_map": {"exposure_ev": "infinity"}})").size() == 1);
+        CHECK(faults_of(R"({"vpls": {"interleave": 3}})") ==
+              Faults{"vpls.interleave: is not one of auto, 1, 2, 4, 8"});
+        CHECK(read_configuration(R"({"vpls": {"interleave": 8}})").configuration->interleave ==
+              Interleave::eight);
+        CHECK(
+            read_configuration(R"({"vpls": {"interleave": "auto"}})", unusual()).configuration->interleave ==
+            Interleave::automatic);
 
         const Faults several = faults_of(
             R"({"path": "sideways", "vpls": {"count": -1, "seed": true}, "shadows": {"enabled": 1}, "extra": {}})");

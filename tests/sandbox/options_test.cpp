@@ -134,6 +134,11 @@ TEST_SUITE("options") {
             const std::string word(to_string(method));
             CHECK(accepted({"--vpl-visibility", word.c_str()}).vpl_visibility == method);
         }
+        for (const auto interleave :
+             {Interleave::automatic, Interleave::one, Interleave::two, Interleave::four, Interleave::eight}) {
+            const std::string word(to_string(interleave));
+            CHECK(accepted({"--interleave", word.c_str()}).interleave == interleave);
+        }
     }
 
     TEST_CASE("a context without windows is headless") {
@@ -165,6 +170,7 @@ TEST_SUITE("options") {
         check_refused_value("--path", {"tiled", "forward-plus", "Forward", "1"});
         check_refused_value("--indirect", {"true", "1"});
         check_refused_value("--vpl-visibility", {"on", "map", "Rays"});
+        check_refused_value("--interleave", {"3", "16", "Auto"});
         check_refused({"--vpls"}, "--vpls", "");
         check_refused({"--animate"}, "--animate", "");
         check_refused({"--vpls", "1", "--vpls", "2"}, "--vpls", "");

@@ -65,6 +65,21 @@ void add_shading(CLI::App& app, int& status) {
     part.callback([=, &status] { status = shading(*scene); });
 }
 
+void add_gather(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("gather", "interleaved gathering against asking all VPLs");
+    const auto study = std::make_shared<GatherStudy>();
+    const auto size = std::make_shared<std::string>("512x512");
+    add_scene(part, study->scene);
+    part.add_option("--size", *size, "WxH, pixels");
+    part.add_option("--vpls", study->vpls, "these many, one after the other")->delimiter(',');
+    part.add_option("--rounds", study->rounds, "after a first one that does not count")
+        ->check(CLI::Range(1, 1000));
+    part.callback([=, &status] {
+        study->size = size_named(*size);
+        status = gather(*study);
+    });
+}
+
 void add_paths(CLI::App& app, int& status) {
     CLI::App& part = *app.add_subcommand("paths", "all shading paths, and what their lists cost");
     const auto study = std::make_shared<PathStudy>();
@@ -184,6 +199,7 @@ int run(int count, char** arguments) {
     int status = 0;
     add_graph(app, status, count, arguments);
     add_shading(app, status);
+    add_gather(app, status);
     add_paths(app, status);
     add_reference(app, status);
     add_baseline(app, status);

@@ -24,9 +24,11 @@ UNBOUNDED = "infinity"
 LEVERS: dict[str, Config] = {
     "none": {
         "shadows": {"cube_resolution": 512, "map_resolution": 1024},
-        "vpls": {"visibility": "none", "budget": 0},
+        "vpls": {"visibility": "none", "budget": 0, "interleave": 1},
         "refinement": {"enabled": False},
     },
+    "interleave-4": {"vpls": {"interleave": 4}},
+    "interleave-8": {"vpls": {"interleave": 8}},
     "shadow-maps-half": {"shadows": {"cube_resolution": 256, "map_resolution": 512, "budget_mib": 8192}},
     "shadow-maps-double": {"shadows": {"cube_resolution": 1024, "map_resolution": 2048, "budget_mib": 8192}},
 }

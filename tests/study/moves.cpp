@@ -47,6 +47,7 @@ Configuration configuration_of(std::uint32_t vpls, std::uint32_t vpl_budget) {
     configuration.path = ShadingPath::deferred;
     configuration.vpls.count = vpls;
     configuration.vpls.budget = vpl_budget;
+    configuration.interleave = Interleave::one;
     configuration.visibility.method = VplVisibility::maps;
     configuration.refinement.enabled = false;
     return configuration;

@@ -43,6 +43,7 @@ int shading(const std::filesystem::path& scene) {
     for (Candidate& candidate : candidates) {
         Configuration configuration;
         configuration.path = candidate.path;
+        configuration.interleave = Interleave::one;
         candidate.bench.configure(configuration);
         candidate.bench.frame({});
     }

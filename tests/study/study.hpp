@@ -18,6 +18,16 @@ int graph(int count, char** arguments);
 /// Forward against deferred shading, and a frame in which nothing changed.
 int shading(const std::filesystem::path& scene);
 
+/// What interleaved gathering is timed on.
+struct GatherStudy {
+    std::filesystem::path scene;
+    glm::uvec2 size{512, 512};
+    std::vector<std::uint32_t> vpls{256, 1024, 4096};
+    int rounds = 5;
+};
+/// Time and difference of indirect light that is gathered interleaved, of asking all VPLs at every pixel.
+int gather(const GatherStudy& study);
+
 /// Which shading paths are timed on what.
 struct PathStudy {
     std::filesystem::path scene;

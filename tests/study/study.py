@@ -26,7 +26,7 @@ from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
 SUITES = ["matrix", "table", "growth", "motion"]
-PROGRAM_PARTS = ["graph", "shading", "paths", "moves"]
+PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
 RESULTS = scenes.ROOT / "tests" / "study" / "results"
 
 
@@ -100,6 +100,7 @@ def run_program_part(part: str) -> None:
     commands = {
         "graph": [["graph", "--benchmark_counters_tabular=true"]],
         "shading": [["shading", cornell]],
+        "gather": [["gather", scenes.SHIPPED / f"{name}.gltf"] for name in ("cornell", "two-rooms", "glass", "fins")],
         "moves": [["moves"]],
         "paths": [
             ["paths", cornell, "--vpls", "256"],
