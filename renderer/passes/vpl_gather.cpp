@@ -10,8 +10,8 @@
 namespace candela {
 namespace {
 
-// VPLs that each class of pixels asks at least, with interleaving chosen by itself. With fewer, the pixels at
-// edges, whose neighbours do not stand for all classes, are noisy (tests/study/run --part gather).
+// VPLs that each class of pixels asks at least under Interleave::automatic. Pixels at edges, some of whose
+// classes have no neighbour on the same surface, would be noisy with fewer.
 constexpr std::uint32_t least_share = 16;
 
 BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPaths> paths) {

@@ -16,7 +16,7 @@ namespace candela {
 /// on the command line and in the panel: auto, 1, 2, 4, 8.
 enum class Interleave : std::uint8_t { automatic, one, two, four, eight };
 
-/// The n that is meant for so many VPLs. By itself it is as large as leaves every class enough of them.
+/// The n that is meant for so many VPLs; `automatic` is the largest that leaves each class sixteen of them.
 [[nodiscard]] std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count);
 
 /// The order in which VPLs are dealt: every stretch of it holds as many of each light and bounce as is in
