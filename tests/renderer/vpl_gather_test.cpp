@@ -96,7 +96,9 @@ TEST_SUITE("interleaved gathering") {
                 const std::size_t last = (share + 1) * order.size() / classes;
                 for (std::size_t i = share * order.size() / classes; i < last; ++i)
                     ++found[group_of[order[i]]];
-                for (const auto& [group, size] : sizes) {
+                for (const auto& entry : sizes) {
+                    const auto& group = entry.first;
+                    const double size = entry.second;
                     CAPTURE(group.first);
                     CAPTURE(group.second);
                     // Both ends of a share lie within one member of each group of where they are in
