@@ -2,16 +2,12 @@
 // that all its invocations walk the same VPLs; work groups are layered by class.
 #include "bindings.glsl"
 #include "pixel_block.glsl"
+#include "visible_surface.glsl"
 #include "vpl_light.glsl"
 #include "vpl_shares.glsl"
 
 layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
 
-uniform mat4 world_from_clip;
-uniform vec2 target_size;
-
-layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
-layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
 layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D gathered;
 
 void main() {
@@ -24,8 +20,7 @@ void main() {
         ivec2 at = min(int(interleave) * block_pixel(s) + ivec2(offset), ivec2(target_size) - 1);
         depth[s] = texelFetch(surface_depth, at, 0).r;
         nearest = max(nearest, depth[s]);
-        PackedSurface stored = PackedSurface(vec3(0.0), texelFetch(surface_normal, at, 0).rg);
-        surfaces[s] = unpack_surface(stored, vec3(vec2(at) + 0.5, depth[s]), target_size, world_from_clip);
+        surfaces[s] = visible_surface(at, depth[s], vec3(0.0));
         irradiance[s] = vec3(0.0);
     }
     uint classes = interleave * interleave;

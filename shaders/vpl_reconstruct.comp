@@ -3,7 +3,7 @@
 // interpolated linearly between its two nearest pixels, as far as these lie on the same surface as the pixel in the middle,
 // so that each class counts once. In alpha: the share of the classes that were found.
 #include "bindings.glsl"
-#include "surface.glsl"
+#include "visible_surface.glsl"
 
 layout(local_size_x = RECONSTRUCT_GROUP) in;
 
@@ -13,12 +13,8 @@ const ivec2 along = ivec2(0, 1);
 const ivec2 along = ivec2(1, 0);
 #endif
 
-uniform mat4 world_from_clip;
-uniform vec2 target_size;
 uniform uint interleave;
 
-layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
-layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
 layout(binding = UNIT_INDIRECT) uniform sampler2D gathered;
 layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D reconstructed;
 
@@ -36,8 +32,7 @@ vec4 tangent_plane(Surface surface) {
 // Irradiance of the pixel in the middle, and the share of the classes that it is from.
 vec4 reconstruct(ivec2 at) {
     float depth = texelFetch(surface_depth, at, 0).r;
-    PackedSurface stored = PackedSurface(vec3(0.0), texelFetch(surface_normal, at, 0).rg);
-    Surface surface = unpack_surface(stored, vec3(vec2(at) + 0.5, depth), target_size, world_from_clip);
+    Surface surface = visible_surface(at, depth, vec3(0.0));
     vec4 plane = tangent_plane(surface);
     float step_off = dot(plane.xy, 2.0 * vec2(along) / target_size);  // how far a pixel more leads off the plane
     ivec2 before = at * along;
@@ -72,8 +67,7 @@ vec4 reconstruct(ivec2 at) {
 
 layout(std430, binding = BINDING_LACKING_MASK) writeonly restrict buffer Mask { uint lacking_mask[]; };  // 32 pixels each
 
-// Of the classes, for a pixel not to ask VPLs itself.
-uniform float enough;
+const float ENOUGH = 0.75;  // of the classes, for a pixel not to ask VPLs itself
 
 shared uint group_mask[RECONSTRUCT_GROUP / 32];
 
@@ -96,6 +90,6 @@ void main() {
     vec4 result = is_surface ? reconstruct(at) : vec4(0.0);
     imageStore(reconstructed, at, result);  // beyond the target it is discarded by the GL
 #ifdef COLUMNS
-    note_lacking(is_surface && result.a < enough);
+    note_lacking(is_surface && result.a < ENOUGH);
 #endif
 }

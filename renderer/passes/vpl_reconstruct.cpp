@@ -1,16 +1,9 @@
 #include "renderer/passes/vpl_reconstruct.hpp"
 
-#include <string>
-#include <vector>
-
 #include "engine/graph/execute.hpp"
 
 namespace candela {
 namespace {
-
-constexpr float enough = 0.75F;  // of the classes, for a pixel not to ask VPLs itself
-constexpr std::uint32_t fill_stride =
-    2;  // such a pixel asks half of the VPLs: a quarter left 17 % more error in the fins
 
 /// What all nodes read of the surfaces, and where they write.
 struct Pixels {
@@ -33,16 +26,16 @@ void bind_pixels(const Gpu& gpu, Execution& run, const gl::Program& program, con
     gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(pixels.surfaces.depth));
     gpu.gl().BindImageTexture(IMAGE_INDIRECT, run.object(written), 0, GL_FALSE, 0, access, GL_RGBA32F);
     bind_view(program, run.value(pixels.view), pixels.size);
-    program.set("interleave", pixels.interleave);
 }
 
 std::uint32_t groups_of_row(glm::uvec2 size) {
     return (size.x + RECONSTRUCT_GROUP - 1) / RECONSTRUCT_GROUP;
 }
 
-void dispatch(const Gpu& gpu, const gl::Program& program, glm::uvec2 size) {
+void dispatch(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) {
+    program.set("interleave", pixels.interleave);
     program.use();
-    gpu.gl().DispatchCompute(groups_of_row(size), size.y, 1);
+    gpu.gl().DispatchCompute(groups_of_row(pixels.size), pixels.size.y, 1);
 }
 
 TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle gathered) {
@@ -55,7 +48,7 @@ TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, Textur
         pass.run([=, &gpu, &program](Execution& run) {
             bind_pixels(gpu, run, program, pixels, out, GL_WRITE_ONLY);
             gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(gathered));
-            dispatch(gpu, program, pixels.size);
+            dispatch(gpu, program, pixels);
         });
         return out;
     });
@@ -87,8 +80,7 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHa
             bind_pixels(gpu, run, program, pixels, out.irradiance, GL_WRITE_ONLY);
             gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(rows));
             gpu.bind_storage(BINDING_LACKING_MASK, run.object(out.lacking_mask));
-            program.set("enough", enough);
-            dispatch(gpu, program, pixels.size);
+            dispatch(gpu, program, pixels);
         });
         return out;
     });
@@ -129,7 +121,6 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
             gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
             gpu.bind_storage(BINDING_LACKING, run.object(found.lacking));
             bind_vpl_light(gpu, run, program, light);
-            program.set("fill_stride", fill_stride);
             program.use();
             gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(found.lacking));
             gpu.gl().DispatchComputeIndirect(0);

@@ -75,19 +75,6 @@ Picture average(const std::vector<Picture>& pictures) {
     return mean;
 }
 
-/// Mean squared error relative to the reference's mean square.
-double relative_error(const Picture& picture, const Picture& reference) {
-    double error = 0.0;
-    double power = 0.0;
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        const glm::dvec3 wanted(reference.pixels[i]);
-        const glm::dvec3 off = glm::dvec3(picture.pixels[i]) - wanted;
-        error += glm::dot(off, off);
-        power += glm::dot(wanted, wanted);
-    }
-    return error / power;
-}
-
 }  // namespace
 
 TEST_SUITE("refinement") {
@@ -128,9 +115,9 @@ TEST_SUITE("refinement") {
         glm::dvec3 error(0.0);  // after 1, 8 and 64 sets, of four sequences
         for (const std::uint32_t seed : {0U, 1000U, 2000U, 3000U}) {
             start_at(seed, 64);
-            error.x += relative_error(refined(1), reference);
-            error.y += relative_error(refined(7), reference);
-            error.z += relative_error(refined(56), reference);
+            error.x += relative_mean_square(refined(1), reference);
+            error.y += relative_mean_square(refined(7), reference);
+            error.z += relative_mean_square(refined(56), reference);
         }
         CAPTURE(error.x);
         CAPTURE(error.y);

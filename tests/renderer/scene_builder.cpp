@@ -221,6 +221,18 @@ double worst_error(const Picture& a, const Picture& b, double floor) {
     return worst;
 }
 
+double relative_mean_square(const Picture& picture, const Picture& reference) {
+    double error = 0.0;
+    double power = 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const glm::dvec3 wanted(reference.pixels[i]);
+        const glm::dvec3 off = glm::dvec3(picture.pixels[i]) - wanted;
+        error += glm::dot(off, off);
+        power += glm::dot(wanted, wanted);
+    }
+    return error / power;
+}
+
 PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size, std::uint32_t x,
                    std::uint32_t y) {
     const glm::dquat rotation(pose.rotation);

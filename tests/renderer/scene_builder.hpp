@@ -77,6 +77,9 @@ struct Picture {
 /// Largest |a - b| / max(|b|, floor) over all pixels and channels; infinite where one is not a number.
 [[nodiscard]] double worst_error(const Picture& a, const Picture& b, double floor);
 
+/// Mean squared error relative to the reference's mean square.
+[[nodiscard]] double relative_mean_square(const Picture& picture, const Picture& reference);
+
 /// The line through the centre of a pixel, worked out from the camera's definition and not from its matrices.
 struct PixelRay {
     glm::dvec3 origin;

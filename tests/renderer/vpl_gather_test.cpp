@@ -26,25 +26,13 @@ Configuration indirect_only(Interleave interleave, std::uint32_t vpls) {
     return configuration;
 }
 
-/// Sum of the squared differences over that of the reference's squares.
-double relative_square(const Picture& picture, const Picture& reference) {
-    double difference = 0.0, square = 0.0;
-    for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
-        const glm::dvec3 expected(reference.pixels[i]);
-        const glm::dvec3 off = glm::dvec3(picture.pixels[i]) - expected;
-        difference += glm::dot(off, off);
-        square += glm::dot(expected, expected);
-    }
-    return difference / square;
-}
-
 class VplGatherTests : public PathFixture {
  protected:
     Picture picture(const Scene& scene, const Configuration& configuration, glm::uvec2 size) {
         configure(configuration);
         return render(scene, size);
     }
-    double lacking() {
+    std::uint32_t lacking() {
         const Report report = renderer.report();
         REQUIRE(report.vpls);
         return report.vpls->lacking_pixels;
@@ -177,7 +165,8 @@ TEST_SUITE("interleaved gathering") {
         constexpr glm::uvec2 size{160, 120};
         const Picture all = picture(scene, configuration, size);
         configuration.vpls.seed = 1;
-        const double noise = 0.5 * relative_square(picture(scene, configuration, size), all);  // of each seed
+        const double noise =
+            0.5 * relative_mean_square(picture(scene, configuration, size), all);  // of each seed
         configuration.vpls.seed = 0;
         for (const Interleave interleave : interleaved) {
             CAPTURE(to_string(interleave));
@@ -185,7 +174,7 @@ TEST_SUITE("interleaved gathering") {
             const Picture shared = picture(scene, configuration, size);
             CHECK(is_sane(shared));
             CHECK(shared != all);
-            CHECK(relative_square(shared, all) < noise);
+            CHECK(relative_mean_square(shared, all) < noise);
             CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.01));
         }
     }
