@@ -157,7 +157,9 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
     }
     if (frame_.refinement) {
         const std::uint32_t sets = runtime_.value(*frame_.refinement).set + 1;
-        refine_ = !vpl_work_ && sets < configuration_.refinement.frames;
+        constexpr std::uint32_t samples_of_direct_light = 64;
+        const std::uint32_t wanted = configuration_.refinement.frames;
+        refine_ = !vpl_work_ && sets < (frame_.vpls ? wanted : std::min(wanted, samples_of_direct_light));
     }
     pending_.push_back(to_report(last_passes_, index, milliseconds_since(start)));
     match_times(backend_.timer().collect());

@@ -60,11 +60,9 @@ void flip_rows(std::vector<glm::vec3>& pixels, glm::uvec2 size) {
 
 }  // namespace
 
-glm::vec2 pixel_jitter(int sample) {
-    // The powers of 1/p, p being the real root of x³ = x + 1.
-    constexpr glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
-    const glm::dvec2 point = glm::fract(0.5 + step * static_cast<double>(sample));
-    return glm::vec2(point - 0.5);
+glm::vec2 pixel_jitter(int i, int count) {
+    const int first = count % 2 == 0 ? 1 : 0;  // an even number is pairs, without the sample at the centre
+    return pixel_sample(static_cast<std::uint32_t>(first + i));
 }
 
 Capture::Canvas::Canvas(gl::Device& device, glm::uvec2 size, Format format)
@@ -80,8 +78,7 @@ Capture::Capture(Renderer& renderer, glm::ivec2 size)
       linear_(renderer.device(), size_, Format::rgba32f),
       encoded_(renderer.device(), size_, Format::rgba8) {}
 
-void Capture::add_frame(const World& world, Entity camera, glm::vec2 jitter, std::vector<glm::vec3>& sum) {
-    renderer_->render(world, camera, {linear_.framebuffer.name(), size_}, jitter);
+void Capture::add_pixels(std::vector<glm::vec3>& sum) {
     const std::vector<float> rgba = linear_.colour.read_floats();
     for (std::size_t i = 0; i < sum.size(); ++i)
         sum[i] += glm::vec3(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
@@ -92,11 +89,15 @@ Picture Capture::render(const World& world, Entity camera, int samples, CaptureR
     const std::vector<FrameReport> earlier = renderer_->take_frames(true);
     std::vector<glm::vec3> sum(static_cast<std::size_t>(size_.x) * size_.y);
     std::vector<FrameReport> frames;
+    const bool refines = renderer_->configuration().refinement.enabled;
+    const int kept = refines ? 1 : samples;
     for (int sample = 0; sample < samples; ++sample) {
-        add_frame(world, camera, pixel_jitter(sample), sum);
+        const glm::vec2 jitter = refines ? glm::vec2(0.0F) : pixel_jitter(sample, samples);
+        renderer_->render(world, camera, {linear_.framebuffer.name(), size_}, jitter);
+        if (sample >= samples - kept) add_pixels(sum);
         for (FrameReport& frame : renderer_->take_frames(true)) frames.push_back(std::move(frame));
     }
-    for (glm::vec3& pixel : sum) pixel /= static_cast<float>(samples);
+    for (glm::vec3& pixel : sum) pixel /= static_cast<float>(kept);
     flip_rows(sum, size_);
     report = {sum_up(frames), renderer_->report()};
     return {glm::ivec2(size_), std::move(sum)};

@@ -9,9 +9,8 @@
 
 namespace candela::sandbox {
 
-/// Sample i of the pixel, in pixels from its centre, within [-0.5, 0.5): the sequence R2 of Roberts, "The
-/// Unreasonable Effectiveness of Quasirandom Sequences" (2018). Sample 0 is the centre.
-[[nodiscard]] glm::vec2 pixel_jitter(int sample);
+/// Where the i-th of `count` samples lies in a pixel, in pixels from its centre, on which their mean lies.
+[[nodiscard]] glm::vec2 pixel_jitter(int i, int count);
 
 /// What one picture took: the sums over its samples, and the state after them.
 struct CaptureReport {
@@ -26,7 +25,8 @@ class Capture {
     /// not allow the size (pixels).
     Capture(Renderer& renderer, glm::ivec2 size);
 
-    /// The mean of so many frames, jittered within the pixel (a box filter), in linear radiance.
+    /// The mean of so many frames, jittered within the pixel (a box filter), in linear radiance. With
+    /// refinement, which does both, so many frames more are in its mean.
     [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
 
     /// The picture through the renderer's tone map: sRGB-encoded, three bytes a pixel, row 0 at the top.
@@ -44,7 +44,7 @@ class Capture {
         Canvas(gl::Device& device, glm::uvec2 size, Format format);
     };
 
-    void add_frame(const World& world, Entity camera, glm::vec2 jitter, std::vector<glm::vec3>& sum);
+    void add_pixels(std::vector<glm::vec3>& sum);
 
     Renderer* renderer_;
     glm::uvec2 size_;

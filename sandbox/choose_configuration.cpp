@@ -22,11 +22,16 @@ void override_by(const std::optional<T>& flag, T& value) {
     if (flag) value = *flag;
 }
 
+bool is_one_picture_of_many_frames(const Options& options) {
+    const bool one_picture = options.out && numbered(*options.out, 0) == *options.out;
+    return one_picture && options.frames.value_or(1) > 1 && !options.animate;
+}
+
 }  // namespace
 
 Configuration choose_configuration(const Options& options, bool in_window) {
     Configuration configuration;
-    configuration.refinement.enabled = in_window;
+    configuration.refinement.enabled = in_window || is_one_picture_of_many_frames(options);
     if (options.config) configuration = read_over(configuration, *options.config);
     override_by(options.show, configuration.show);
     override_by(options.path, configuration.path);

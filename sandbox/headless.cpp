@@ -65,6 +65,7 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
     fmt::print("{} on {}, {}x{}\n", run.context, run.state.gl_renderer, size.x, size.y);
     fmt::print("{}", to_table(run.frames.back(), run.state));
     if (out) fmt::print("picture          {}\n", fs::absolute(numbered(*out, frames - 1)).string());
+    check_energy(run.scene, run.state);
 }
 
 void write_documents(const Options& options, const RunReport& report, const Renderer& renderer) {

@@ -176,8 +176,6 @@ void check_together(Options& options) {
         throw CLI::ValidationError("--headless", "there is no window for --context window");
     }
     options.headless = options.headless || windowless;
-    if (const auto fault = numbering_fault(options, options.frames.value_or(1)))
-        throw CLI::ValidationError(*fault);
 }
 
 std::string one_line(std::string text) {
@@ -202,12 +200,6 @@ std::variant<Options, EarlyExit> parse_options(int count, const char* const* arg
     } catch (const CLI::ParseError& fault) {
         return EarlyExit{2, fmt::format("candela: {}\n", one_line(fault.what()))};
     }
-}
-
-std::optional<std::string> numbering_fault(const Options& options, int frames) {
-    if (!options.out || frames == 1) return std::nullopt;
-    if (options.out->filename().string().find(frame_number) != std::string::npos) return std::nullopt;
-    return fmt::format("--out: '{}' needs a %d to number its {} frames", options.out->string(), frames);
 }
 
 fs::path numbered(const fs::path& out, int frame) {

@@ -55,10 +55,8 @@ struct EarlyExit {
 /// that is to hold it, is there. Faults have exit status 2.
 [[nodiscard]] std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments);
 
-/// What is wrong with the name for so many pictures; nullopt if nothing is.
-[[nodiscard]] std::optional<std::string> numbering_fault(const Options& options, int frames);
-
-/// The picture's file name for frame `frame`: every "%d" in the name becomes its number.
+/// The picture's file name for frame `frame`: every "%d" in the name becomes its number. Without one, all
+/// frames have the same name, and the last is written.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& out, int frame);
 
 }  // namespace candela::sandbox

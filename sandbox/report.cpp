@@ -1,6 +1,8 @@
 #include "sandbox/report.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -104,6 +106,7 @@ std::string to_json(const RunReport& report) {
         {"size", {report.size.x, report.size.y}},
         {"config", OrderedJson::parse(write_configuration(report.configuration))},
         {"frames", frames},
+        {"refined", report.state.refined},
         {"vpls", report.state.vpls ? to_json(*report.state.vpls) : OrderedJson(nullptr)},
         {"lights", to_json(report.state.lights)},
         {"memory", to_json(report.state.memory)}};
@@ -114,6 +117,7 @@ std::string to_json(const RunReport& report) {
 std::string to_table(const FrameReport& frame, const Report& state) {
     std::string table = pass_table(frame);
     table += fmt::format("triangles        {}\n", state.triangles);
+    if (state.refined > 0) table += fmt::format("refined          {} frames in the mean\n", state.refined);
     table += light_table(state.lights);
     return state.vpls ? table + vpl_table(*state.vpls) : table;
 }
@@ -122,10 +126,20 @@ double relative_residual(const EnergyAccount& flux) {
     const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;
     double largest = 0.0;
     for (int channel = 0; channel < 3; ++channel) {
+        if (!std::isfinite(rest[channel])) return std::numeric_limits<double>::infinity();
         if (flux.emitted[channel] > 0.0)
             largest = std::max(largest, glm::abs(rest[channel]) / flux.emitted[channel]);
     }
     return largest;
+}
+
+void check_energy(const std::string& scene, const Report& state) {
+    constexpr double most = 0.01;
+    const double residual = state.vpls ? relative_residual(state.vpls->flux) : 0.0;
+    if (residual > most)
+        throw EnergyError(
+            fmt::format("{}: {:.3g} % of the emitted flux is unaccounted for: the picture is wrong", scene,
+                        100.0 * residual));
 }
 
 std::vector<EnergyLine> energy_lines(const EnergyAccount& flux) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,18 @@ struct RunReport {
 /// A short table for the terminal: passes with their times, then counts and the energy account.
 [[nodiscard]] std::string to_table(const FrameReport& frame, const Report& state);
 
-/// Flux that the account does not explain, relative to what was emitted: the largest of the three channels.
+/// Flux that the account does not explain, relative to what was emitted: the largest of the three channels;
+/// infinite where one is not a number.
 [[nodiscard]] double relative_residual(const EnergyAccount& flux);
+
+/// The light of a picture does not add up.
+struct EnergyError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Throws EnergyError, which names the scene, where more than a hundredth of the emitted flux is unaccounted
+/// for.
+void check_energy(const std::string& scene, const Report& state);
 
 /// An item of the account, for tables.
 struct EnergyLine {

@@ -18,6 +18,7 @@
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/config_watch.hpp"
 #include "sandbox/headless.hpp"
+#include "sandbox/report.hpp"
 #include "sandbox/scene.hpp"
 #include "sandbox/window.hpp"
 #include "sandbox/window_session.hpp"
@@ -28,6 +29,7 @@ namespace {
 
 constexpr int faulty_input = 2;
 constexpr int no_driver = 3;
+constexpr int wrong_picture = 4;
 constexpr glm::ivec2 window_size{1280, 720};
 constexpr glm::ivec2 headless_size{512, 512};
 
@@ -110,10 +112,6 @@ Scene open_scene(const Options& options) {
     return scene;
 }
 
-void check_numbering(const Options& options, int frames) {
-    if (const auto fault = numbering_fault(options, frames)) throw std::runtime_error(*fault);
-}
-
 void run_session(const Options& options) {
     ConfigWatch watch(options);
     const bool windowed = wants_window(options);
@@ -133,7 +131,6 @@ void run_session(const Options& options) {
         return run_window(*window, scene, camera, configuration, watch, options);
     }
     for (const std::string& fault : tried) fmt::print(stderr, "candela: no window: {}\n", fault);
-    check_numbering(options, frames_of(options, scene));
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
@@ -149,6 +146,8 @@ int run(const Options& options) {
         return 0;
     } catch (const ContextError& fault) {
         return report_fault(fault, no_driver);
+    } catch (const EnergyError& fault) {
+        return report_fault(fault, wrong_picture);
     } catch (const std::exception& fault) {
         return report_fault(fault, faulty_input);
     }

@@ -5,7 +5,7 @@
 namespace candela::sandbox {
 
 /// Does what the command line asks for, in a window or without one. The exit status: 0, or 2 for faulty
-/// input, or 3 without a driver, each with one line on stderr.
+/// input, 3 without a driver, 4 where light is lost unaccounted for, each with one line on stderr.
 [[nodiscard]] int run(const Options& options);
 
 }  // namespace candela::sandbox

@@ -27,4 +27,19 @@ ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<Refinement
     });
 }
 
+ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,
+                                         ValueHandle<Refinement> refinement) {
+    return graph.add("refined-view", [&](Pass& pass) {
+        read_view(pass, request);
+        pass.read(refinement);
+        const auto out = pass.write(graph.value<CameraView>("refined view"));
+        pass.run([=](Execution& run) {
+            ViewRequest sampled = run.value(request);
+            sampled.jitter += pixel_sample(run.value(refinement).set);
+            run.set(out, requested_view(run.world(), sampled));
+        });
+        return out;
+    });
+}
+
 }  // namespace candela

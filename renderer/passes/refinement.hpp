@@ -9,10 +9,10 @@
 
 namespace candela {
 
-/// Averaging of frames while nothing moves, each with VPLs of its own.
+/// Averaging of frames while nothing moves, each with VPLs, and with a sample of the pixels, of its own.
 struct RefinementSettings {
     bool enabled = false;
-    std::uint32_t frames = 1024;  ///< after so many the picture stands
+    std::uint32_t frames = 1024;  ///< after so many the picture stands; without VPLs after 64 at most
     bool operator==(const RefinementSettings&) const = default;
 };
 
@@ -24,7 +24,7 @@ struct RefinementClock {
 };
 
 /// Which set of VPLs a frame is lit by. Set 0 is that of a frame without refinement; set k has the seed
-/// `VplSettings::seed` + k.
+/// `VplSettings::seed` + k, and is seen at sample k of the pixels: see pixel_sample.
 struct Refinement {
     std::uint32_t set = 0;  ///< so many sets are in the mean already
     std::uint64_t epoch = 0;
@@ -36,5 +36,9 @@ struct Refinement {
 [[nodiscard]] ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
                                                      const SceneData& scene, ValueHandle<LightTable> lights,
                                                      ValueHandle<CameraView> view);
+
+/// Node `refined-view` (CPU): the requested view, its samples moved to where this set of VPLs is seen.
+[[nodiscard]] ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,
+                                                       ValueHandle<Refinement> refinement);
 
 }  // namespace candela

@@ -1,6 +1,7 @@
 #include "renderer/passes/view.hpp"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -60,23 +61,37 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, c
             .orthographic = camera.projection == Camera::Projection::orthographic};
 }
 
+CameraView requested_view(const World& world, const ViewRequest& request) {
+    return make_view(world.get<Camera>(request.camera), world_matrix(world, request.camera), request);
+}
+
+void read_view(Pass& pass, ValueHandle<ViewRequest> request) {
+    pass.read(request);
+    pass.read<Camera>();
+    pass.read<Transform>();
+}
+
 void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size) {
     program.set("clip_from_world", view.clip_from_world);
     program.set("world_from_clip", view.world_from_clip);
     program.set("target_size", glm::vec2(size));
 }
 
+glm::vec2 pixel_sample(std::uint32_t i) {
+    if (i == 0) {
+        return glm::vec2(0.0F);
+    }
+    // The powers of 1/p, p being the real root of x³ = x + 1.
+    constexpr glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
+    const glm::dvec2 point = glm::fract(0.5 + step * static_cast<double>((i + 1) / 2)) - 0.5;
+    return glm::vec2(i % 2 == 1 ? point : -point);
+}
+
 ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request) {
     return graph.add("view", [&](Pass& pass) {
-        pass.read(request);
-        pass.read<Camera>();
-        pass.read<Transform>();
+        read_view(pass, request);
         const auto view = pass.write(graph.value<CameraView>("view"));
-        pass.run([=](Execution& run) {
-            const ViewRequest& wanted = run.value(request);
-            const auto& camera = run.world().get<Camera>(wanted.camera);
-            run.set(view, make_view(camera, world_matrix(run.world(), wanted.camera), wanted));
-        });
+        pass.run([=](Execution& run) { run.set(view, requested_view(run.world(), run.value(request))); });
         return view;
     });
 }

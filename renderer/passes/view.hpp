@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
@@ -34,10 +35,20 @@ struct CameraView {
 [[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera,
                                    const ViewRequest& request);
 
+/// View that the host asks for. Throws EntityError if the requested camera is none.
+[[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
+/// What a pass reads that calls it.
+void read_view(Pass& pass, ValueHandle<ViewRequest> request);
+
 /// Sets the uniforms by which shaders go between pixels and the world.
 void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size);
 
-/// Node `view` (CPU). Throws EntityError if the requested camera is none.
+/// Sample i within a pixel, in pixels from its centre, within [-0.5, 0.5]. Sample 0 is the centre; 2k - 1 and
+/// 2k lie opposite each other, at point k of the sequence R2 (Roberts, "The Unreasonable Effectiveness of
+/// Quasirandom Sequences", 2018), so that a mean over samples does not shift the picture.
+[[nodiscard]] glm::vec2 pixel_sample(std::uint32_t i);
+
+/// Node `view` (CPU).
 [[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
 
 }  // namespace candela

@@ -1,5 +1,6 @@
 #include "sandbox/report.hpp"
 
+#include <limits>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -83,6 +84,20 @@ TEST_SUITE("report") {
         lossy.absorbed.g -= 2.0;
         CHECK(relative_residual(lossy) == doctest::Approx(0.1));
         CHECK(relative_residual({}) == 0.0);
+        lossy.escaped.b = std::numeric_limits<double>::quiet_NaN();
+        CHECK(relative_residual(lossy) == std::numeric_limits<double>::infinity());
+    }
+
+    TEST_CASE("light that is lost is an error that names the scene") {
+        Report state;
+        check_energy("a.gltf", state);  // without VPLs there is no account
+        state.vpls.emplace();
+        state.vpls->flux = balanced();
+        check_energy("a.gltf", state);
+        state.vpls->flux.absorbed.g -= 2.0;
+        CHECK_THROWS_WITH_AS(check_energy("a.gltf", state),
+                             "a.gltf: 10 % of the emitted flux is unaccounted for: the picture is wrong",
+                             EnergyError);
     }
 
     TEST_CASE("the table names every pass and tells which ones ran") {

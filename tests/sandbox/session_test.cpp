@@ -61,6 +61,36 @@ TEST_SUITE("session") {
         CHECK(first.pixels == read_pfm(*options.out).pixels);
     }
 
+    TEST_CASE("frames of a still scene without numbers are one refined picture") {
+        const TemporaryFolder folder;
+        Options options = small_headless();
+        options.out = folder / "one.pfm";
+        REQUIRE(run(options) == 0);
+        options.frames = 3;
+        options.report = folder / "a.json";
+        options.out = folder / "mean.pfm";
+        REQUIRE(run(options) == 0);
+        CHECK(nlohmann::json::parse(std::ifstream(*options.report))["refined"] == 3);
+        CHECK(read_pfm(folder / "mean.pfm").pixels != read_pfm(folder / "one.pfm").pixels);
+        options.frames = 1;
+        options.samples = 3;
+        options.config = folder / "refine.json";
+        std::ofstream(*options.config) << R"({"refinement": {"enabled": true}})";
+        options.out = folder / "samples.pfm";
+        REQUIRE(run(options) == 0);
+        CHECK(read_pfm(folder / "samples.pfm").pixels == read_pfm(folder / "mean.pfm").pixels);
+        // A script has an end, and its last frame is a picture of its own.
+        options = small_headless();
+        options.animate = "toggle";
+        options.frames = 3;
+        options.indirect = false;
+        options.out = folder / "last.pfm";
+        REQUIRE(run(options) == 0);
+        options.out = folder / "%d.pfm";
+        REQUIRE(run(options) == 0);
+        CHECK(read_pfm(folder / "last.pfm").pixels == read_pfm(folder / "2.pfm").pixels);
+    }
+
     TEST_CASE("every shipped script moves its scene, the same in every run") {
         for (const char* script : {"orbit-light", "door-opens", "flicker-walk", "teleport", "toggle"}) {
             CAPTURE(script);
@@ -148,9 +178,6 @@ TEST_SUITE("session") {
             options.scene = shipped_file("scenes", "corner.gltf");
             options.animate = "orbit-light";
             options.out = folder / "%d.png";
-        }
-        SUBCASE("a script of many frames and one picture") {
-            options.animate = "orbit-light";
         }
         SUBCASE("a picture that the driver cannot hold") {
             options.size = glm::ivec2(1 << 24, 1);

@@ -280,10 +280,10 @@ Json time_point(Bench& bench, const Point& point, std::uint32_t round) {
     bench.configure(configuration_of(point));
     bench.frame({});
     static_cast<void>(bench.renderer().take_frames(true));
-    const double frame_ms = bench.frame(sandbox::pixel_jitter(static_cast<int>(2 * round - 1)));
+    const double frame_ms = bench.frame(pixel_sample(2 * round - 1));
     const FrameReport frame = bench.renderer().take_frames(true).back();
     bench.renderer().invalidate();
-    const double full_ms = bench.frame(sandbox::pixel_jitter(static_cast<int>(2 * round)));
+    const double full_ms = bench.frame(pixel_sample(2 * round));
     return {{"id", point.id},         {"kind", "time"},         {"round", round},    {"frame_ms", frame_ms},
             {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"full_ms", full_ms}};
 }
