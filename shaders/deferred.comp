@@ -6,7 +6,7 @@
 #include "visible_surface.glsl"
 
 layout(binding = UNIT_ALBEDO) uniform sampler2D gbuffer_albedo;
-layout(rgba32f, binding = IMAGE_RADIANCE) writeonly restrict uniform image2D radiance;
+layout(rgba32f, binding = IMAGE_RADIANCE) restrict uniform image2D radiance;
 
 void main() {
     float depth[SURFACES];
@@ -24,5 +24,9 @@ void main() {
     for (int s = 0; s < SURFACES; ++s) reflected[s] = vec3(0.0);
     if (nearest > 0.0) reflect_radiance(surfaces, pixels, reflected);
     // Stores beyond the target are discarded by the GL.
-    for (int s = 0; s < SURFACES; ++s) imageStore(radiance, block_pixel(s), depth[s] > 0.0 ? vec4(reflected[s], 1.0) : vec4(0.0));
+    for (int s = 0; s < SURFACES; ++s) {
+        vec4 sum = depth[s] > 0.0 ? vec4(reflected[s], 1.0) : vec4(0.0);
+        if (lights_before > 0u) sum.rgb += imageLoad(radiance, block_pixel(s)).rgb;
+        imageStore(radiance, block_pixel(s), sum);
+    }
 }

@@ -10,5 +10,5 @@ void main() {
     // A thousandth of slack: whoever looks a depth up rounds the logarithm in its own way.
     float nearest = slice == 0u ? (orthographic ? -1.0e30 : 0.0) : first_depth * pow(depth_ratio, float(slice) - 1.0) * 0.999;
     float farthest = slice + 1u == grid_slices ? 1.0e30 : first_depth * pow(depth_ratio, float(slice)) * 1.001;
-    narrow(index, make_cell(tile, nearest, farthest, 0xffffffffu));
+    cull(index, make_cell(tile, nearest, farthest, 0xffffffffu));
 }

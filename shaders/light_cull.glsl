@@ -1,4 +1,4 @@
-// Narrows the list of a cell down to the lights that reach it, in place and in order. One invocation a cell.
+// Culls the list of a cell: the lights that reach it stay, in place and in order. One invocation a cell.
 #include "bindings.glsl"
 #include "light_cells.glsl"
 #include "types.glsl"
@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
-layout(std430, binding = BINDING_LIST_COUNT) writeonly restrict buffer ListCount { uint list_count[]; };
+layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };
 
 uniform uvec2 target_pixels;
@@ -97,11 +97,15 @@ bool reaches(Light light, Cell cell) {
     return !outside_cone(box, centre, axis, light.cos_outer - 1e-4);
 }
 
-void narrow(uint index, Cell cell) {
+uniform uint culled_before;  // entries of each list, in the dispatches before this one
+uniform uint culled_now;     // at most
+
+void cull(uint index, Cell cell) {
     uint first = list_first[index];
-    uint end = list_first[index + 1u];
-    uint kept = first;
-    for (uint i = first; i < end; ++i) {
+    uint begin = first + culled_before;
+    uint end = min(list_first[index + 1u], begin + culled_now);
+    uint kept = culled_before == 0u ? first : first + list_count[index];
+    for (uint i = begin; i < end; ++i) {
         uint light = list_entries[i];
         if (reaches(lights[light], cell)) list_entries[kept++] = light;
     }

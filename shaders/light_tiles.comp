@@ -45,5 +45,5 @@ void main() {
     if (index >= grid_tiles.x * grid_tiles.y) return;
     uvec2 tile = uvec2(index % grid_tiles.x, index / grid_tiles.x);
     float nearest = orthographic ? -1.0e30 : 0.0;
-    narrow(index, has_depth ? bound_by_depth(tile) : make_cell(tile, nearest, 1.0e30, 0xffffffffu));
+    cull(index, has_depth ? bound_by_depth(tile) : make_cell(tile, nearest, 1.0e30, 0xffffffffu));
 }

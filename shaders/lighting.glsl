@@ -13,6 +13,9 @@
 #define SURFACES 1
 #endif
 
+uniform uint lights_before;  // entries of each list, in the dispatches or draws before this one
+uniform uint lights_now;     // at most
+
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 
 vec3 irradiance_from_light(Light light, Surface surface) {
@@ -28,13 +31,13 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
 #ifdef LIGHT_LIST_PER_SURFACE
     for (int s = 0; s < SURFACES; ++s) {
         LightListRange list = light_list_at(pixels[s], surfaces[s].position);
-        for (uint i = 0u; i < list.size; ++i) {
+        for (uint i = lights_before; i < min(list.size, lights_before + lights_now); ++i) {
             irradiance[s] += irradiance_from_light(lights[light_list_entry(list, i)], surfaces[s]);
         }
     }
 #else
     LightListRange list = light_list_at(pixels[0], surfaces[0].position);
-    for (uint i = 0u; i < list.size; ++i) {
+    for (uint i = lights_before; i < min(list.size, lights_before + lights_now); ++i) {
         Light light = lights[light_list_entry(list, i)];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_light(light, surfaces[s]);
     }
@@ -54,12 +57,16 @@ void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout v
 
 #include "vpl_light.glsl"
 
-// π times the irradiance from the VPLs. All surfaces visit all of them: a VPL reaches everything in front of it.
+uniform uint vpl_stride;  // 1: surfaces ask all VPLs
+
+// π times the irradiance from the VPLs. All surfaces visit all of them: a VPL reaches everything in front of it. Where they
+// are too many, every vpl_stride-th of them stands for all, and for pixels side by side not the same ones.
 void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
-    for (uint i = 0u; i < vpl_count; ++i) {
+    for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < vpl_count; i += vpl_stride) {
         Vpl vpl = vpls[i];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
     }
+    for (int s = 0; s < SURFACES; ++s) irradiance[s] *= float(vpl_stride);
 }
 
 #endif
@@ -70,6 +77,6 @@ void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out ve
     vec3 indirect[SURFACES];
     for (int s = 0; s < SURFACES; ++s) direct[s] = indirect[s] = vec3(0.0);
     gather_lights(surfaces, pixels, direct);
-    gather_indirect(surfaces, pixels, indirect);
+    if (lights_before == 0u) gather_indirect(surfaces, pixels, indirect);
     for (int s = 0; s < SURFACES; ++s) radiance[s] = surfaces[s].albedo / PI * (direct[s] + indirect[s] / PI);
 }

@@ -1,6 +1,5 @@
 // A work group of a compute shader that shades takes a block of 16 × 16 pixels. An invocation takes four of them, 8 apart,
-// and fetches each light once for all four; with rays, which cost more than any fetch, it takes one, as software drivers
-// end the loops of an invocation after 65,536 turns in all.
+// and fetches each light once for all four; with rays, which cost more than any fetch, it takes one.
 #include "bindings.glsl"
 
 #ifdef VPL_VISIBILITY_RAYS

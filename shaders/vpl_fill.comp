@@ -13,6 +13,9 @@ layout(std430, binding = BINDING_LACKING) readonly restrict buffer Lacking {
     uint lacking[];
 };
 
+uniform uint asked_before;  // VPLs, in the dispatches before this one
+uniform uint asked_now;     // at most
+
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
 
 void main() {
@@ -21,10 +24,12 @@ void main() {
     ivec2 at = ivec2(packed_pixel & 0xffffu, packed_pixel >> 16);
     Surface surface = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
     vec3 irradiance = vec3(0.0);
-    for (uint i = uint(at.x + at.y) % 2u; i < vpl_count; i += 2u) {
+    uint end = min(vpl_count, 2u * (asked_before + asked_now));
+    for (uint i = 2u * asked_before + uint(at.x + at.y) % 2u; i < end; i += 2u) {
         irradiance += irradiance_from_vpl(vpls[vpl_order[i]], surface);
     }
     vec4 found = imageLoad(reconstructed, at);
-    vec3 mean = (found.rgb * found.a + irradiance) / (found.a + 0.5);  // half of them send half of what all would
-    imageStore(reconstructed, at, vec4(mean, 1.0));
+    float weight = 1.0 / (found.a + 0.5);  // half of them send half of what all would
+    if (asked_before == 0u) found.rgb *= found.a * weight;
+    imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance, found.a));
 }

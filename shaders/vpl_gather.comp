@@ -8,7 +8,10 @@
 
 layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
 
-layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D gathered;
+uniform uint asked_before;  // VPLs of each share, in the dispatches before this one, whose sum is in the image
+uniform uint asked_now;     // at most
+
+layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D gathered;
 
 void main() {
     uvec2 offset = uvec2(gl_WorkGroupID.z % interleave, gl_WorkGroupID.z / interleave);
@@ -25,8 +28,8 @@ void main() {
     }
     uint classes = interleave * interleave;
     uint share = share_of_class(offset);
-    uint first = share * vpl_count / classes;
-    uint last = nearest > 0.0 ? (share + 1u) * vpl_count / classes : first;
+    uint first = share * vpl_count / classes + asked_before;
+    uint last = nearest > 0.0 ? min((share + 1u) * vpl_count / classes, first + asked_now) : first;
     for (uint i = first; i < last; ++i) {
         Vpl vpl = vpls[vpl_order[i]];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
@@ -34,6 +37,8 @@ void main() {
     // What all VPLs together would send if they were like these. Stores beyond the target are discarded by the GL.
     for (int s = 0; s < SURFACES; ++s) {
         ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);
-        imageStore(gathered, at, depth[s] > 0.0 ? vec4(float(classes) * irradiance[s], 1.0) : vec4(0.0));
+        vec4 sum = depth[s] > 0.0 ? vec4(float(classes) * irradiance[s], 1.0) : vec4(0.0);
+        if (asked_before > 0u) sum.rgb += imageLoad(gathered, at).rgb;
+        imageStore(gathered, at, sum);
     }
 }

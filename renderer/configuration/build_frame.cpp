@@ -13,6 +13,9 @@
 namespace candela {
 namespace {
 
+/// That a blended surface asks where solid ones ask a share of them each.
+constexpr std::uint32_t most_vpls_of_blended = 128;
+
 std::optional<TextureHandle> depth_of(const std::optional<VisibleSurfaces>& surfaces) {
     return surfaces ? std::optional(surfaces->depth) : std::nullopt;
 }
@@ -34,10 +37,11 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     frame.shadows = shadows.plan;
     frame.drawn_shadows = shadows.drawn;
     const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
-    const ValueHandle<CameraView> view = add_view(graph, frame.request);
-    if (configuration.indirect && configuration.refinement.enabled) {
+    ValueHandle<CameraView> view = add_view(graph, frame.request);
+    if (configuration.refinement.enabled) {
         frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
         frame.refinement = add_refinement(graph, *frame.refinement_clock, scene, frame.lights, view);
+        view = add_refined_view(graph, frame.request, *frame.refinement);
     }
     if (configuration.indirect) {
         DueVpls due{
@@ -64,6 +68,10 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const bool shows_indirect = vpl_light && configuration.show != Show::direct;
     frame.interleave = shows_indirect ? interleaving(configuration.interleave, configuration.vpls.count) : 1;
 
+    // Without interleaving, too, VPLs are gathered where they are too many for the shading path.
+    const bool gathers =
+        shows_indirect && (frame.interleave > 1 || configuration.vpls.count > most_asked(*vpl_light));
+
     // The surfaces, as far as they are found before they are shaded.
     const PathParts path = parts_of(configuration.path);
     std::optional<VisibleSurfaces> visible;
@@ -71,7 +79,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     if (path.surface == SurfaceStage::gbuffer) {
         gbuffer = add_gbuffer(graph, gpu, scene, view, size);
         visible = {gbuffer->depth, gbuffer->normal};
-    } else if (path.surface == SurfaceStage::forward_after_prepass || frame.interleave > 1) {
+    } else if (path.surface == SurfaceStage::forward_after_prepass || gathers) {
         visible = add_depth_prepass(graph, gpu, scene, view, size);
     }
     const bool bounds_lists = path.surface != SurfaceStage::forward;
@@ -94,18 +102,24 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     // Blended surfaces have no pixels of their own to gather for, and lie in front of what bounds the lists
     // in depth.
     Lighting of_blended = lighting;
+    if (frame.interleave > 1) {
+        of_blended.most_vpls = most_vpls_of_blended;
+    }
     if (path.list == LightList::tile && bounds_lists) {
         of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
                                                    scene.layout, size, configuration.lists);
     }
 
-    if (frame.interleave > 1) {
+    if (gathers) {
         const GatheredVpls gathered =
             add_vpl_gather(graph, gpu, *visible, *vpl_light, view, frame.interleave, size);
-        frame.indirect =
-            add_vpl_reconstruct(graph, gpu, *visible, gathered, *vpl_light, view, frame.interleave, size);
+        lighting.indirect = gathered.irradiance;
+        if (frame.interleave > 1) {
+            frame.indirect =
+                add_vpl_reconstruct(graph, gpu, *visible, gathered, *vpl_light, view, frame.interleave, size);
+            lighting.indirect = frame.indirect->irradiance;
+        }
         lighting.vpls.reset();
-        lighting.indirect = frame.indirect->irradiance;
     }
 
     const ShadedSurfaces solid =

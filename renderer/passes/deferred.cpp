@@ -26,12 +26,19 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
             gl.BindTextureUnit(UNIT_ALBEDO, run.object(gbuffer.albedo));
             gl.BindTextureUnit(UNIT_NORMAL, run.object(gbuffer.normal));
             gl.BindTextureUnit(UNIT_DEPTH, run.object(gbuffer.depth));
-            gl.BindImageTexture(IMAGE_RADIANCE, run.object(radiance), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+            gl.BindImageTexture(IMAGE_RADIANCE, run.object(radiance), 0, GL_FALSE, 0, GL_READ_WRITE,
                                 GL_RGBA32F);
             bind_view(program, run.value(view), size);
             bind_lighting(gpu, run, program, lighting);
             program.use();
-            gl.DispatchCompute((size.x + tile_size - 1) / tile_size, (size.y + tile_size - 1) / tile_size, 1);
+            for (std::uint32_t part = 0; part < lighting_parts(run, lighting); ++part) {
+                if (part > 0) {
+                    gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+                    begin_lighting_part(program, part);
+                }
+                gl.DispatchCompute((size.x + tile_size - 1) / tile_size, (size.y + tile_size - 1) / tile_size,
+                                   1);
+            }
         });
         return radiance;
     });

@@ -88,6 +88,15 @@ void begin_visible_surfaces(const Gpu& gpu) {
     gl.DepthMask(GL_FALSE);
 }
 
+void begin_adding(const Gpu& gpu) {
+    const gl::Functions& gl = gpu.gl();
+    gl.DepthFunc(GL_EQUAL);
+    gl.DepthMask(GL_FALSE);
+    gl.Enable(GL_BLEND);
+    gl.BlendEquation(GL_FUNC_ADD);
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
+}
+
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program) {
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);

@@ -38,6 +38,9 @@ void begin_surfaces(const Gpu& gpu);
 /// are seen.
 void begin_visible_surfaces(const Gpu& gpu);
 
+/// For surfaces that are drawn once more: adds to the colour of those that are seen.
+void begin_adding(const Gpu& gpu);
+
 /// Draws all opaque and masked surfaces with their materials; the backs of single-sided ones are culled.
 /// Binds what it needs.
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program);

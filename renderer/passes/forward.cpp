@@ -32,6 +32,11 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             bind_view(program, run.value(view), size);
             bind_lighting(gpu, run, program, lighting);
             draw_surfaces(gpu, run, scene, program);
+            for (std::uint32_t part = 1; part < lighting_parts(run, lighting); ++part) {
+                begin_adding(gpu);
+                begin_lighting_part(program, part);
+                draw_surfaces(gpu, run, scene, program);
+            }
         });
         return out;
     });

@@ -43,7 +43,7 @@ struct LightBins {
     bool operator==(const LightBins&) const = default;
 };
 
-/// The same on the GPU, for the exact tests to narrow down.
+/// The same on the GPU, for the exact tests to cull.
 struct BinBuffers {
     ValueHandle<LightBins> bins;
     BufferHandle<std::uint32_t> first;

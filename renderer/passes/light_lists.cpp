@@ -65,10 +65,28 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
     });
 }
 
-/// Node that narrows the bins down in place: each cell keeps, in order, the lights that reach it.
-LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
-                         LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
-                         ValueHandle<CameraView> view, std::optional<TextureHandle> depth) {
+/// As many dispatches as it takes for none to walk through too much of a list: see `most_asked`.
+void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const LightBins& bins) {
+    constexpr std::uint32_t most = 32768;
+    std::uint32_t longest = 0;
+    for (std::size_t cell = 0; cell + 1 < bins.first.size(); ++cell) {
+        longest = std::max(longest, bins.first[cell + 1] - bins.first[cell]);
+    }
+    program.set("culled_now", most);
+    program.use();
+    for (std::uint32_t culled = 0; culled == 0 || culled < longest; culled += most) {
+        if (culled > 0) {
+            gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        }
+        program.set("culled_before", culled);
+        gl.DispatchCompute((bins.grid.cells() + cells_a_group - 1) / cells_a_group, 1, 1);
+    }
+}
+
+/// Node that culls the bins in place: each cell keeps, in order, the lights that reach it.
+LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
+                       LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
+                       ValueHandle<CameraView> view, std::optional<TextureHandle> depth) {
     return graph.add(name, [&](Pass& pass) {
         pass.read(bins.bins);
         pass.read(view);
@@ -99,8 +117,7 @@ LightLists add_narrowing(FrameGraph& graph, Gpu& gpu, std::string_view name, con
             }
             set_grid(program, grid);
             set_rays(program, run.value(view));
-            program.use();
-            gpu.gl().DispatchCompute((grid.cells() + cells_a_group - 1) / cells_a_group, 1, 1);
+            dispatch_culling(gpu.gl(), program, run.value(bins.bins));
         });
         return out;
     });
@@ -115,8 +132,8 @@ LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> 
     const BinBuffers bins = add_light_bins(
         graph, gpu, "light-tiles", lights, view, settings, [&](Pass& pass) { pass.parameter(size); },
         [=](Execution&) { return tile_grid(size, settings); }, [](Execution&) { return true; });
-    return add_narrowing(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
-                         view, depth);
+    return add_culling(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
+                       view, depth);
 }
 
 LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
@@ -131,8 +148,8 @@ LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<Ligh
         },
         [=](Execution&) { return tile_grid(size, settings); },
         [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
-    return add_narrowing(graph, gpu, "blended-light-tiles", "light_tiles.comp", LightList::tile, bins,
-                         light_buffer, view, std::nullopt);
+    return add_culling(graph, gpu, "blended-light-tiles", "light_tiles.comp", LightList::tile, bins,
+                       light_buffer, view, std::nullopt);
 }
 
 LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
@@ -154,8 +171,8 @@ LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTabl
             pass.parameter(size);
         },
         make_grid, [](Execution&) { return true; });
-    return add_narrowing(graph, gpu, "light-clusters", "light_clusters.comp", LightList::cluster, bins,
-                         light_buffer, view, std::nullopt);
+    return add_culling(graph, gpu, "light-clusters", "light_clusters.comp", LightList::cluster, bins,
+                       light_buffer, view, std::nullopt);
 }
 
 void read_light_lists(Pass& pass, const LightLists& lists) {

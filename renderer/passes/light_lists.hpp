@@ -10,7 +10,7 @@ namespace candela {
 /// Which lights a pixel visits.
 enum class LightList : std::uint8_t { all, tile, cluster };
 
-/// Light lists of the cells of a view, narrowed down to what truly reaches them.
+/// Light lists of the cells of a view, culled to what truly reaches them.
 struct LightLists {
     LightList kind = LightList::tile;
     ValueHandle<LightBins> bins;

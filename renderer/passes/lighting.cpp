@@ -1,9 +1,25 @@
 #include "renderer/passes/lighting.hpp"
 
+#include <algorithm>
+
 #include "engine/graph/execute.hpp"
 #include "renderer/passes/upload.hpp"
 
 namespace candela {
+
+namespace {
+
+std::uint32_t shown_lights(const Execution& run, const Lighting& lighting) {
+    const std::size_t lights = run.value(lighting.lights).entries.size();
+    return lighting.show == Show::indirect ? 0U : static_cast<std::uint32_t>(lights);
+}
+
+/// Odd, as paths often have an even number of VPLs, whose bounces are to be asked alike.
+std::uint32_t vpl_stride(std::uint32_t vpl_count, std::uint32_t most) {
+    return vpl_count <= most ? 1 : (vpl_count + most - 1) / most | 1U;
+}
+
+}  // namespace
 
 LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
                               ValueHandle<ShadowPlan> plan) {
@@ -71,8 +87,8 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
     gpu.shadow_sampler().bind(UNIT_SHADOW_CUBES);
     gpu.shadow_sampler().bind(UNIT_SHADOW_MAPS);
 
-    const auto lights = static_cast<std::uint32_t>(run.value(lighting.lights).entries.size());
-    program.set("light_count", lighting.show == Show::indirect ? 0U : lights);
+    program.set("light_count", shown_lights(run, lighting));
+    begin_lighting_part(program, 0);
     if (lighting.lists) {
         bind_light_lists(gpu, run, program, *lighting.lists);
     }
@@ -80,9 +96,21 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
         gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(*lighting.indirect));
     } else if (lighting.vpls && lighting.show != Show::direct) {
         bind_vpl_light(gpu, run, program, *lighting.vpls);
+        const std::uint32_t vpls = run.value(lighting.vpls->vpls.paths).vpl_count;
+        const std::uint32_t most = std::min(most_asked(*lighting.vpls), lighting.most_vpls);
+        program.set("vpl_stride", vpl_stride(vpls, most));
     } else {
         program.set("vpl_count", 0U);
     }
+}
+
+std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting) {
+    return std::max((shown_lights(run, lighting) + most_visited - 1) / most_visited, 1U);
+}
+
+void begin_lighting_part(const gl::Program& program, std::uint32_t part) {
+    program.set("lights_before", part * most_visited);
+    program.set("lights_now", most_visited);
 }
 
 }  // namespace candela

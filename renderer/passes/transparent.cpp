@@ -1,5 +1,6 @@
 #include "renderer/passes/transparent.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "engine/graph/execute.hpp"
@@ -36,6 +37,16 @@ void begin_blending(const gl::Functions& gl) {
     gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
 }
 
+/// Blended surfaces cannot be shaded in parts: what is in front covers the sum.
+constexpr std::uint32_t most_lights = 16384;
+
+void check_lights(std::size_t lights) {
+    if (lights > most_lights) {
+        throw gl::GlError(
+            fmt::format("{} lights: where there are blended surfaces, {} are possible", lights, most_lights));
+    }
+}
+
 void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
     if (group.double_sided) {
         gpu.gl().CullFace(GL_FRONT);
@@ -65,11 +76,13 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
             if (sorted.empty()) {
                 return;
             }
+            check_lights(run.value(lighting.lights).entries.size());
             begin_blending(gpu.gl());
             bind_meshes(gpu, run, scene);
             bind_materials(gpu, run, scene);
             bind_view(program, run.value(view), size);
             bind_lighting(gpu, run, program, lighting);
+            program.set("lights_now", most_lights);
             program.use();
             for (const SortedGroup& next : sorted) {
                 draw_blended(gpu, *next.group);

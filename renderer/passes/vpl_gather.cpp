@@ -31,6 +31,23 @@ std::uint32_t blocks(std::uint32_t pixels) {
     return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
 }
 
+/// As many dispatches as it takes for none to ask too many VPLs. Each adds to the sum of those before.
+void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::uvec2 size,
+                     std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t most) {
+    const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
+    const std::uint32_t classes = interleave * interleave;
+    const std::uint32_t share = (vpl_count + classes - 1) / classes;
+    program.set("asked_now", most);
+    program.use();
+    for (std::uint32_t asked = 0; asked == 0 || asked < share; asked += most) {
+        if (asked > 0) {
+            gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        }
+        program.set("asked_before", asked);
+        gl.DispatchCompute(blocks(of_class.x), blocks(of_class.y), classes);
+    }
+}
+
 }  // namespace
 
 std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count) {
@@ -87,15 +104,14 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& 
             const gl::Functions& gl = gpu.gl();
             gl.BindTextureUnit(UNIT_NORMAL, run.object(surfaces.normal));
             gl.BindTextureUnit(UNIT_DEPTH, run.object(surfaces.depth));
-            gl.BindImageTexture(IMAGE_INDIRECT, run.object(out.irradiance), 0, GL_FALSE, 0, GL_WRITE_ONLY,
+            gl.BindImageTexture(IMAGE_INDIRECT, run.object(out.irradiance), 0, GL_FALSE, 0, GL_READ_WRITE,
                                 GL_RGBA32F);
             gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
             bind_view(program, run.value(view), size);
             bind_vpl_light(gpu, run, program, light);
             program.set("interleave", interleave);
-            program.use();
-            const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
-            gl.DispatchCompute(blocks(of_class.x), blocks(of_class.y), interleave * interleave);
+            dispatch_gather(gl, program, size, interleave, run.value(light.vpls.paths).vpl_count,
+                            most_asked(light));
         });
         return out;
     });

@@ -10,6 +10,10 @@ float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
     return 4.0F * area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
 }
 
+std::uint32_t most_asked(const VplLight& light) {
+    return light.rays ? 64 : 8192;
+}
+
 std::vector<std::string> vpl_light_variant(const VplLight& light) {
     if (light.maps) {
         return {"VPL_VISIBILITY_MAPS"};

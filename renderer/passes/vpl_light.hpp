@@ -28,6 +28,10 @@ struct VplLight {
 /// vanishes.
 [[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
 
+/// How many VPLs an invocation may ask in one dispatch. Software drivers end all loops of an invocation
+/// together after 65,535 turns, without a word; a ray may take a thousand of them.
+[[nodiscard]] std::uint32_t most_asked(const VplLight& light);
+
 /// Words to define in shaders that include vpl_light.glsl.
 [[nodiscard]] std::vector<std::string> vpl_light_variant(const VplLight& light);
 

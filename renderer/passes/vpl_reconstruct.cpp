@@ -106,6 +106,20 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
     });
 }
 
+/// As many dispatches as it takes for none to ask too many VPLs. Each adds to the sum of those before.
+void dispatch_fill(const gl::Functions& gl, const gl::Program& program, std::uint32_t vpl_count,
+                   std::uint32_t most) {
+    program.set("asked_now", most);
+    program.use();
+    for (std::uint32_t asked = 0; asked == 0 || 2 * asked < vpl_count; asked += most) {
+        if (asked > 0) {
+            gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        }
+        program.set("asked_before", asked);
+        gl.DispatchComputeIndirect(0);
+    }
+}
+
 TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
                        BufferHandle<std::uint32_t> order, const VplLight& light) {
     return graph.add("vpl-fill", [&](Pass& pass) {
@@ -121,9 +135,8 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
             gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
             gpu.bind_storage(BINDING_LACKING, run.object(found.lacking));
             bind_vpl_light(gpu, run, program, light);
-            program.use();
             gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(found.lacking));
-            gpu.gl().DispatchComputeIndirect(0);
+            dispatch_fill(gpu.gl(), program, run.value(light.vpls.paths).vpl_count, most_asked(light));
         });
         return out;
     });

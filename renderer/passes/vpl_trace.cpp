@@ -9,7 +9,8 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t paths_a_group = 32;  // as in shaders/vpl_trace.comp
+constexpr std::uint32_t paths_a_group = 32;  // as in shaders/vpl_trace.comp and vpl_write.comp
+constexpr std::uint32_t vpls_a_group = 16;   // as in shaders/vpl_edges.comp
 
 /// What the shader is told of the paths.
 struct PathBuffers {
@@ -17,30 +18,47 @@ struct PathBuffers {
     BufferHandle<gpu::VplPlace> places;
 };
 
-/// Four times the mean distance between VPLs: farther off hardly any sinks, as shaders/lighting.glsl has it.
+/// Four times the mean distance between VPLs: farther off hardly any sinks, as shaders/vpl_light.glsl has it.
 float edge_reach(float area, std::uint32_t vpl_count) {
     return 4.0F * std::sqrt(area / static_cast<float>(vpl_count));
 }
 
-void trace(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
-           const Vpls& out) {
-    const VplPaths& plan = run.value(out.paths);
-    run.reserve(out.vpls, std::max(plan.vpl_count, 1U));
-    run.reserve(out.flux, std::max<std::size_t>(plan.paths.size(), 1));
-    if (plan.paths.empty()) {
-        return;
-    }
+std::uint32_t groups(std::uint32_t count, std::uint32_t a_group) {
+    return (count + a_group - 1) / a_group;
+}
 
+/// Segment by segment. A longer loop would reach the bound that software drivers set to all loops of an
+/// invocation together, and end there without a word.
+void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
+                    const VplPaths& plan) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
     bind_tracing(gpu, run, program, tracing);
-    gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
-    gpu.bind_storage(BINDING_FLUX, run.object(out.flux));
+    program.set("path_count", path_count);
+    program.set("ray_offset", run.value(tracing.metrics).ray_offset());
+    program.use();
+    for (std::uint32_t bounce = 1; bounce <= plan.max_bounces; ++bounce) {
+        program.set("bounce", bounce);
+        gpu.gl().DispatchCompute(groups(path_count, paths_a_group), 1, 1);
+        gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+}
+
+void write_vpls(const Gpu& gpu, const gl::Program& program, const VplPaths& plan) {
+    const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
     program.set("path_count", path_count);
     program.set("max_bounces", plan.max_bounces);
-    program.set("ray_offset", run.value(tracing.metrics).ray_offset());
+    program.use();
+    gpu.gl().DispatchCompute(groups(path_count, paths_a_group), 1, 1);
+    gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void find_edges(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
+                const VplPaths& plan) {
+    bind_tracing(gpu, run, program, tracing);
+    program.set("vpl_count", plan.vpl_count);
     program.set("edge_reach", edge_reach(run.value(tracing.metrics).area, plan.vpl_count));
     program.use();
-    gpu.gl().DispatchCompute((path_count + paths_a_group - 1) / paths_a_group, 1, 1);
+    gpu.gl().DispatchCompute(1, groups(plan.vpl_count, vpls_a_group), 1);
 }
 
 }  // namespace
@@ -55,7 +73,9 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Du
         pass.read(due.paths);
         pass.read(lights, Usage::storage);
         read_tracing(pass, tracing);
-        const gl::Program& program = gpu.program({"vpl_trace.comp"});
+        const gl::Program& tracer = gpu.program({"vpl_trace.comp"});
+        const gl::Program& writer = gpu.program({"vpl_write.comp"});
+        const gl::Program& edges = gpu.program({"vpl_edges.comp"});
         const PathBuffers buffers{
             .paths = pass.write(graph.buffer<gpu::Path>("paths", 1, Lifetime::persistent), Usage::copy),
             .places =
@@ -67,8 +87,10 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Du
             .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
             .flux =
                 pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage)};
-        pass.run([=, &gpu, &program](Execution& run) {
+        pass.run([=, &gpu, &tracer, &writer, &edges](Execution& run) {
             const VplPaths& plan = run.value(out.paths);
+            run.reserve(out.vpls, std::max(plan.vpl_count, 1U));
+            run.reserve(out.flux, std::max<std::size_t>(plan.paths.size(), 1));
             if (first_writer) {
                 run.reserve(traced, std::max(plan.map_count, 1U));
             }
@@ -78,7 +100,14 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Du
             gpu.bind_storage(BINDING_PATHS, run.object(buffers.paths));
             gpu.bind_storage(BINDING_VPL_PLACES, run.object(buffers.places));
             gpu.bind_storage(BINDING_VPL_RECORDS, run.object(traced));
-            trace(gpu, run, program, tracing, out);
+            gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
+            gpu.bind_storage(BINDING_FLUX, run.object(out.flux));
+            if (plan.paths.empty()) {
+                return;
+            }
+            trace_segments(gpu, run, tracer, tracing, plan);
+            write_vpls(gpu, writer, plan);
+            find_edges(gpu, run, edges, tracing, plan);
         });
         return out;
     });

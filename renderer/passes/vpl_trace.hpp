@@ -22,8 +22,8 @@ struct DueVpls {
 /// Bounces as they were traced, by tile; kept from frame to frame.
 [[nodiscard]] BufferHandle<gpu::VplRecord> vpl_records(FrameGraph& graph);
 
-/// Node `vpl-trace` (compute: one invocation a path): traces what the paths do not keep, and gives all VPLs
-/// their flux.
+/// Node `vpl-trace` (compute): traces what the paths do not keep, gives all VPLs their flux, and finds the
+/// edges of the surfaces that they sit on.
 [[nodiscard]] Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const DueVpls& due,
                                  BufferHandle<gpu::Light> lights);
 

@@ -116,7 +116,7 @@ std::shared_ptr<const Mesh> sphere_inwards(float radius, int subdivisions,
     return mesh_of(std::move(primitive));
 }
 
-std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed) {
+std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed, float extent) {
     std::mt19937 engine(seed);
     const auto number = [&](float reach) {
         return std::uniform_real_distribution<float>(-reach, reach)(engine);
@@ -128,7 +128,7 @@ std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed) {
     Primitive primitive{.vertices = {}, .indices = {}, .material = diffuse(glm::vec3(0.5F), true)};
     for (std::size_t i = 0; i < count; ++i) {
         const glm::vec3 a = vector(1.0F);
-        const glm::vec3 b = a + vector(0.05F), c = a + vector(0.05F);
+        const glm::vec3 b = a + vector(extent), c = a + vector(extent);
         const glm::vec3 normal = glm::normalize(glm::cross(b - a, c - a));
         for (const glm::vec3& corner : {a, b, c}) {
             primitive.indices.push_back(static_cast<std::uint32_t>(primitive.vertices.size()));

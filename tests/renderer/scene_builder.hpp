@@ -30,8 +30,8 @@ namespace candela {
 /// inwards.
 [[nodiscard]] std::shared_ptr<const Mesh> sphere_inwards(float radius, int subdivisions,
                                                          std::shared_ptr<const Material> material);
-/// `count` small double-sided triangles scattered through a cube from -1 to 1.
-[[nodiscard]] std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed);
+/// `count` double-sided triangles of about this extent, scattered through a cube from -1 to 1.
+[[nodiscard]] std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed, float extent = 0.05F);
 
 /// Transform at `from` whose -Z points to `at`.
 [[nodiscard]] Transform looking(glm::vec3 from, glm::vec3 at, glm::vec3 up = {0.0F, 1.0F, 0.0F});

@@ -1,0 +1,66 @@
+// Where the surface that a VPL sits on ends, as far as that is near: what lies beyond does not stand on it. Looked for anew
+// whenever VPLs are written, as what stands around a kept one may have moved. One invocation for each direction.
+#include "bindings.glsl"
+#include "bvh.glsl"
+#include "types.glsl"
+
+const uint DIRECTIONS = 6u;
+const uint VPLS_A_GROUP = 16u;
+
+layout(local_size_x = 6, local_size_y = 16) in;
+
+layout(std430, binding = BINDING_VPLS) restrict buffer Vpls { Vpl vpls[]; };
+
+uniform uint vpl_count;
+uniform float edge_reach;  // metres: how far edges are looked for
+
+const float EDGE_RISE = 1.0 / 64.0;  // of edge_reach: by how much a surface may bend away and still go on
+const int EDGE_BISECTIONS = 6;
+
+// Distance in metres to the edge along a unit direction in the surface, from a place EDGE_RISE above it; infinite if there
+// is none, or something that stands on the surface comes first.
+float edge_distance(vec3 above, vec3 along, vec3 normal) {
+    float rise = EDGE_RISE * edge_reach;
+    float near = 0.0;
+    float far = closest_hit(above, along, 0.0, edge_reach).t - rise;
+    float at = far;
+    for (int i = 0; i <= EDGE_BISECTIONS; ++i) {
+        bool goes_on = any_hit(above + at * along, -normal, 0.0, 2.0 * rise);
+        if (i == 0 && (goes_on || far <= 0.0)) return 1.0 / 0.0;
+        if (goes_on) {
+            near = at;
+        } else {
+            far = at;
+        }
+        at = 0.5 * (near + far);
+    }
+    return at;
+}
+
+// Along the axes of the world and against them, each laid into the surface's plane: the inverse of the distance, times the
+// sine of the angle between axis and normal. Of a straight edge e metres away, whose normal in the plane is m, these are
+// m / e, whichever way the plane lies: their scalar product with a place in the plane, relative to the VPL, is 1 all along
+// the edge. 0 where there is none; axes within 18 degrees of the normal say nothing.
+float inverse_edge(Vpl vpl, uint direction) {
+    uint axis = direction % 3u;
+    vec3 along = -vpl.normal[axis] * vpl.normal;
+    along[axis] += 1.0;
+    float sine = length(along);
+    if (sine < 0.3) return 0.0;
+    vec3 above = vpl.position + EDGE_RISE * edge_reach * vpl.normal;
+    return sine / edge_distance(above, (direction < 3u ? along : -along) / sine, vpl.normal);
+}
+
+shared float inverse_edges[VPLS_A_GROUP][DIRECTIONS];
+
+void main() {
+    uint id = gl_GlobalInvocationID.y;
+    uint direction = gl_LocalInvocationID.x;
+    bool alive = id < vpl_count && vpls[min(id, vpl_count - 1u)].flux != vec3(0.0);
+    if (alive) inverse_edges[gl_LocalInvocationID.y][direction] = inverse_edge(vpls[id], direction);
+    barrier();
+    if (!alive || direction > 0u) return;
+    float edges[DIRECTIONS] = inverse_edges[gl_LocalInvocationID.y];
+    vpls[id].edges_up = vec3(edges[0], edges[1], edges[2]);
+    vpls[id].edges_down = vec3(edges[3], edges[4], edges[5]);
+}

@@ -1,0 +1,74 @@
+// Leaves a VPL at every bounce of the traced paths, and accounts for their flux. One invocation a path; path and bounce give
+// the VPL's place, so that the order is that of the paths.
+#include "bindings.glsl"
+#include "lights.glsl"
+#include "types.glsl"
+
+layout(local_size_x = 32) in;
+
+layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
+layout(std430, binding = BINDING_PATHS) readonly restrict buffer Paths { Path paths[]; };
+layout(std430, binding = BINDING_VPL_PLACES) readonly restrict buffer Places { VplPlace places[]; };
+layout(std430, binding = BINDING_VPL_RECORDS) readonly restrict buffer Records { VplRecord records[]; };
+layout(std430, binding = BINDING_VPLS) writeonly restrict buffer Vpls { Vpl vpls[]; };
+layout(std430, binding = BINDING_FLUX) writeonly restrict buffer Flux { FluxAccount flux[]; };
+
+uniform uint path_count;
+uniform uint max_bounces;
+
+// What of a ranged light arrives at its path's first VPL; the rest counts as escaped.
+float first_window(Light light, VplRecord first) {
+    if (light.kind == LIGHT_DIRECTIONAL || first.state == VPL_ESCAPED) return 1.0;
+    return range_window(distance(light.position, first.position), light.range);
+}
+
+// Its edges are left to vpl_edges.comp.
+Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint tile) {
+    return Vpl(position, tile, normal, 0.0, flux, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+}
+
+void main() {
+    uint id = gl_GlobalInvocationID.x;
+    if (id >= path_count) return;
+    Path path = paths[id];
+    Light light = lights[path.light];
+
+    for (uint i = 0u; i < path.vpl_count; ++i) {
+        uint place = path.first_vpl + i;
+        vpls[place] = make_vpl(vec3(0.0), vec3(0.0), vec3(0.0), places[place].tile);
+    }
+    FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    vec3 throughput = vec3(1.0);
+    float window = 1.0;
+    vec3 reflected = vec3(0.0);  // at the bounce before
+    for (uint bounce = 1u; bounce <= path.length; ++bounce) {
+        VplPlace place = places[path.first_vpl + bounce - 1u];
+        vec3 carried = path.flux * (place.weight * window) * throughput;
+        if (bounce == 1u) {
+            account.emitted = carried;
+        } else {
+            account.roulette -= carried - reflected;
+        }
+        VplRecord record = records[place.tile];
+        if (record.state == VPL_ESCAPED) {
+            account.escaped += carried;
+            break;
+        }
+        if (bounce == 1u) {
+            window = first_window(light, record);
+            account.escaped += carried * (1.0 - window);
+            carried *= window;
+        }
+        throughput = record.throughput;
+        reflected = path.flux * (place.weight * window) * throughput;
+        account.absorbed += carried - reflected;
+        vpls[path.first_vpl + bounce - 1u] = make_vpl(record.position, record.normal, reflected, place.tile);
+
+        if (bounce == max_bounces) {
+            account.truncated += reflected;
+        } else if (bounce == path.length) {
+            account.roulette += reflected;
+        }
+    }
+    flux[id] = account;
+}

@@ -1,0 +1,147 @@
+// Software drivers end all loops of an invocation together after 65,535 turns, and say nothing. More VPLs,
+// lights and tree nodes than that are the sum of their parts all the same.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{16, 12};
+
+/// So near to the back wall that the light of a VPL is the same in all the picture.
+Scene patch_of_wall() {
+    Scene scene = cornell_box();
+    scene.camera =
+        add(scene.world, looking({0.1F, 1.3F, 1.0F}, {0.15F, 1.25F, -1.0F}), Camera{.vertical_fov = 1e-4F});
+    return scene;
+}
+
+/// Lights `first` to `last` of a sequence of dim ones around the ground's middle.
+Scene lit_ground(std::uint32_t first, std::uint32_t last, float range) {
+    Scene scene = ground();
+    for (std::uint32_t i = first; i < last; ++i) {
+        const auto k = static_cast<float>(i);
+        const glm::vec2 place = glm::fract(k * glm::vec2(0.7548777F, 0.5698403F)) - 0.5F;
+        add(scene.world, at({place.x, 1.0F, place.y}),
+            PointLight{.intensity = 1e-3F, .range = range, .casts_shadow = false});
+    }
+    return scene;
+}
+
+Picture sum(const std::vector<Picture>& parts) {
+    Picture sum{parts.front().size, std::vector<glm::vec3>(parts.front().pixels.size())};
+    for (const Picture& part : parts) {
+        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += part.pixels[i];
+    }
+    return sum;
+}
+
+class BoundedWork : public PathFixture {
+ protected:
+    Picture picture(const Scene& scene, const Configuration& configuration) {
+        configure(configuration);
+        renderer.invalidate();  // the scene may stand where the last one stood
+        return render(scene, size);
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("bounded work") {
+    TEST_CASE_FIXTURE(BoundedWork, "any number of VPLs is asked in whole") {
+        const Scene scene = patch_of_wall();
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::indirect;
+        SUBCASE("beyond the bound by themselves") {
+            configuration.vpls.count = 100'000;
+        }
+        SUBCASE("by rays, each of which walks through a tree") {
+            configuration.visibility.method = VplVisibility::rays;
+            configuration.vpls.count = 8192;
+        }
+        // Each of 64 classes asks so few that nothing is bounded, and on a plane they add up to all.
+        configuration.interleave = Interleave::eight;
+        const Picture shared = picture(scene, configuration);
+        CHECK(mean(shared) > 0.01);
+        configuration.interleave = Interleave::one;
+        for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
+            CAPTURE(to_string(path));
+            configuration.path = path;
+            // The light of the nearest VPL changes by 1e-4 over the picture; 100,000 floats are added up in
+            // another order.
+            CHECK(worst_error(picture(scene, configuration), shared, 1e-12) < 1e-3);
+        }
+    }
+
+    TEST_CASE_FIXTURE(BoundedWork, "any number of lights is visited in whole, by every path") {
+        constexpr std::uint32_t lights = 70'000;
+        constexpr std::uint32_t part = 7'000;
+        float range = 0.0F;
+        SUBCASE("without a range, by every surface") {
+            range = std::numeric_limits<float>::infinity();
+        }
+        SUBCASE("in lists that are as long") {
+            range = 16.0F;
+        }
+        std::vector<Picture> parts;
+        for (std::uint32_t first = 0; first < lights; first += part) {
+            parts.push_back(picture(lit_ground(first, first + part, range), direct_only()));
+        }
+        const Picture expected = sum(parts);
+        CHECK(mean(expected) > 0.01);
+        const Scene scene = lit_ground(0, lights, range);
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            Configuration configuration = direct_only();
+            configuration.path = path;
+            // Each of so many like terms is rounded to half a unit in the last place of the sum so far: 7e4 ·
+            // 2⁻²⁵ at most.
+            CHECK(worst_error(picture(scene, configuration), expected, 1e-12) < 2.5e-3);
+        }
+    }
+
+    TEST_CASE_FIXTURE(BoundedWork, "blended surfaces are shaded at once, by as many lights as are possible") {
+        constexpr std::uint32_t most = 16'384;
+        constexpr float range = std::numeric_limits<float>::infinity();
+        const auto behind_a_pane = [&](Scene scene) {
+            Material pane;
+            pane.base_colour.a = 0.5F;
+            pane.alpha_mode = AlphaMode::blend;
+            add(scene.world, at({0, 0.5F, 0}),
+                MeshInstance{square(8.0F, std::make_shared<const Material>(pane))});
+            return scene;
+        };
+        std::vector<Picture> parts;
+        for (std::uint32_t first = 0; first < most; first += most / 8) {
+            parts.push_back(
+                picture(behind_a_pane(lit_ground(first, first + most / 8, range)), direct_only()));
+        }
+        const Picture whole = picture(behind_a_pane(lit_ground(0, most, range)), direct_only());
+        CHECK(mean(whole) > 0.01);
+        CHECK(worst_error(whole, sum(parts), 1e-12) <
+              1e-3);  // 16,384 roundings of the sum, each 2⁻²⁵ of it at most
+        renderer.invalidate();
+        CHECK_THROWS_WITH_AS(static_cast<void>(render(behind_a_pane(lit_ground(0, most + 1, range)), size)),
+                             "16385 lights: where there are blended surfaces, 16384 are possible",
+                             gl::GlError);
+    }
+
+    TEST_CASE_FIXTURE(BoundedWork,
+                      "paths lose no flux among triangles that nearly every ray has to be tested against") {
+        Scene scene = furnace_box(0.5F);
+        add(scene.world, at({0, 0, 0}), MeshInstance{soup(3000, 1, 1.5F)});
+        Configuration configuration = linear_configuration();
+        configuration.vpls = {.count = 512, .bounces = 8};
+        static_cast<void>(picture(scene, configuration));
+        const EnergyAccount flux = renderer.report().vpls->flux;
+        const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;
+        CHECK(flux.emitted.g > 1.0);
+        CHECK(glm::abs(rest.g) < 1e-4 * flux.emitted.g);  // sums of some hundred floats
+    }
+}
