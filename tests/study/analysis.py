@@ -128,3 +128,39 @@ def visibility_costs(rows: Sequence[Row]) -> list[Row]:
             noise = found["none"]["reference_noise"]
             table.append({"scene": scene, "vpls": max(full), **errors, "none_to_maps": gain, "reference_noise": noise})
     return table
+
+
+def time_to_error(curve: Sequence[tuple[float, float]], error: float) -> float | None:
+    """Of points (time, error), where their line, straight between logarithms, first comes down to an error."""
+    points = sorted(curve)
+    for (t0, e0), (t1, e1) in zip(points, points[1:]):
+        if e1 <= error < e0:
+            share = math.log(e0 / error) / math.log(e0 / e1)
+            return t0 * (t1 / t0) ** share
+    return points[0][0] if points and points[0][1] <= error else None
+
+
+AIM = 0.03  # relMSE of the total light at which the methods' times are compared
+
+
+def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
+    """By scene, what interleaving 8 × 8 costs in error at 1,024 VPLs, how much more a frame takes for as many than for 128
+    after a move of the camera, and the least time to AIM beside the tracer's."""
+    table = []
+    for scene in dict.fromkeys(row["scene"] for row in select(rows, suite="gather")):
+        found = {(row["vpls"], row["lever"]): row for row in select(rows, suite="gather", scene=scene)}
+        if not {(1024, "none"), (1024, "interleave-8"), (128, "interleave-2")} <= found.keys():
+            continue
+        all_asked, shared, few = found[1024, "none"], found[1024, "interleave-8"], found[128, "interleave-2"]
+        line: Row = {"scene": scene}
+        for part in ("indirect", "total"):
+            line[f"{part}_to_all"] = shared[f"{part}_rel_mse"] / all_asked[f"{part}_rel_mse"]
+        line["frame_to_128"] = shared["frame_ms"] / few["frame_ms"]
+        line["frame_to_all"] = shared["frame_ms"] / all_asked["frame_ms"]
+        curve = [(row["ms"], row["total_rel_mse"]) for row in tracer if row["suite"] == "gather" and row["scene"] == scene]
+        traced = time_to_error(curve, AIM)
+        for time in ("frame_ms", "full_ms"):
+            least = min((row[time] for row in found.values() if row["total_rel_mse"] <= AIM), default=None)
+            line[f"{time}_to_tracer"] = least / traced if least and traced else None
+        table.append(line)
+    return table

@@ -140,6 +140,33 @@ def error_against_time(rows: Sequence[Row], tracer: Sequence[Row], best: str | N
     return made
 
 
+def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Made:
+    """By interleaving, the total light's error and the time of a frame as VPLs grow in number."""
+    made = {}
+    for scene in scenes_of(rows, "gather"):
+        chosen = select(rows, suite="gather", scene=scene)
+        traced = sorted((row for row in tracer if row["scene"] == scene and row["suite"] == "gather"),
+                        key=lambda row: row["samples"])
+        figure, panels = plt.subplots(1, 2, figsize=(10, 4.6), sharey=True)
+        for axes, (time, label) in zip(panels, TIMES.items()):
+            for n, (colour, marker) in zip(matrix.GATHERED, SERIES):
+                points = sorted(select(chosen, lever=matrix.interleaved(64, n).axes["lever"]), key=lambda row: row["vpls"])
+                axes.plot([row[time] for row in points], [row["total_rel_mse"] for row in points], color=colour,
+                          marker=marker, markersize=5, label="every pixel asks all VPLs" if n == 1 else f"one in {n * n}")
+                for row in points:
+                    axes.annotate(f"{row['vpls']:,}", (row[time], row["total_rel_mse"]), textcoords="offset points",
+                                  xytext=(4, 4), fontsize=6.5, color=colour)
+            axes.plot([row["ms"] for row in traced], [row["total_rel_mse"] for row in traced], "--", color=BLACK,
+                      marker="*", markersize=7, label="path tracer (Embree, the same cores), 1 sample and up")
+            axes.set(xscale="log", yscale="log", xlabel=label, ylabel="relMSE of the total light")
+        figure.suptitle(f"{scene}: {chosen[0]['width']} × {chosen[0]['height']} pixels, VPLs with depth maps")
+        legend_below(figure, panels[0], 5)
+        name = f"gather-{scene}"
+        save(figure, out, name)
+        made[name] = f"{scene}: interleaved gathering. Numbers beside marks: VPLs."
+    return made
+
+
 def bound_label(bound: float | str) -> str:
     return "unbounded" if bound == matrix.UNBOUNDED else f"bound {bound:g}"
 
@@ -324,6 +351,7 @@ def draw(
     matrix_made = bool(scenes_of(rows, "matrix"))
     return {
         "Error against time": error_against_time(rows, tracer, best, out),
+        "Interleaved gathering": gather(rows, tracer, out),
         "Error against the number of VPLs": convergence(rows, out),
         "Forward against deferred, and with lists": report_table(rows, out),
         "As lights, pixels and triangles grow": growth(rows, lights, out),

@@ -27,8 +27,10 @@ LEVERS: dict[str, Config] = {
         "vpls": {"visibility": "none", "budget": 0, "interleave": 1},
         "refinement": {"enabled": False},
     },
+    "interleave-2": {"vpls": {"interleave": 2}},
     "interleave-4": {"vpls": {"interleave": 4}},
     "interleave-8": {"vpls": {"interleave": 8}},
+    "interleave-auto": {"vpls": {"interleave": "auto"}},
     "shadow-maps-half": {"shadows": {"cube_resolution": 256, "map_resolution": 512, "budget_mib": 8192}},
     "shadow-maps-double": {"shadows": {"cube_resolution": 1024, "map_resolution": 2048, "budget_mib": 8192}},
 }
@@ -54,7 +56,7 @@ TRACER_SAMPLES = [4**i for i in range(7)]
 # An odd number of columns and an even one of rows: the camera looks straight into the Cornell box, whose creases run
 # from the corners of a picture at 45 degrees. With both even, or both odd, they would run through the centres of pixels,
 # which then show either wall as rounding has it, in the renderer the one and in the reference the other.
-SIZE, SMALL, QUICK = (127, 96), (63, 48), (63, 64)
+SIZE, SMALL, QUICK, LARGE = (127, 96), (63, 48), (63, 64), (511, 512)
 
 
 @dataclass(frozen=True)
@@ -157,6 +159,7 @@ def short_sweep() -> tuple[Point, ...]:
         + [point(256, bound=bound) for bound in BOUNDS]
         + [point(256, bounces=bounces) for bounces in (1, 3)]
         + [point(256, visibility="maps-32")]
+        + [point(n, lever="interleave-auto") for n in (256, 1024)]
         + [blind(n) for n in (64, 256, 1024)]
         + [blind(256, path) for path in PATHS]
         + [blind(256, lever=lever) for lever in LEVERS]
@@ -244,6 +247,32 @@ def growth_groups() -> list[Group]:
         for scale in (1, 2, 4, 8)
     ]
     return triangles + pixels
+
+
+def interleaved(vpls: int, n: int) -> Point:
+    return point(vpls, lever="none" if n == 1 else f"interleave-{n}", seeds=tuple(range(4 if vpls <= 1024 else 1)))
+
+
+# Of the VPLs, by interleaving: pixels that ask all of so many take minutes for a frame.
+GATHERED = {1: [64, 128, 256, 1024], 2: [64, 128, 256, 1024], 4: [256, 1024, 4096], 8: [1024, 4096, 16384]}
+
+
+def gather_groups() -> list[Group]:
+    """Error against time at a size at which pixels count, by interleaving and number of VPLs. In scenes of many triangles
+    the maps of the most VPLs take minutes."""
+    most = {"cornell": 16384, "two-rooms": 16384, "glass": 4096, "fins": 4096, "atrium": 4096}
+    return [
+        Group(
+            "gather",
+            scene,
+            LARGE,
+            Reference(samples=256),
+            2,
+            tuple(interleaved(vpls, n) for n, counts in GATHERED.items() for vpls in counts if vpls <= limit),
+            tuple(TRACER_SAMPLES[:4]),
+        )
+        for scene, limit in most.items()
+    ]
 
 
 def quick_groups() -> list[Group]:

@@ -10,7 +10,7 @@ from typing import Any
 from PIL import Image
 
 import matrix
-from analysis import Row, select
+from analysis import AIM, Row, select
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 76rem; padding: 0 1rem; color: #222 }
@@ -89,6 +89,8 @@ def pictures(out: pathlib.Path, rows: Sequence[Row], best: str | None) -> str:
 
 
 def number(value: Any) -> str:
+    if value is None:
+        return "–"
     if isinstance(value, float):
         return f"{value:.4g}"
     return f"{value:,}" if isinstance(value, int) else html.escape(str(value))
@@ -160,6 +162,19 @@ def flicker(table_rows: Sequence[Row]) -> str:
     return element("h2", "Flicker") + element("p", note) + table(columns, table_rows)
 
 
+def gathering(table_rows: Sequence[Row]) -> str:
+    if not table_rows:
+        return ""
+    columns = {"scene": "", "indirect_to_all": "relMSE, indirect", "total_to_all": "relMSE, total",
+               "frame_to_all": "frame", "frame_to_128": "frame of 1,024 VPLs / of 128",
+               "frame_ms_to_tracer": f"least time to relMSE {AIM} / tracer's", "full_ms_to_tracer": "the same, all anew"}
+    note = (
+        "1,024 VPLs with depth maps: where a pixel asks one in 64, as a multiple of where it asks all. Frames are those "
+        "after a move of the camera."
+    )
+    return element("h2", "What interleaving costs and saves") + element("p", note) + table(columns, table_rows)
+
+
 def charts(made: dict[str, dict[str, str]]) -> str:
     parts = []
     for heading, files in made.items():
@@ -186,6 +201,7 @@ class Findings:
     best: dict[str, Any] | None
     flicker: Sequence[Row]
     visibility: Sequence[Row]
+    gathering: Sequence[Row]
 
 
 def write(
@@ -203,6 +219,7 @@ def write(
         element("p", 'All figures: <a href="results.csv">results.csv</a>, <a href="results.json">results.json</a>.'),
         default_choice(found.best),
         charts(found.charts),
+        gathering(found.gathering),
         flicker(found.flicker),
         visibility_costs(out, rows, found.visibility),
         left_over(rows),

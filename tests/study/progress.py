@@ -19,7 +19,9 @@ def frame_seconds(group: Group, one: Point) -> float:
     """What a frame may take that makes no VPLs; only proportions matter once frames have been seen."""
     each = SECONDS_PER_EVALUATION[one.axes["visibility"].partition("-")[0]]
     each *= 1.0 if "deferred" in one.axes["path"] else FORWARD
-    return FRAME_OVERHEAD + group.size[0] * group.size[1] * one.axes["vpls"] * each
+    n = one.config["vpls"]["interleave"]
+    asked = one.axes["vpls"] / (n * n if isinstance(n, int) else 64)
+    return FRAME_OVERHEAD + group.size[0] * group.size[1] * asked * each
 
 
 def drawing_seconds(one: Point) -> float:

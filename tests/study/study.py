@@ -25,7 +25,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "motion"]
+SUITES = ["matrix", "table", "growth", "gather", "motion"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
 RESULTS = scenes.ROOT / "tests" / "study" / "results"
 
@@ -36,7 +36,7 @@ def names(text: str) -> list[str]:
 
 
 def arguments() -> argparse.Namespace:
-    parts, where = SUITES + PROGRAM_PARTS, "default: tests/study/results for a whole study, else build/study/results"
+    parts, where = list(dict.fromkeys(SUITES + PROGRAM_PARTS)), "default: tests/study/results for a whole study, else build/study/results"
     parser = argparse.ArgumentParser(prog="tests/study/run", description="Charts Candela's speed against its accuracy.")
     parser.add_argument("--quick", action="store_true", help="a small matrix, and checks of what must hold anywhere")
     parser.add_argument("--scenes", metavar="A,B", type=names, help="only these")
@@ -66,6 +66,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
         "matrix": matrix.matrix_groups() + matrix.convergence_groups(),
         "table": matrix.table_groups(),
         "growth": matrix.growth_groups(),
+        "gather": matrix.gather_groups(),
         "motion": [],
     }
     wanted = parts or SUITES
@@ -123,11 +124,14 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     best = results.choice(rows, groups)
     played = results.motion_rows(study, motions)
     flicker, costs = analysis.flicker_table(played), analysis.visibility_costs(rows)
-    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
+    gathering = analysis.gather_table(rows, tracer)
+    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs, "gathering": gathering}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    page.write(study.out, rows, page.Findings(made, best, flicker, costs), study.machine, machine.provenance(STUDY))
+    page.write(study.out, rows, page.Findings(made, best, flicker, costs, gathering), study.machine, machine.provenance(STUDY))
+    for line in gathering:
+        print("study: gathering,", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
     print(f"study: {study.out / 'index.html'}")
     if best:
         same = "what the app does by default" if best["is_default_of_app"] else "NOT what the app does by default"

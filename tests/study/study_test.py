@@ -59,6 +59,30 @@ class Slopes(unittest.TestCase):
         self.assertIsNone(analysis.slope_above(rows[3:], floor))
 
 
+class Gathering(unittest.TestCase):
+    def test_time_to_an_error_is_read_off_straight_lines_between_logarithms(self) -> None:
+        curve = [(4.0, 0.01), (1.0, 0.04), (16.0, 0.0025)]  # error = 0.04 / time
+        self.assertAlmostEqual(analysis.time_to_error(curve, 0.02), 2.0)
+        self.assertAlmostEqual(analysis.time_to_error(curve, 0.04), 1.0)
+        self.assertIsNone(analysis.time_to_error(curve, 0.001))
+        self.assertIsNone(analysis.time_to_error([], 0.001))
+
+    def test_table_compares_what_asks_alike(self) -> None:
+        def one(vpls: int, lever: str, frame: float, error: float) -> dict[str, object]:
+            found = row("a", f"{vpls}-{lever}", frame, error, vpls=vpls, lever=lever)
+            return {**found, "suite": "gather", "full_ms": 10 * frame, "indirect_rel_mse": 2 * error}
+
+        rows = [one(1024, "none", 40, 0.02), one(1024, "interleave-8", 4, 0.022), one(128, "interleave-2", 5, 0.1)]
+        tracer = [{"suite": "gather", "scene": "a", "ms": ms, "total_rel_mse": 3.0 / ms} for ms in (10.0, 1000.0)]
+        (line,) = analysis.gather_table(rows, tracer)
+        self.assertAlmostEqual(line["indirect_to_all"], 1.1)
+        self.assertAlmostEqual(line["frame_to_all"], 0.1)
+        self.assertAlmostEqual(line["frame_to_128"], 0.8)
+        self.assertAlmostEqual(line["frame_ms_to_tracer"], 4 / 100)
+        self.assertAlmostEqual(line["full_ms_to_tracer"], 40 / 100)
+        self.assertEqual(analysis.gather_table(rows[:2], tracer), [])
+
+
 def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
     base = {"path": "deferred", "vpls": 256, "bounces": 8, "bound": 1.0, "visibility": "maps", "lever": "none"}
     figures = {"frame_ms": cost, "full_ms": cost, "total_rel_mse": error}
@@ -108,7 +132,7 @@ class BestDefault(unittest.TestCase):
 
 class Matrix(unittest.TestCase):
     def groups(self) -> list[matrix.Group]:
-        made = (matrix.matrix_groups, matrix.convergence_groups, matrix.table_groups, matrix.growth_groups)
+        made = (matrix.matrix_groups, matrix.convergence_groups, matrix.table_groups, matrix.growth_groups, matrix.gather_groups)
         return [group for make in made for group in make()] + matrix.quick_groups()
 
     def test_ids_are_distinct_and_fit_for_files(self) -> None:
