@@ -99,7 +99,7 @@ bool same_radiance(Configuration a, const Configuration& b) {
 
 Renderer::Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
     : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
-    adopt(configuration_, size_);
+    adopt(configuration_, size_, {});
 }
 
 std::vector<std::string> Renderer::configure(const Configuration& configuration) {
@@ -108,23 +108,25 @@ std::vector<std::string> Renderer::configure(const Configuration& configuration)
         return faults;
     }
     try {
-        adopt(configuration, size_);
+        adopt(configuration, size_, quality_);
     } catch (const gl::GlError& error) {
         faults.emplace_back(error.what());
     }
     return faults;
 }
 
-void Renderer::adopt(const Configuration& configuration, glm::uvec2 size) {
+void Renderer::adopt(const Configuration& configuration, glm::uvec2 size, const Quality& quality) {
     FrameGraph graph;
-    FrameHandles frame = build_frame(graph, gpu_, configuration, size);
+    FrameHandles frame =
+        build_frame(graph, gpu_, configuration, {rendered_size(size, quality), size, quality.interleave});
     runtime_.adopt(compile(std::move(graph)).take());
     frame_ = frame;
-    if (size != size_ || !same_radiance(configuration, configuration_)) {
+    if (size != size_ || quality != quality_ || !same_radiance(configuration, configuration_)) {
         ++refinement_clock_.epoch;
     }
     configuration_ = configuration;
     size_ = size;
+    quality_ = quality;
     last_passes_.clear();
 }
 
@@ -136,10 +138,11 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
                         target.size.x, target.size.y, most));
     }
     const gl::HostState host_state(gpu_.gl());
-    if (target.size != size_) {
-        adopt(configuration_, target.size);
+    const Quality quality = quality_now(world, {camera, target.size, jitter});
+    if (target.size != size_ || quality != quality_) {
+        adopt(configuration_, target.size, quality);
     }
-    runtime_.set(frame_.request, ViewRequest{camera, target.size, jitter});
+    runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
     set_vpl_clock(world);
     set_refinement_clock();
@@ -161,10 +164,44 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
         const std::uint32_t wanted = configuration_.refinement.frames;
         refine_ = !vpl_work_ && sets < (frame_.vpls ? wanted : std::min(wanted, samples_of_direct_light));
     }
-    pending_.push_back(to_report(last_passes_, index, milliseconds_since(start)));
+    pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), this->quality()});
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) {
         runtime_.verify(world);
+    }
+}
+
+/// Milliseconds; 0: none.
+double Renderer::budget_ms() const {
+    constexpr double on_hardware = 16.0;
+    constexpr double on_software = 100.0;
+    if (configuration_.frame_budget_ms) {
+        return static_cast<double>(*configuration_.frame_budget_ms);
+    }
+    return gpu_.device().is_software() ? on_software : on_hardware;
+}
+
+/// Full quality, unless there is a budget and something moved a moment ago.
+Quality Renderer::quality_now(const World& world, const ViewRequest& request) {
+    constexpr std::chrono::milliseconds settled(250);
+    const Clock::time_point now = Clock::now();
+    const bool moved = world_ != &world || world.revision() != last_revision_ || request != last_request_;
+    last_revision_ = world.revision();
+    last_request_ = request;
+    if (moved) {
+        last_move_ = now;
+    }
+    if (budget_ms() == 0.0 || now - last_move_ > settled) {
+        return {};
+    }
+    return moved ? quality_in_motion_ : quality_;
+}
+
+void Renderer::learn_cost(const PendingFrame& frame) {
+    const FrameCost cost = cost_of(frame.report);
+    if (budget_ms() > 0.0 && cost.pixels > 0.0) {
+        const std::uint32_t configured = interleaving(configuration_.interleave, configuration_.vpls.count);
+        quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms());
     }
 }
 
@@ -196,16 +233,17 @@ void Renderer::invalidate() {
 void Renderer::match_times(const std::vector<gl::FrameTime>& times) {
     for (const gl::FrameTime& time : times) {
         // A frame that threw has times but no report.
-        if (pending_.empty() || pending_.front().index != time.frame) {
+        if (pending_.empty() || pending_.front().report.index != time.frame) {
             continue;
         }
-        FrameReport report = std::move(pending_.front());
+        PendingFrame frame = std::move(pending_.front());
         pending_.pop_front();
-        report.gpu_ms = time.ms;
+        frame.report.gpu_ms = time.ms;
         for (const gl::PassTime& pass : time.passes) {
-            report.passes[pass.pass].gpu_ms = pass.ms;
+            frame.report.passes[pass.pass].gpu_ms = pass.ms;
         }
-        arrived_.push_back(std::move(report));
+        learn_cost(frame);
+        arrived_.push_back(std::move(frame.report));
         if (arrived_.size() > kept_frames) {
             arrived_.pop_front();
         }
@@ -303,6 +341,7 @@ Report Renderer::report() {
                   .triangles = runtime_.value(frame_.metrics).triangles,
                   .vpls = std::nullopt,
                   .refined = frame_.refinement ? runtime_.value(*frame_.refinement).set + 1 : 0,
+                  .rendered_size = rendered_size(size_, quality_),
                   .lights = report_lights(),
                   .memory = runtime_.memory()};
     if (frame_.vpls && configuration_.show != Show::direct) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -11,6 +12,8 @@
 #include "engine/graph/execute.hpp"
 #include "renderer/configuration/build_frame.hpp"
 #include "renderer/configuration/configuration.hpp"
+#include "renderer/frame_budget.hpp"
+#include "renderer/frame_report.hpp"
 #include "renderer/gl/graph_backend.hpp"
 #include "renderer/gpu.hpp"
 
@@ -20,21 +23,6 @@ namespace candela {
 struct Target {
     GLuint framebuffer = 0;
     glm::uvec2 size{1};  ///< pixels
-};
-
-/// GPU and CPU time of one pass in one frame, in milliseconds. A pass that had nothing to do takes none.
-struct PassReport {
-    std::string name;
-    bool ran = false;
-    double cpu_ms = 0.0;
-    double gpu_ms = 0.0;
-};
-
-struct FrameReport {
-    std::uint64_t index = 0;
-    double cpu_ms = 0.0;
-    double gpu_ms = 0.0;
-    std::vector<PassReport> passes;
 };
 
 /// Where the light went, in the lights' unit of flux: emitted = absorbed + escaped + truncated + roulette.
@@ -80,6 +68,8 @@ struct Report {
     std::uint64_t triangles = 0;
     std::optional<VplReport> vpls;  ///< none without indirect light
     std::uint32_t refined = 0;      ///< sets of VPLs in the picture's mean; 0 without refinement
+    glm::uvec2 rendered_size{
+        1};  ///< pixels that were shaded: the target's, or fewer to keep to the frame budget
     LightReport lights;
     MemoryUse memory;
 };
@@ -130,13 +120,26 @@ class Renderer {
     /// The graph of the present configuration.
     [[nodiscard]] std::string describe(GraphFormat format) const;
 
+    /// What the last frame was rendered with: less than in full only where that keeps it to the frame budget.
+    [[nodiscard]] Quality quality() const { return {quality_.scale, frame_.interleave}; }
+
     /// Which passes ran in the last frame.
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
 
     [[nodiscard]] gl::Device& device() { return gpu_.device(); }
 
  private:
-    void adopt(const Configuration& configuration, glm::uvec2 size);
+    using Clock = std::chrono::steady_clock;
+    /// A frame whose GPU times have not arrived.
+    struct PendingFrame {
+        FrameReport report;
+        Quality quality;
+    };
+
+    void adopt(const Configuration& configuration, glm::uvec2 size, const Quality& quality);
+    [[nodiscard]] double budget_ms() const;
+    [[nodiscard]] Quality quality_now(const World& world, const ViewRequest& request);
+    void learn_cost(const PendingFrame& frame);
     void set_vpl_clock(const World& world);
     void set_refinement_clock();
     void match_times(const std::vector<gl::FrameTime>& times);
@@ -148,7 +151,12 @@ class Renderer {
     gl::GraphBackend backend_;
     GraphRuntime runtime_;
     Configuration configuration_;
-    glm::uvec2 size_{1};
+    glm::uvec2 size_{1};  // of the target
+    Quality quality_;
+    Quality quality_in_motion_;
+    ViewRequest last_request_;
+    Tick last_revision_ = 0;  // of the world, in the last frame
+    Clock::time_point last_move_;
     FrameHandles frame_;
     RefinementClock refinement_clock_;
     bool refine_ = false;  // whether the next frame is to add another set of VPLs to the mean
@@ -157,7 +165,7 @@ class Renderer {
     const World* world_ = nullptr;  // of the last frame, if that was finished
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
-    std::deque<FrameReport> pending_;  // GPU times have not arrived
+    std::deque<PendingFrame> pending_;
     std::deque<FrameReport> arrived_;  // nobody has taken
 };
 

@@ -32,6 +32,7 @@ bool is_one_picture_of_many_frames(const Options& options) {
 Configuration choose_configuration(const Options& options, bool in_window) {
     Configuration configuration;
     configuration.refinement.enabled = in_window || is_one_picture_of_many_frames(options);
+    if (in_window) configuration.frame_budget_ms.reset();
     if (options.config) configuration = read_over(configuration, *options.config);
     override_by(options.show, configuration.show);
     override_by(options.path, configuration.path);

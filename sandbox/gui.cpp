@@ -75,6 +75,18 @@ bool Gui::wants(InputEvent::Kind kind) const {
     return false;
 }
 
+void show_words(Gui& gui, Window& window, const std::string& words) {
+    gui.begin_frame();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const ImVec2 extent = ImGui::CalcTextSize(words.c_str());
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    list->AddRectFilled({0.0F, 0.0F}, size, IM_COL32(0, 0, 0, 255));
+    list->AddText({0.5F * (size.x - extent.x), 0.5F * (size.y - extent.y)}, IM_COL32(255, 255, 255, 255),
+                  words.c_str());
+    gui.end_frame();
+    window.swap();
+}
+
 void draw_markers(const std::vector<LightMarker>& markers, const Viewport& viewport,
                   std::optional<Entity> selected) {
     constexpr ImU32 black = IM_COL32(0, 0, 0, 200);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "sandbox/light_picking.hpp"
 #include "sandbox/window.hpp"
 
@@ -20,6 +22,9 @@ class Gui {
     /// Whether the pointer, or the keyboard, belongs to a panel at the moment.
     [[nodiscard]] bool wants(InputEvent::Kind kind) const;
 };
+
+/// Fills the window with words, for the time until there is a picture.
+void show_words(Gui& gui, Window& window, const std::string& words);
 
 /// Draws a ring and a name where each light is seen, behind the panels.
 void draw_markers(const std::vector<LightMarker>& markers, const Viewport& viewport,

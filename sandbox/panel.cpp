@@ -32,9 +32,10 @@ void drag(const char* label, std::uint32_t& value, float speed) {
     ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
 }
 
-/// Refinement is on in a window whatever a frame is made of, so that named configurations leave it as it is.
-Configuration with_refinement_of(const Configuration& present, Configuration named) {
+/// Named configurations say what a frame is made of, and leave as it is how a window spends its time.
+Configuration paced_as(const Configuration& present, Configuration named) {
     named.refinement = present.refinement;
+    named.frame_budget_ms = present.frame_budget_ms;
     return named;
 }
 
@@ -42,7 +43,7 @@ Configuration with_refinement_of(const Configuration& present, Configuration nam
 void draw_named_configurations(Configuration& value) {
     const auto named = named_configurations();
     const auto is_value = [&](const NamedConfiguration& choice) {
-        return with_refinement_of(value, choice.configuration) == value;
+        return paced_as(value, choice.configuration) == value;
     };
     const auto shown = std::find_if(named.begin(), named.end(), is_value);
     if (!ImGui::BeginCombo("configuration",
@@ -50,7 +51,7 @@ void draw_named_configurations(Configuration& value) {
         return;
     for (const NamedConfiguration& choice : named) {
         if (ImGui::Selectable(std::string(choice.name).c_str(), is_value(choice)))
-            value = with_refinement_of(value, choice.configuration);
+            value = paced_as(value, choice.configuration);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(choice.description).c_str());
     }
     ImGui::EndCombo();
@@ -77,6 +78,24 @@ void draw_visibility(VplVisibilitySettings& settings) {
 void draw_refinement(RefinementSettings& settings) {
     ImGui::Checkbox("refine while still", &settings.enabled);
     if (settings.enabled) drag("frames to refine", settings.frames, 1.0F);
+}
+
+/// `present`: what the last frame was rendered with.
+void draw_frame_budget(std::optional<float>& budget_ms, const Quality& present) {
+    bool automatic = !budget_ms;
+    if (ImGui::Checkbox("frame time: automatic", &automatic)) {
+        if (automatic) {
+            budget_ms.reset();
+        } else {
+            budget_ms = 0.0F;
+        }
+    }
+    if (budget_ms) ImGui::DragFloat("frame time, ms", &*budget_ms, 0.5F, 0.0F, 1e6F, "%.3g");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "while something moves, fewer pixels are rendered, and each asks fewer VPLs; 0: always in full");
+    text(fmt::format("rendered: {:.0f} % of the sides, one in {} VPLs a pixel", 100.0F * present.scale,
+                     present.interleave * present.interleave));
 }
 
 void draw_playback(Playback& playback) {
@@ -189,7 +208,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
     const bool open = ImGui::Begin("Candela (F1)", &visible, ImGuiWindowFlags_AlwaysAutoResize);
     if (open) {
         ImGui::PushItemWidth(150.0F * scale);
-        draw_configuration(wanted);
+        draw_configuration(wanted, renderer.quality());
         ImGui::Separator();
         draw_cameras(world, interaction);
         draw_lights(world, interaction.selected);
@@ -204,7 +223,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
     if (wanted != renderer.configuration()) faults = renderer.configure(wanted);
 }
 
-void Panel::draw_configuration(Configuration& wanted) {
+void Panel::draw_configuration(Configuration& wanted, const Quality& present) {
     draw_named_configurations(wanted);
     combo("path", wanted.path, all_shading_paths);
     draw_list_settings(parts_of(wanted.path).list, wanted.lists);
@@ -223,6 +242,7 @@ void Panel::draw_configuration(Configuration& wanted) {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("with N, a pixel asks one in N² VPLs, and takes the rest from its neighbours");
     draw_refinement(wanted.refinement);
+    draw_frame_budget(wanted.frame_budget_ms, present);
     ImGui::DragFloat("geometry bound", &wanted.geometry_bound, 0.01F);
     ImGui::Checkbox("shadows", &wanted.shadows.enabled);
     ImGui::DragFloat("exposure (EV)", &wanted.tone_map.exposure_ev, 0.02F);

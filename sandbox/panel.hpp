@@ -23,7 +23,7 @@ class Panel {
               const FrameReport& frame);
 
  private:
-    void draw_configuration(Configuration& wanted);
+    void draw_configuration(Configuration& wanted, const Quality& present);
     void draw_account(Renderer& renderer);
 
     std::optional<Report> report_;

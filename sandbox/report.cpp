@@ -107,6 +107,7 @@ std::string to_json(const RunReport& report) {
         {"config", OrderedJson::parse(write_configuration(report.configuration))},
         {"frames", frames},
         {"refined", report.state.refined},
+        {"rendered_size", {report.state.rendered_size.x, report.state.rendered_size.y}},
         {"vpls", report.state.vpls ? to_json(*report.state.vpls) : OrderedJson(nullptr)},
         {"lights", to_json(report.state.lights)},
         {"memory", to_json(report.state.memory)}};

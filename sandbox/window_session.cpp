@@ -25,6 +25,13 @@ namespace candela::sandbox {
 
 namespace {
 
+/// Compiling shaders takes a moment, in which the window says so.
+Renderer open_renderer(Gui& gui, Window& window, const Scene& scene) {
+    show_words(gui, window,
+               fmt::format("{}: compiling shaders, placing virtual lights", scene.path.filename().string()));
+    return Renderer(Window::get_proc());
+}
+
 class WindowSession {
  public:
     WindowSession(Window& window, Scene& scene, Entity camera, const Configuration& configuration,
@@ -33,8 +40,8 @@ class WindowSession {
           scene_(scene),
           watch_(watch),
           options_(options),
-          renderer_(Window::get_proc()),
           gui_(window),
+          renderer_(open_renderer(gui_, window, scene)),
           interaction_(scene.world, camera) {
         apply(renderer_, configuration);
         if (scene.animation) playback_.emplace(*scene.animation);
@@ -141,8 +148,8 @@ class WindowSession {
     Scene& scene_;
     ConfigWatch& watch_;
     const Options& options_;
-    Renderer renderer_;
     Gui gui_;
+    Renderer renderer_;
     Interaction interaction_;
     Panel panel_;
     std::optional<Playback> playback_;

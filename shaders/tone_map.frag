@@ -14,7 +14,23 @@ vec3 filmic(vec3 light) {
     return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 
+uniform vec2 target_size;
+
+// A picture of another size is interpolated between its pixels.
+vec4 scaled_radiance(vec2 size) {
+    vec2 at = gl_FragCoord.xy / target_size * size - 0.5;
+    ivec2 first = ivec2(floor(at));
+    ivec2 last = ivec2(size) - 1;
+    vec2 share = at - vec2(first);
+    vec4 low = mix(texelFetch(radiance, clamp(first, ivec2(0), last), 0),
+                   texelFetch(radiance, clamp(first + ivec2(1, 0), ivec2(0), last), 0), share.x);
+    vec4 high = mix(texelFetch(radiance, clamp(first + ivec2(0, 1), ivec2(0), last), 0),
+                    texelFetch(radiance, clamp(first + ivec2(1), ivec2(0), last), 0), share.x);
+    return mix(low, high, share.y);
+}
+
 void main() {
-    vec4 linear = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0);
+    vec2 size = vec2(textureSize(radiance, 0));
+    vec4 linear = size == target_size ? texelFetch(radiance, ivec2(gl_FragCoord.xy), 0) : scaled_radiance(size);
     colour = curve ? vec4(srgb_encode(filmic(linear.rgb * exposure)), 1.0) : linear;
 }

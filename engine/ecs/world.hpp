@@ -73,6 +73,9 @@ class World {
     template <Component C>
     [[nodiscard]] Tick revision() const;
 
+    /// When anything last changed in any pool; 0 if never.
+    [[nodiscard]] Tick revision() const { return tick_; }
+
     /// Number of entities that have a C.
     template <Component C>
     [[nodiscard]] std::size_t count() const;

@@ -1,5 +1,7 @@
 #include "renderer/configuration/build_frame.hpp"
 
+#include <algorithm>
+
 #include "renderer/passes/accumulate.hpp"
 #include "renderer/passes/deferred.hpp"
 #include "renderer/passes/depth_prepass.hpp"
@@ -22,10 +24,12 @@ std::optional<TextureHandle> depth_of(const std::optional<VisibleSurfaces>& surf
 
 }  // namespace
 
-FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration, glm::uvec2 size) {
+FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
+                         const FrameExtent& extent) {
+    const glm::uvec2 size = extent.size;
     FrameHandles frame;
     frame.request = graph.import_value<ViewRequest>("view request");
-    frame.target = graph.texture("target", {size, Format::rgba8}, Lifetime::imported);
+    frame.target = graph.texture("target", {extent.target, Format::rgba8}, Lifetime::imported);
 
     const SceneData scene = add_scene_upload(graph, gpu);
     const Tracing tracing = add_bvh(graph, gpu, scene);
@@ -66,7 +70,10 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         }
     }
     const bool shows_indirect = vpl_light && configuration.show != Show::direct;
-    frame.interleave = shows_indirect ? interleaving(configuration.interleave, configuration.vpls.count) : 1;
+    frame.interleave = shows_indirect
+                           ? std::max(interleaving(configuration.interleave, configuration.vpls.count),
+                                      extent.least_interleave)
+                           : 1;
 
     // Without interleaving, too, VPLs are gathered where they are too many for the shading path.
     const bool gathers =
@@ -129,7 +136,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     if (frame.refinement) {
         radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, size);
     }
-    add_tone_map(graph, gpu, radiance, frame.target, size, configuration.tone_map);
+    add_tone_map(graph, gpu, radiance, frame.target, extent.target, configuration.tone_map);
     return frame;
 }
 

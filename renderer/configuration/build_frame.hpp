@@ -32,9 +32,16 @@ struct FrameHandles {
     std::optional<LightLists> lists;        ///< none where all surfaces visit all lights
 };
 
-/// Declares the frame that a valid configuration asks for, at one size of target in pixels.
+/// What is rendered, in pixels.
+struct FrameExtent {
+    glm::uvec2 size;    ///< that are shaded
+    glm::uvec2 target;  ///< to which they are scaled
+    std::uint32_t least_interleave = 1;
+};
+
+/// Declares the frame that a valid configuration asks for, at one size.
 /// Throws gl::ProgramError if a shader does not compile.
 [[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                                       glm::uvec2 size);
+                                       const FrameExtent& extent);
 
 }  // namespace candela

@@ -74,6 +74,7 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("enabled", c.tone_map.enabled);
         visitor.member("exposure_ev", c.tone_map.exposure_ev, {-32, 32});
     });
+    visitor.member("frame_budget_ms", c.frame_budget_ms, {0, 1e6});
 }
 
 class Writer {
@@ -92,6 +93,8 @@ class Writer {
             (*json_)[name] = as_json(names_of(value)[static_cast<std::size_t>(value)]);
         } else if constexpr (std::is_same_v<T, float>) {
             write_float((*json_)[name], value);
+        } else if constexpr (std::is_same_v<T, std::optional<float>>) {
+            (*json_)[name] = value ? Json(*value) : Json("auto");
         } else {
             (*json_)[name] = value;
         }
@@ -127,6 +130,11 @@ class Validator {
     }
     template <class T>
     void member(const char* /*name*/, const T& /*value*/) {}
+    void member(const char* name, const std::optional<float>& value, Range range) {
+        if (value) {
+            member(name, *value, range);
+        }
+    }
     template <class T>
     void member(const char* name, const T& value, Range range) {
         const auto number = static_cast<double>(value);
@@ -207,6 +215,13 @@ class Reader {
             return fault(name, fmt::format("is not from {} to {}", range.least, range.most));
         }
         value = static_cast<float>(number);
+    }
+    void read(const char* name, const Json& json, std::optional<float>& value, Range range) {
+        if (json == "auto") {
+            value.reset();
+        } else {
+            read(name, json, value.emplace(value.value_or(0.0F)), range);
+        }
     }
     template <class E>
     requires std::is_enum_v<E>

@@ -59,6 +59,9 @@ struct Configuration {
     ShadowSettings shadows;
     RefinementSettings refinement;
     ToneMapSettings tone_map;
+    /// Milliseconds that a frame may take while something moves; then fewer pixels are rendered and scaled
+    /// up, and each asks fewer VPLs. 0: no bound; none: 16 where a GPU draws, 100 where software does.
+    std::optional<float> frame_budget_ms = 0.0F;
     bool operator==(const Configuration&) const = default;
 };
 

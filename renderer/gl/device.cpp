@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 namespace candela::gl {
@@ -84,6 +85,11 @@ Device::Device(const GetProc& get_proc)
       limits_(get_limits(functions_, has_extension("GL_ARB_texture_filter_anisotropic") ||
                                          has_extension("GL_EXT_texture_filter_anisotropic"))),
       log_(functions_) {}
+
+bool Device::is_software() const {
+    constexpr std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "SWR", "Software"};
+    return std::ranges::any_of(names, [&](auto name) { return renderer_.find(name) != std::string::npos; });
+}
 
 bool Device::has_extension(std::string_view name) const {
     return std::binary_search(extensions_.begin(), extensions_.end(), name);

@@ -58,6 +58,7 @@ class Device {
     [[nodiscard]] const Limits& limits() const { return limits_; }
     [[nodiscard]] const std::string& renderer() const { return renderer_; }  ///< as GL_RENDERER
     [[nodiscard]] const std::string& version() const { return version_; }    ///< as GL_VERSION
+    [[nodiscard]] bool is_software() const;                                  ///< whether no GPU draws
     [[nodiscard]] bool has_extension(std::string_view name) const;
 
     /// What the driver said since the last call, oldest first: see DebugLog::take.

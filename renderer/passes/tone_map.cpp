@@ -25,6 +25,7 @@ void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuin
     gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     gpu.gl().Viewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
     gpu.gl().BindTextureUnit(UNIT_RADIANCE, radiance);
+    program.set("target_size", glm::vec2(size));
     program.set("exposure", std::exp2(settings.exposure_ev));
     program.set("curve", settings.enabled);
     gpu.draw_fullscreen(program);

@@ -16,8 +16,8 @@ struct ToneMapSettings {
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, TextureHandle target, glm::uvec2 size,
                   const ToneMapSettings& settings);
 
-/// What the node does, for images that come from elsewhere: `radiance` is a texture of `size`, drawn to the
-/// lower left of `framebuffer`.
+/// What the node does, for images that come from elsewhere: `radiance` is a texture, drawn to the lower left
+/// of `framebuffer`, scaled to `size` pixels if it has others.
 void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuint framebuffer,
               glm::uvec2 size, const ToneMapSettings& settings);
 [[nodiscard]] const gl::Program& tone_map_program(Gpu& gpu);

@@ -29,6 +29,7 @@ Configuration unusual() {
     c.indirect = false;
     c.vpls = {.count = 7, .bounces = 5, .seed = 4'000'000'000U};
     c.interleave = Interleave::four;
+    c.frame_budget_ms = std::nullopt;
     c.geometry_bound = std::numeric_limits<float>::infinity();
     c.shadows = {.enabled = false, .cube_resolution = 16, .map_resolution = 8192, .budget_mib = 0};
     c.tone_map = {.enabled = false, .exposure_ev = -1.7F};
@@ -80,6 +81,11 @@ TEST_SUITE("configuration") {
         CHECK(faults_of(R"({"shadows": {"map_resolution": 8193}})").size() == 1);
         CHECK(faults_of(R"({"vpls": {"geometry_bound": -0.1}})").size() == 1);
         CHECK(faults_of(R"({"tone_map": {"exposure_ev": "infinity"}})").size() == 1);
+        CHECK(faults_of(R"({"frame_budget_ms": -1})") == Faults{"frame_budget_ms: is not from 0 to 1000000"});
+        CHECK(faults_of(R"({"frame_budget_ms": true})") == Faults{"frame_budget_ms: is not a number"});
+        CHECK(read_configuration(R"({"frame_budget_ms": 12.5})", unusual()).configuration->frame_budget_ms ==
+              12.5F);
+        CHECK_FALSE(read_configuration(R"({"frame_budget_ms": "auto"})").configuration->frame_budget_ms);
         CHECK(faults_of(R"({"vpls": {"interleave": 3}})") ==
               Faults{"vpls.interleave: is not one of auto, 1, 2, 4, 8"});
         CHECK(read_configuration(R"({"vpls": {"interleave": 8}})").configuration->interleave ==

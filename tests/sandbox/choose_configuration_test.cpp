@@ -10,10 +10,11 @@
 namespace candela::sandbox {
 
 TEST_SUITE("choosing a configuration") {
-    TEST_CASE("without a wish it is the default, which a window refines") {
+    TEST_CASE("without a wish it is the default, which a window refines, and paces") {
         CHECK(choose_configuration({}, false) == Configuration{});
         Configuration refined;
         refined.refinement.enabled = true;
+        refined.frame_budget_ms = std::nullopt;
         CHECK(choose_configuration({}, true) == refined);
     }
 

@@ -1,0 +1,72 @@
+#include "renderer/frame_budget.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace candela {
+namespace {
+
+constexpr std::array<std::string_view, 12> pixel_passes{
+    "gbuffer",         "depth-prepass", "light-tiles", "vpl-reconstruct-rows",
+    "vpl-reconstruct", "vpl-lacking",   "vpl-fill",    "forward",
+    "deferred",        "transparent",   "accumulate",  "blended-light-tiles"};
+
+// From the best to the least. Asking fewer VPLs costs hardly any quality, and so comes first.
+constexpr std::array<Quality, 6> qualities{
+    {{1.0F, 1}, {1.0F, 8}, {0.75F, 8}, {0.5F, 8}, {0.375F, 8}, {0.25F, 8}}};
+
+constexpr double full = 0.9;   // of the budget, to which frames are planned
+constexpr double roomy = 0.7;  // of it, to which better frames than the measured are
+
+double pixels_of(const Quality& quality) {
+    return static_cast<double>(quality.scale) * static_cast<double>(quality.scale);
+}
+
+bool is_better(const Quality& a, const Quality& b) {
+    return a.scale > b.scale || (a.scale == b.scale && a.interleave < b.interleave);
+}
+
+}  // namespace
+
+FrameCost cost_of(const FrameReport& frame) {
+    FrameCost cost;
+    for (const PassReport& pass : frame.passes) {
+        if (!pass.ran) {
+            continue;
+        }
+        if (pass.name == "vpl-gather") {
+            cost.gather += pass.gpu_ms;
+        } else if (std::ranges::find(pixel_passes, std::string_view(pass.name)) != pixel_passes.end()) {
+            cost.pixels += pass.gpu_ms;
+        }
+    }
+    cost.rest = std::max(std::max(frame.cpu_ms, frame.gpu_ms) - cost.gather - cost.pixels, 0.0);
+    return cost;
+}
+
+double expected_ms(const FrameCost& cost, const Quality& measured, const Quality& wanted) {
+    const double pixels = pixels_of(wanted) / pixels_of(measured);
+    const double asked = static_cast<double>(measured.interleave) / static_cast<double>(wanted.interleave);
+    return cost.rest + pixels * (cost.pixels + asked * asked * cost.gather);
+}
+
+Quality choose_quality(const FrameCost& cost, const Quality& measured, std::uint32_t configured,
+                       double budget_ms) {
+    const auto fits = [&](Quality quality) {
+        quality.interleave = std::max(quality.interleave, configured);
+        const double room = is_better(quality, measured) ? roomy : full;
+        return expected_ms(cost, measured, quality) <= room * budget_ms;
+    };
+    const auto* const found = std::ranges::find_if(qualities, fits);
+    return found == qualities.end() ? qualities.back() : *found;
+}
+
+glm::uvec2 rendered_size(glm::uvec2 target, const Quality& quality) {
+    const auto side = [&](std::uint32_t pixels) {
+        return std::max(static_cast<std::uint32_t>(static_cast<float>(pixels) * quality.scale + 0.5F), 1U);
+    };
+    return {side(target.x), side(target.y)};
+}
+
+}  // namespace candela

@@ -1,0 +1,150 @@
+// What frames are rendered with where time is short: decisions, and the pictures that they lead to.
+
+#include "renderer/frame_budget.hpp"
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{96, 64};
+
+class FrameBudgetTests : public PathFixture {
+ protected:
+    /// A budget that no frame keeps, or one that every frame does.
+    void start(float budget_ms) {
+        Configuration configuration = few_vpls();
+        configuration.vpls.budget = 0;
+        configuration.frame_budget_ms = budget_ms;
+        configure(configuration);
+    }
+    void move_camera() {
+        scene.world.edit<Transform>(scene.camera, [](Transform& pose) { pose.translation.x += 0.01F; });
+    }
+    /// Frames of a moving camera until their times are known.
+    Picture moving() {
+        Picture picture;
+        for (int i = 0; i < 3; ++i) {
+            move_camera();
+            picture = render(scene, size);
+            static_cast<void>(renderer.take_frames(true));
+        }
+        return picture;
+    }
+    /// The same, made by a renderer without a budget that has seen nothing else.
+    Picture fresh_picture() {
+        TestedRenderer fresh(context->get_proc());
+        Configuration configuration = renderer.configuration();
+        configuration.frame_budget_ms = 0.0F;
+        REQUIRE(fresh.configure(configuration).empty());
+        const RenderTarget target(device, size);
+        fresh.render(scene.world, scene.camera, target.target());
+        return target.read();
+    }
+
+    Scene scene = cornell_box();
+};
+
+}  // namespace
+
+TEST_SUITE("frame budget") {
+    TEST_CASE("a frame's cost is told apart by what it depends on") {
+        const FrameReport frame{.index = 0,
+                                .cpu_ms = 20.0,
+                                .gpu_ms = 30.0,
+                                .passes = {{"vpl-maps", true, 0.1, 5.0},
+                                           {"vpl-gather", true, 0.1, 12.0},
+                                           {"deferred", true, 0.1, 6.0},
+                                           {"vpl-reconstruct", true, 0.1, 3.0},
+                                           {"gbuffer", false, 0.0, 0.0}}};
+        const FrameCost cost = cost_of(frame);
+        CHECK(cost.gather == 12.0);
+        CHECK(cost.pixels == 9.0);
+        CHECK(cost.rest == 9.0);
+    }
+
+    TEST_CASE("what a frame would take follows its pixels, and the VPLs that each asks") {
+        const FrameCost cost{.gather = 16.0, .pixels = 8.0, .rest = 5.0};
+        CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 4}) == 29.0);
+        CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 8}) == 5.0 + 8.0 + 4.0);
+        CHECK(expected_ms(cost, {1.0F, 4}, {0.5F, 8}) == 5.0 + 2.0 + 1.0);
+        CHECK(expected_ms(cost, {0.5F, 8}, {1.0F, 4}) == 5.0 + 32.0 + 256.0);
+    }
+
+    TEST_CASE("the best quality is taken that keeps to the budget") {
+        const FrameCost cost{.gather = 160.0, .pixels = 80.0, .rest = 10.0};
+        const Quality whole{1.0F, 1};
+        CHECK(choose_quality(cost, whole, 1, 1000.0) == whole);
+        CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});   // 92.5 ms
+        CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.75F, 8});  // 92.5 would be, by a hair
+        CHECK(choose_quality(cost, whole, 1, 40.0) == Quality{0.5F, 8});
+        CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // nothing does
+        // Where frames interleave anyway, more of that gains nothing.
+        CHECK(choose_quality(cost, {1.0F, 8}, 8, 1000.0) == whole);
+        CHECK(choose_quality(cost, {1.0F, 8}, 8, 150.0).scale < 1.0F);
+    }
+
+    TEST_CASE("a better quality is not taken that would be left again at once") {
+        // What half of the sides takes leaves room for three quarters, in which nothing is left to spare.
+        const FrameCost cost{.gather = 0.0, .pixels = 36.0, .rest = 0.0};
+        CHECK(expected_ms(cost, {0.5F, 8}, {0.75F, 8}) == 81.0);
+        CHECK(choose_quality(cost, {0.5F, 8}, 1, 100.0) == Quality{0.5F, 8});
+        CHECK(choose_quality(cost, {0.5F, 8}, 1, 120.0) == Quality{0.75F, 8});
+        // Once there, it stays.
+        const FrameCost there{.gather = 0.0, .pixels = 81.0, .rest = 0.0};
+        CHECK(choose_quality(there, {0.75F, 8}, 1, 100.0) == Quality{0.75F, 8});
+    }
+
+    TEST_CASE("at least a pixel is rendered") {
+        CHECK(rendered_size({1280, 720}, {0.375F, 8}) == glm::uvec2(480, 270));
+        CHECK(rendered_size({1, 2}, {0.25F, 8}) == glm::uvec2(1, 1));
+        CHECK(rendered_size({511, 513}, {}) == glm::uvec2(511, 513));
+    }
+
+    TEST_CASE_FIXTURE(FrameBudgetTests,
+                      "while something moves frames keep to the budget, and at rest they are whole") {
+        start(1e-3F);
+        const Picture coarse = moving();
+        CHECK(renderer.report().rendered_size == size / 4U);
+        CHECK(renderer.report().vpls->interleave == 8);
+        CHECK(is_sane(coarse));
+        const Picture whole = fresh_picture();
+        CHECK(coarse != whole);
+        CHECK(mean(coarse) == doctest::Approx(mean(whole)).epsilon(0.05));
+
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        CHECK(render(scene, size) == whole);
+        CHECK(renderer.report().rendered_size == size);
+        move_camera();
+        static_cast<void>(render(scene, size));
+        CHECK(renderer.report().rendered_size == size / 4U);
+    }
+
+    TEST_CASE_FIXTURE(FrameBudgetTests, "with time enough, or without a budget, every frame is whole") {
+        for (const float budget : {1e6F, 0.0F}) {
+            CAPTURE(budget);
+            start(budget);
+            const Picture picture = moving();
+            CHECK(renderer.report().rendered_size == size);
+            CHECK(picture == fresh_picture());
+        }
+    }
+
+    TEST_CASE_FIXTURE(FrameBudgetTests, "refinement goes on at rest, from the whole frame") {
+        start(1e-3F);
+        Configuration configuration = renderer.configuration();
+        configuration.refinement = {.enabled = true, .frames = 4};
+        configure(configuration);
+        static_cast<void>(moving());
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        for (int i = 0; i < 6; ++i) static_cast<void>(render(scene, size));
+        CHECK(renderer.report().refined == 4);
+        CHECK(renderer.report().rendered_size == size);
+    }
+}
