@@ -100,7 +100,7 @@ struct Path {
     std::uint32_t vpl_count;
     glm::vec2 start{-1.0F};
     std::uint32_t kept = 0;
-    std::uint32_t length = 0;
+    std::uint32_t bounces = 0;
     bool operator==(const Path&) const = default;
 };
 
@@ -126,7 +126,7 @@ struct CheckedPath {
     std::uint32_t index;
     std::uint32_t seed;
     std::uint32_t first_tile;
-    std::uint32_t length;
+    std::uint32_t bounces;
     std::uint32_t tested;
     std::uint32_t canonical;
     std::uint32_t traced_seed;
@@ -135,7 +135,7 @@ struct CheckedPath {
 struct PathCheck {
     glm::vec2 start;
     glm::vec2 canonical;
-    std::uint32_t length;
+    std::uint32_t bounces;
     std::uint32_t pad0;
 };
 

@@ -295,7 +295,7 @@ VplReport Renderer::report_vpls(const Vpls& vpls) const {
     const auto made = [&](const PassRecord& pass) { return pass.name == "vpl-trace" && pass.ran; };
     const bool any_made = std::ranges::any_of(last_passes_, made);
     const auto traced = [](std::uint32_t sum, const gpu::Path& path) {
-        return sum + path.length - path.kept;
+        return sum + path.bounces - path.kept;
     };
     return {.requested = configuration_.vpls.count,
             .alive = static_cast<std::uint32_t>(alive),

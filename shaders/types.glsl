@@ -99,7 +99,7 @@ struct Path {
     uint vpl_count;   // bounces that the path may make, at least 1: its places
     vec2 start;       // on its light, in [0, 1)^2; negative: at its point of the sequence
     uint kept;        // leading bounces that an earlier frame has recorded
-    uint length;      // leading bounces that there are; the rest, if any, is still to be traced
+    uint bounces;     // leading ones that there are; the rest, if any, is still to be traced
 };
 
 // Place of a bounce of a path, and so of a VPL.
@@ -127,7 +127,7 @@ struct CheckedPath {
     uint index;
     uint seed;         // of the light's sequence
     uint first_tile;   // of its tiles in the list of them
-    uint length;       // bounces that have records
+    uint bounces;      // that have records
     uint tested;       // leading segments that may have changed
     uint canonical;    // 1: starts at its point of the sequence, of its light as it is now
     uint traced_seed;  // of the sequence by which its records were made
@@ -136,7 +136,7 @@ struct CheckedPath {
 struct PathCheck {
     vec2 start;      // on its light as it is now, in [0, 1]^2
     vec2 canonical;  // its point of the sequence
-    uint length;     // leading bounces that stay
+    uint bounces;    // leading ones that stay
     uint pad0;
 };
 

@@ -48,17 +48,17 @@ void main() {
     vec2 canonical = canonical_start(path.index, path.seed);
     bool exact = path.canonical != 0u;
 
-    PathCheck check = PathCheck(canonical, canonical, path.length, 0u);
-    if (path.length > 0u && !exact) {
+    PathCheck check = PathCheck(canonical, canonical, path.bounces, 0u);
+    if (path.bounces > 0u && !exact) {
         Ray aimed = aimed_first(light, records[tiles[path.first_tile]]);
         check.start = emission_coordinates(light, aimed.origin, aimed.direction);
-        if (!is_emitted(check.start)) check.length = 0u;
+        if (!is_emitted(check.start)) check.bounces = 0u;
         check.start = clamp(check.start, 0.0, 1.0);
     }
 
     vec3 throughput = vec3(1.0);
     VplRecord last;
-    for (uint bounce = 1u; bounce <= min(path.tested, check.length); ++bounce) {
+    for (uint bounce = 1u; bounce <= min(path.tested, check.bounces); ++bounce) {
         uint tile = tiles[path.first_tile + bounce - 1u];
         VplRecord old = records[tile];
         Ray ray;
@@ -71,7 +71,7 @@ void main() {
         }
         VplRecord now = follow(ray, throughput);
         if (!same_end(old, now)) {
-            check.length = bounce - 1u;
+            check.bounces = bounce - 1u;
             break;
         }
         // What was traced from where it still starts comes out as it would be traced now, to the last bit. Other paths

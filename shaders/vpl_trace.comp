@@ -26,7 +26,7 @@ void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= path_count) return;
     Path path = paths[id];
-    if (bounce <= path.kept || bounce > path.length) return;
+    if (bounce <= path.kept || bounce > path.bounces) return;
     VplRecord last = VplRecord(vec3(0.0), VPL_PLACED, vec3(0.0), 0.0, vec3(1.0), 0.0);
     if (bounce > 1u) last = records[tile_of(path, bounce - 1u)];
     if (last.state == VPL_ESCAPED) {

@@ -41,7 +41,7 @@ void main() {
     vec3 throughput = vec3(1.0);
     float window = 1.0;
     vec3 reflected = vec3(0.0);  // at the bounce before
-    for (uint bounce = 1u; bounce <= path.length; ++bounce) {
+    for (uint bounce = 1u; bounce <= path.bounces; ++bounce) {
         VplPlace place = places[path.first_vpl + bounce - 1u];
         vec3 carried = path.flux * (place.weight * window) * throughput;
         if (bounce == 1u) {
@@ -66,7 +66,7 @@ void main() {
 
         if (bounce == max_bounces) {
             account.truncated += reflected;
-        } else if (bounce == path.length) {
+        } else if (bounce == path.bounces) {
             account.roulette += reflected;
         }
     }

@@ -80,7 +80,7 @@ std::vector<gpu::Path> make_paths(const LightTable& lights, double albedo, std::
                              .seed = hashed(settings.seed, entry.entity.index),
                              .first_vpl = first_vpl,
                              .vpl_count = bounces_of(position, albedo, settings.bounces)});
-            paths.back().length = paths.back().vpl_count;
+            paths.back().bounces = paths.back().vpl_count;
             first_vpl += paths.back().vpl_count;
         }
     }
@@ -148,7 +148,7 @@ VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettin
         plan.paths = make_paths(lights, albedo, count, settings);
     }
     // A single path may be too long.
-    plan.paths.back().length = plan.paths.back().vpl_count =
+    plan.paths.back().bounces = plan.paths.back().vpl_count =
         std::min(plan.paths.back().vpl_count, settings.count);
     plan.vpl_count = vpls_of(plan.paths);
     for (const gpu::Path& path : plan.paths) {

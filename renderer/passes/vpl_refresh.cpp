@@ -106,7 +106,7 @@ CheckOrder order_checks(const RefreshInputs& now, const VplMemory& memory, bool 
                                .index = path.index,
                                .seed = path.seed,
                                .first_tile = static_cast<std::uint32_t>(order.tiles.size()),
-                               .length = 0,
+                               .bounces = 0,
                                .tested = 0,
                                .canonical = 0,
                                .traced_seed = path.seed});
@@ -116,12 +116,12 @@ CheckOrder order_checks(const RefreshInputs& now, const VplMemory& memory, bool 
         const gpu::Path& before = memory.paths.paths[known[i]];
         const bool light_moved = moved[path.light] != 0;
         gpu::CheckedPath& checked = order.paths.back();
-        checked.length = std::min(before.length, path.vpl_count);
-        checked.tested = scene_changed ? checked.length : (light_moved ? 1U : 0U);
+        checked.bounces = std::min(before.bounces, path.vpl_count);
+        checked.tested = scene_changed ? checked.bounces : (light_moved ? 1U : 0U);
         checked.traced_seed = before.seed;
         const bool same_light = !light_moved && before.seed == path.seed;
         checked.canonical = memory.memories[known[i]].canonical && same_light ? 1 : 0;
-        for (std::uint32_t bounce = 0; bounce < checked.length; ++bounce) {
+        for (std::uint32_t bounce = 0; bounce < checked.bounces; ++bounce) {
             order.tiles.push_back(memory.paths.places[before.first_vpl + bounce].tile);
         }
     }
@@ -164,7 +164,7 @@ std::vector<CheckedLength> checked_lengths(const std::vector<gpu::PathCheck>& ch
     std::vector<CheckedLength> lengths;
     lengths.reserve(checks.size());
     for (const gpu::PathCheck& check : checks) {
-        lengths.push_back({.length = check.length, .start = check.start, .canonical_start = check.canonical});
+        lengths.push_back({.bounces = check.bounces, .start = check.start, .canonical_start = check.canonical});
     }
     return lengths;
 }
@@ -195,7 +195,7 @@ bool needs_checks(const RefreshInputs& now, const VplMemory& memory, bool scene_
     for (std::size_t i = 0; i < known.size(); ++i) {
         const std::uint32_t k = known[i];
         settled = settled && k != no_path && memory.memories[k].canonical &&
-                  memory.paths.paths[k].length >= now.plan.paths[i].vpl_count;
+                  memory.paths.paths[k].bounces >= now.plan.paths[i].vpl_count;
         located = located && k != no_path && memory.memories[k].located;
     }
     return !settled && !located;

@@ -76,17 +76,17 @@ class Draft {
     /// Paths and bounces that there should be.
     void trace_missing() {
         std::vector<std::uint32_t> missing = paths_where(
-            [&](const gpu::Path& path, const PathMemory&) { return path.length < path.vpl_count; });
+            [&](const gpu::Path& path, const PathMemory&) { return path.bounces < path.vpl_count; });
         std::ranges::stable_sort(
-            missing, {}, [&](std::uint32_t i) { return std::tuple(path(i).length > 0, path(i).index); });
+            missing, {}, [&](std::uint32_t i) { return std::tuple(path(i).bounces > 0, path(i).index); });
         for (const std::uint32_t i : missing) {
-            if (!afford(path(i).vpl_count - path(i).length)) {
+            if (!afford(path(i).vpl_count - path(i).bounces)) {
                 continue;
             }
-            if (path(i).length == 0) {
+            if (path(i).bounces == 0) {
                 begin(i, moved_[path(i).light] != 0 ? thinnest_place(i) : std::nullopt);
             }
-            path(i).length = path(i).vpl_count;
+            path(i).bounces = path(i).vpl_count;
         }
     }
 
@@ -141,10 +141,10 @@ class Draft {
     VplMemory finish() {
         give_tiles();
         for (const gpu::Path& path : next_.paths.paths) {
-            next_.paths.debt += path.vpl_count - path.length;
+            next_.paths.debt += path.vpl_count - path.bounces;
         }
         for (std::uint32_t i = 0; i < next_.memories.size(); ++i) {
-            next_.paths.stale += memory(i).canonical ? 0 : path(i).length;
+            next_.paths.stale += memory(i).canonical ? 0 : path(i).bounces;
         }
         next_.paths.debt += static_cast<std::uint32_t>(
             std::ranges::count_if(next_.maps, [](const StaleMap& map) { return map.age > 0; }));
@@ -159,25 +159,25 @@ class Draft {
     void adopt(std::uint32_t i, std::uint32_t known, const VplMemory& old, const VplChecks& checks) {
         const LightTable::Entry& light = lights_.entries[path(i).light];
         memory(i) = {.light = light.entity, .index = path(i).index};
-        path(i).length = path(i).kept = 0;
+        path(i).bounces = path(i).kept = 0;
         if (known != no_path) {
             const gpu::Path& before = old.paths.paths[known];
-            path(i).length = std::min(before.length, path(i).vpl_count);
+            path(i).bounces = std::min(before.bounces, path(i).vpl_count);
             memory(i) = old.memories[known];
         }
         if (!checks.paths.empty()) {
             const CheckedLength& check = checks.paths[i];
-            path(i).length = std::min(path(i).length, check.length);
+            path(i).bounces = std::min(path(i).bounces, check.bounces);
             memory(i).start = check.start;
             memory(i).canonical_start = check.canonical_start;
             memory(i).located = true;
         }
-        path(i).kept = path(i).length;
+        path(i).kept = path(i).bounces;
         // What is kept goes on by the sequence that it was begun by.
-        path(i).seed = path(i).length > 0 ? old.paths.paths[known].seed : path(i).seed;
+        path(i).seed = path(i).bounces > 0 ? old.paths.paths[known].seed : path(i).seed;
         const bool in_plan = path(i).seed == plan_.paths[i].seed && moved_[path(i).light] == 0;
-        memory(i).canonical = memory(i).canonical && in_plan && path(i).length > 0;
-        for (std::uint32_t bounce = 0; bounce < path(i).length; ++bounce) {
+        memory(i).canonical = memory(i).canonical && in_plan && path(i).bounces > 0;
+        for (std::uint32_t bounce = 0; bounce < path(i).bounces; ++bounce) {
             const std::uint32_t place = old.paths.paths[known].first_vpl + bounce;
             next_.paths.places[path(i).first_vpl + bounce].tile = old.paths.places[place].tile;
         }
@@ -222,7 +222,7 @@ class Draft {
     std::optional<glm::vec2> thinnest_place(std::uint32_t i) {
         const LightPaths& light = paths_beside(i);
         const auto present =
-            paths_of(light, [&](std::uint32_t j) { return path(j).length >= path(i).vpl_count; });
+            paths_of(light, [&](std::uint32_t j) { return path(j).bounces >= path(i).vpl_count; });
         const auto thinnest = thinnest_places(cells_of(light.kind, present), 1);
         if (thinnest.empty()) {
             return std::nullopt;
@@ -232,7 +232,7 @@ class Draft {
 
     /// Moves paths of so many bounces, among all that get as far.
     void spread(const LightPaths& light, std::uint32_t bounces) {
-        const auto there = paths_of(light, [&](std::uint32_t i) { return path(i).length >= bounces; });
+        const auto there = paths_of(light, [&](std::uint32_t i) { return path(i).bounces >= bounces; });
         const EmissionCells cells = cells_of(light.kind, there);
         const std::vector<EmptyCircle> places = thinnest_places(cells, left_);
         std::vector<std::uint32_t> densest(there.size());
@@ -299,12 +299,12 @@ class Draft {
             for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
                 const std::uint32_t place = path.first_vpl + bounce;
                 std::uint32_t& tile = next_.paths.places[place].tile;
-                if (bounce < path.length && tile == no_tile) {
+                if (bounce < path.bounces && tile == no_tile) {
                     free = next_free(taken, free);
                     taken[free] = 1;
                     tile = free;
                 }
-                if (bounce >= path.kept && bounce < path.length) {
+                if (bounce >= path.kept && bounce < path.bounces) {
                     next_.paths.maps_due.push_back(place);
                     next_.maps[tile] = {};
                 }

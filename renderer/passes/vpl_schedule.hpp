@@ -19,7 +19,7 @@ struct RecordedVpl {
 
 /// What has become of a planned path that the memory has, too.
 struct CheckedLength {
-    std::uint32_t length = 0;  ///< leading bounces that still hold
+    std::uint32_t bounces = 0;  ///< leading bounces that still hold
     glm::vec2 start{0.0F};
     glm::vec2 canonical_start{0.0F};
 };

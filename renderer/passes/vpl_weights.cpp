@@ -60,7 +60,7 @@ std::vector<double> departures(VplMemory& schedule, gpu::LightKind kind,
 void weigh(VplMemory& schedule, const LightPaths& light, std::uint32_t bounce) {
     const std::vector<gpu::Path>& paths = schedule.paths.paths;
     const auto planned = paths_of(light, [&](std::uint32_t i) { return paths[i].vpl_count > bounce; });
-    const auto there = paths_of(light, [&](std::uint32_t i) { return paths[i].length > bounce; });
+    const auto there = paths_of(light, [&](std::uint32_t i) { return paths[i].bounces > bounce; });
     const std::vector<double> factors = departures(schedule, light.kind, planned, bounce);
     std::vector<double> shares =
         emission_cells(starts_on_sphere(schedule, light.kind, there), emission_domain(light.kind)).areas;
@@ -84,7 +84,7 @@ void weigh(VplMemory& schedule, const LightPaths& light, std::uint32_t bounce) {
 void weigh_by_cells(VplMemory& schedule, const LightTable& lights) {
     const std::vector<gpu::Path>& paths = schedule.paths.paths;
     const auto departed = [&](std::uint32_t i) {
-        return !schedule.memories[i].canonical || paths[i].length < paths[i].vpl_count;
+        return !schedule.memories[i].canonical || paths[i].bounces < paths[i].vpl_count;
     };
     for (const LightPaths& light : paths_by_light(paths, lights)) {
         if (paths_of(light, departed).empty()) {

@@ -35,14 +35,14 @@ VplChecks all_hold(const VplPaths& plan) {
     for (const gpu::Path& path : plan.paths) {
         const float x = uniform(random);
         const glm::vec2 start(x, uniform(random));
-        checks.paths.push_back({.length = path.vpl_count, .start = start, .canonical_start = start});
+        checks.paths.push_back({.bounces = path.vpl_count, .start = start, .canonical_start = start});
     }
     return checks;
 }
 
 std::uint32_t traced(const VplMemory& memory) {
     std::uint32_t bounces = 0;
-    for (const gpu::Path& path : memory.paths.paths) bounces += path.length - path.kept;
+    for (const gpu::Path& path : memory.paths.paths) bounces += path.bounces - path.kept;
     return bounces;
 }
 
@@ -50,7 +50,7 @@ std::uint32_t traced(const VplMemory& memory) {
 double weight_at(const VplPaths& paths, std::uint32_t light, std::uint32_t bounce) {
     double sum = 0.0;
     for (const gpu::Path& path : paths.paths) {
-        if (path.light == light && path.length > bounce) {
+        if (path.light == light && path.bounces > bounce) {
             sum += static_cast<double>(paths.places[path.first_vpl + bounce].weight);
         }
     }
@@ -65,10 +65,10 @@ void check_schedule(const VplMemory& memory, const VplPaths& plan, const Schedul
     std::set<std::uint32_t> tiles;
     std::uint32_t missing = 0;
     for (const gpu::Path& path : paths.paths) {
-        CHECK(path.kept <= path.length);
-        CHECK(path.length <= path.vpl_count);
-        missing += path.vpl_count - path.length;
-        for (std::uint32_t bounce = 0; bounce < path.length; ++bounce) {
+        CHECK(path.kept <= path.bounces);
+        CHECK(path.bounces <= path.vpl_count);
+        missing += path.vpl_count - path.bounces;
+        for (std::uint32_t bounce = 0; bounce < path.bounces; ++bounce) {
             const gpu::VplPlace& place = paths.places[path.first_vpl + bounce];
             CHECK(place.weight >= 0.0F);
             CHECK(place.tile < paths.map_count);
@@ -127,7 +127,7 @@ TEST_SUITE("vpl schedule") {
         std::uint32_t dropped = 0;
         for (std::size_t i = 0; i < plan.paths.size(); i += 3) {
             dropped += plan.paths[i].vpl_count;
-            checks.paths[i].length = 0;
+            checks.paths[i].bounces = 0;
         }
         REQUIRE(dropped > 3 * limits.budget);
         memory = next(checks);
@@ -158,10 +158,10 @@ TEST_SUITE("vpl schedule") {
             std::ranges::max_element(plan.paths, {}, &gpu::Path::vpl_count) - plan.paths.begin();
         const auto i = static_cast<std::size_t>(longest);
         REQUIRE(plan.paths[i].vpl_count == 3);
-        checks.paths[i].length = 1;
+        checks.paths[i].bounces = 1;
         const VplMemory after = next(checks);
         CHECK(after.paths.paths[i].kept == 1);
-        CHECK(after.paths.paths[i].length == 3);
+        CHECK(after.paths.paths[i].bounces == 3);
         CHECK(traced(after) == 2);
         CHECK(after.paths.maps_due.size() == 2);
         CHECK(after.paths.debt == 0);
@@ -171,7 +171,7 @@ TEST_SUITE("vpl schedule") {
     TEST_CASE_FIXTURE(Fixture, "while one light moves, the other's paths are not touched") {
         lights.entries[0].light.position = {1, 0, 0};
         VplChecks checks = all_hold(plan);
-        checks.paths[0].length = 0;
+        checks.paths[0].bounces = 0;
         const VplMemory after = next(checks);
         for (std::size_t i = 0; i < plan.paths.size(); ++i) {
             const gpu::Path& path = after.paths.paths[i];
@@ -183,7 +183,7 @@ TEST_SUITE("vpl schedule") {
             }
         }
         // The new path of the moving light starts at a place of its own.
-        CHECK(after.paths.paths[0].length > 0);
+        CHECK(after.paths.paths[0].bounces > 0);
         CHECK(after.paths.paths[0].start.x >= 0.0F);
         CHECK_FALSE(after.memories[0].canonical);
     }
@@ -205,7 +205,7 @@ TEST_SUITE("vpl schedule") {
         const auto longest =
             std::ranges::max_element(plan.paths, {}, &gpu::Path::vpl_count) - plan.paths.begin();
         const auto cut = static_cast<std::size_t>(longest);
-        checks.paths[cut].length = 1;
+        checks.paths[cut].bounces = 1;
         memory = next(checks);
         CHECK(memory.paths.debt == 0);
         CHECK(memory.paths.stale >= plan.vpl_count - limits.budget);
@@ -293,14 +293,14 @@ TEST_SUITE("vpl schedule") {
 
     TEST_CASE_FIXTURE(Fixture, "a path longer than the budget is traced whole, in a frame of its own") {
         VplChecks checks = all_hold(plan);
-        for (CheckedLength& check : checks.paths) check.length = 0;
+        for (CheckedLength& check : checks.paths) check.bounces = 0;
         const ScheduleSettings small{.budget = 2, .tiles = count, .maps = true};
         memory = schedule(plan, lights, memory, checks, small);
         std::uint32_t rounds = 0;
         while (memory.paths.debt > 0) {
             memory = schedule(plan, lights, memory, {}, small);
             const auto begun = std::ranges::count_if(
-                memory.paths.paths, [](const gpu::Path& path) { return path.kept < path.length; });
+                memory.paths.paths, [](const gpu::Path& path) { return path.kept < path.bounces; });
             if (traced(memory) > small.budget) CHECK(begun == 1);
             REQUIRE(++rounds < 1000);
         }
@@ -331,7 +331,7 @@ TEST_SUITE("vpl schedule") {
             const VplPaths plan = plan_for(f.lights);
             VplChecks checks = all_hold(plan);
             for (CheckedLength& check : checks.paths)
-                check.length -= draw(8) == 0 ? draw(check.length + 1) : 0;
+                check.bounces -= draw(8) == 0 ? draw(check.bounces + 1) : 0;
             f.memory = f.next(checks);
             if (step % 50 == 49) f.settle();
         }

@@ -22,7 +22,7 @@ int shading(const std::filesystem::path& scene);
 struct GatherStudy {
     std::filesystem::path scene;
     glm::uvec2 size{512, 512};
-    std::vector<std::uint32_t> vpls{256, 1024, 4096};
+    std::vector<std::uint32_t> vpls{256, 1024};
     int rounds = 5;
 };
 /// Time and difference of indirect light that is gathered interleaved, of asking all VPLs at every pixel.

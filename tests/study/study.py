@@ -26,6 +26,7 @@ from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
 SUITES = ["matrix", "table", "growth", "gather", "motion"]
+GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
 RESULTS = scenes.ROOT / "tests" / "study" / "results"
 
@@ -101,7 +102,7 @@ def run_program_part(part: str) -> None:
     commands = {
         "graph": [["graph", "--benchmark_counters_tabular=true"]],
         "shading": [["shading", cornell]],
-        "gather": [["gather", scenes.SHIPPED / f"{name}.gltf"] for name in ("cornell", "two-rooms", "glass", "fins")],
+        "gather": [["gather", scenes.find(name, SCENES)] for name in GATHER_SCENES],
         "moves": [["moves"]],
         "paths": [
             ["paths", cornell, "--vpls", "256"],

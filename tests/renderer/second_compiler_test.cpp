@@ -1,0 +1,102 @@
+// Every variant of every program passes a second compiler beside the driver's: glslang, the reference compiler.
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+
+#include "tests/renderer/path_fixture.hpp"
+#include "tests/sandbox/temporary_folder.hpp"
+
+using namespace candela;
+
+namespace {
+
+std::map<GLuint, GLenum> stage_of_shader;
+std::set<std::pair<GLenum, std::string>> sources;  // that a driver has been given
+
+PFNGLCREATESHADERPROC create_shader = nullptr;
+PFNGLSHADERSOURCEPROC shader_source = nullptr;
+
+GLuint note_stage(GLenum stage) {
+    const GLuint shader = create_shader(stage);
+    stage_of_shader[shader] = stage;
+    return shader;
+}
+
+void note_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
+    std::string whole;
+    for (GLsizei i = 0; i < count; ++i) whole.append(texts[i], static_cast<std::size_t>(lengths[i]));
+    sources.emplace(stage_of_shader.at(shader), std::move(whole));
+    shader_source(shader, count, texts, lengths);
+}
+
+/// The driver's functions, those that take shaders noting what they are given.
+gl::GetProc noting(const gl::GetProc& get_proc) {
+    return [get_proc](const char* name) -> void (*)() {
+        void (*const found)() = get_proc(name);
+        if (std::string(name) == "glCreateShader") {
+            create_shader = reinterpret_cast<PFNGLCREATESHADERPROC>(found);
+            return reinterpret_cast<void (*)()>(&note_stage);
+        }
+        if (std::string(name) == "glShaderSource") {
+            shader_source = reinterpret_cast<PFNGLSHADERSOURCEPROC>(found);
+            return reinterpret_cast<void (*)()>(&note_source);
+        }
+        return found;
+    };
+}
+
+/// By the file endings that glslang tells stages by.
+std::string ending(GLenum stage) {
+    switch (stage) {
+        case GL_VERTEX_SHADER:
+            return "vert";
+        case GL_GEOMETRY_SHADER:
+            return "geom";
+        case GL_FRAGMENT_SHADER:
+            return "frag";
+        default:
+            return "comp";
+    }
+}
+
+}  // namespace
+
+TEST_SUITE("second compiler") {
+    TEST_CASE_FIXTURE(GlFixture, "glslang takes every variant of every program") {
+        TestedRenderer renderer(noting(context->get_proc()));
+        Configuration configuration;
+        configuration.refinement.enabled = true;
+        for (const ShadingPath path : all_shading_paths) {
+            for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
+                for (const Interleave interleave : {Interleave::one, Interleave::eight}) {
+                    configuration.path = path;
+                    configuration.visibility.method = method;
+                    configuration.interleave = interleave;
+                    configuration.vpls.count = interleave == Interleave::one ? 16 : 256;  // so few that paths ask them
+                    REQUIRE(renderer.configure(configuration).empty());
+                }
+            }
+        }
+        CHECK(sources.size() > 40);
+
+        const sandbox::TemporaryFolder folder;
+        std::string command = CANDELA_GLSLANG;
+        int number = 0;
+        for (const auto& [stage, text] : sources) {
+            const std::string name = std::to_string(number++) + "." + ending(stage);
+            std::ofstream(folder / name.c_str()) << text;
+            command += " " + (folder / name.c_str()).string();
+        }
+        command += " > " + (folder / "said").string();
+        const int status = std::system(command.c_str());
+        std::ifstream said(folder / "said");
+        const std::string log{std::istreambuf_iterator<char>(said), {}};
+        CHECK_MESSAGE(WEXITSTATUS(status) == 0, log);
+    }
+}
