@@ -7,10 +7,10 @@
 namespace candela {
 namespace {
 
-constexpr std::array<std::string_view, 12> pixel_passes{
-    "gbuffer",         "depth-prepass", "light-tiles", "vpl-reconstruct-rows",
-    "vpl-reconstruct", "vpl-lacking",   "vpl-fill",    "forward",
-    "deferred",        "transparent",   "accumulate",  "blended-light-tiles"};
+constexpr std::array<std::string_view, 13> pixel_passes{
+    "gbuffer",         "depth-prepass", "tile-depths",        "light-tiles", "vpl-reconstruct-rows",
+    "vpl-reconstruct", "vpl-lacking",   "vpl-fill",           "forward",     "deferred",
+    "transparent",     "accumulate",    "blended-light-tiles"};
 
 // From the best to the least. Asking fewer VPLs costs hardly any quality, and so comes first.
 constexpr std::array<Quality, 6> qualities{

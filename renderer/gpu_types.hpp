@@ -21,7 +21,7 @@ struct Instance {
     std::uint32_t pad2 = 0;
 };
 
-enum MaterialFlags : std::uint32_t { double_sided = 1, wrap_u_shift = 1, wrap_v_shift = 3, blended = 32 };
+enum MaterialFlags : std::uint32_t { double_sided = 1, wrap_u_shift = 1, wrap_v_shift = 3 };
 
 struct Material {
     glm::vec4 base_colour;
@@ -61,6 +61,13 @@ struct Shadow {
     ShadowKind kind = ShadowKind::cube;
     std::uint32_t pad0 = 0;
     bool operator==(const Shadow&) const = default;
+};
+
+struct TileDepth {
+    float nearest;
+    float farthest;
+    std::uint32_t mask;
+    std::uint32_t pad0;
 };
 
 struct Vpl {

@@ -16,6 +16,8 @@
 #define BINDING_LIST_ENTRIES 13
 #define BINDING_MAPS_DUE 14
 #define BINDING_LAST 14
+// Where lists are culled no meshes are drawn.
+#define BINDING_TILE_DEPTHS BINDING_INSTANCES
 // Where light is traced there are no lists.
 #define BINDING_VPL_RECORDS BINDING_LIST_FIRST
 #define BINDING_PATH_CHECKS BINDING_LIST_COUNT

@@ -4,9 +4,13 @@
 uniform mat4 world_from_clip;
 uniform vec2 target_size;
 
-// Blending, where it is on, leaves radiance + (1 - cover) · what is behind, and alpha telling where a surface is.
+#ifdef BLENDED
+// Blending leaves radiance + (1 - cover) · what is behind, and alpha telling where a surface is.
 layout(location = 0, index = 0) out vec4 radiance;
 layout(location = 0, index = 1) out vec4 cover;
+#else
+layout(location = 0) out vec4 radiance;
+#endif
 
 void main() {
     vec4 colour = fragment_colour();
@@ -17,6 +21,9 @@ void main() {
     pixels[0] = uvec2(gl_FragCoord.xy);
     surfaces[0] = unpack_surface(fragment_surface(colour.rgb), gl_FragCoord.xyz, target_size, world_from_clip);
     reflect_radiance(surfaces, pixels, reflected);
-    cover = vec4(fragment_cover(colour));
-    radiance = vec4(cover.rgb * reflected[0], 1.0);
+#ifdef BLENDED
+    cover = vec4(colour.a);
+    reflected[0] *= colour.a;
+#endif
+    radiance = vec4(reflected[0], 1.0);
 }

@@ -9,6 +9,18 @@ uniform float first_depth;   // metres: end of slice 0
 uniform float depth_ratio;   // of the ends of neighbouring slices
 uniform mat4 view_from_world;
 
+uniform uvec2 target_pixels;
+
+// Of the 32 slices between two depths, those from depth a to depth b, as bits.
+uint slices_between(float nearest, float farthest, float a, float b) {
+    float extent = farthest - nearest;
+    if (extent <= 0.0) return 0xffffffffu;
+    vec2 at = clamp((vec2(a, b) - nearest) / extent * 32.0, 0.0, 31.0);
+    uint low = uint(at.x);
+    uint count = uint(at.y) - low + 1u;
+    return count >= 32u ? 0xffffffffu : ((1u << count) - 1u) << low;
+}
+
 // Slice in which a depth lies.
 uint slice_of(float depth) {
     if (depth <= first_depth) return 0u;

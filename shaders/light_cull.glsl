@@ -10,7 +10,6 @@ layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst 
 layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };
 
-uniform uvec2 target_pixels;
 uniform vec2 ray_scale;     // view-space x and y at depth 1 (orthographic: at any) of ndc - ray_shift
 uniform vec2 ray_shift;
 uniform bool orthographic;
@@ -31,16 +30,6 @@ Cell make_cell(uvec2 tile, float nearest, float farthest, uint mask) {
     vec2 lower = (low * 2.0 - 1.0 - ray_shift) * ray_scale;
     vec2 upper = (high * 2.0 - 1.0 - ray_shift) * ray_scale;
     return Cell(lower, upper, nearest, farthest, mask);
-}
-
-// Mask bits of the slices from depth a to depth b.
-uint slices_between(Cell cell, float a, float b) {
-    float extent = cell.farthest - cell.nearest;
-    if (extent <= 0.0) return 0xffffffffu;
-    vec2 at = clamp((vec2(a, b) - cell.nearest) / extent * 32.0, 0.0, 31.0);
-    uint low = uint(at.x);
-    uint count = uint(at.y) - low + 1u;
-    return count >= 32u ? 0xffffffffu : ((1u << count) - 1u) << low;
 }
 
 struct Bounds {
@@ -87,7 +76,7 @@ bool reaches(Light light, Cell cell) {
     float nearest = max(cell.nearest, -centre.z - radius);
     float farthest = min(cell.farthest, -centre.z + radius);
     if (nearest > farthest) return false;
-    if ((slices_between(cell, nearest, farthest) & cell.mask) == 0u) return false;
+    if ((slices_between(cell.nearest, cell.farthest, nearest, farthest) & cell.mask) == 0u) return false;
     if (outside_planes(cell, centre, radius)) return false;
     Bounds box = box_between(cell, nearest, farthest);
     vec3 gap = max(abs(centre - box.centre) - box.half_extent * 1.0001, 0.0);

@@ -10,16 +10,14 @@ in vec3 normal;
 in vec2 uv;
 flat in uint material_index;
 
-// Base colour, linear, with its alpha. Drops the fragment if it lies in a hole of the material's mask.
+// Base colour, linear, with its alpha. With MASKED, drops the fragment if it lies in a hole of the material's mask; other
+// programs have no discard, so that hidden fragments are never shaded.
 vec4 fragment_colour() {
     vec4 colour = materials[material_index].base_colour * texture(base_colour, uv);
+#ifdef MASKED
     if (colour.a < materials[material_index].alpha_cutoff) discard;
+#endif
     return colour;
-}
-
-// Share of what lies behind that the surface covers.
-float fragment_cover(vec4 colour) {
-    return (materials[material_index].flags & MATERIAL_BLENDED) != 0u ? colour.a : 1.0;
 }
 
 PackedSurface fragment_surface(vec3 albedo) {

@@ -25,7 +25,6 @@ struct Material {
 #define MATERIAL_WRAP_U_SHIFT 1u
 #define MATERIAL_WRAP_V_SHIFT 3u
 #define MATERIAL_WRAP_MASK 3u
-#define MATERIAL_BLENDED 32u
 
 struct Light {
     vec3 position;   // metres; directional: centre of the footprint, outside the scene
@@ -56,6 +55,14 @@ struct Shadow {
 #define SHADOW_CUBE 0u
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u
+
+// Of the surfaces in a screen tile.
+struct TileDepth {
+    float nearest;   // metres; beyond `farthest` where there is no surface
+    float farthest;
+    uint mask;       // which of 32 slices between the two have surfaces
+    uint pad0;
+};
 
 struct Vpl {
     vec3 position;    // metres, on the surface

@@ -11,15 +11,14 @@ VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& 
         read_meshes(pass, scene);
         read_materials(pass, scene);
         pass.read(view);
-        const gl::Program& program =
-            gpu.program({"mesh_surface.vert", "depth_prepass.frag"}, {"WITH_NORMALS"});
+        const SurfacePrograms programs = surface_programs(gpu, "depth_prepass.frag", {"WITH_NORMALS"});
         const VisibleSurfaces out{
             .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target),
             .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target)};
-        pass.run([=, &gpu, &program](Execution& run) {
+        pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
-            bind_view(program, run.value(view), size);
-            draw_surfaces(gpu, run, scene, program);
+            programs.each([&](const gl::Program& program) { bind_view(program, run.value(view), size); });
+            draw_surfaces(gpu, run, scene, programs);
         });
         return out;
     });

@@ -97,11 +97,18 @@ void begin_adding(const Gpu& gpu) {
     gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
 }
 
-void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program) {
+SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
+                                 std::vector<std::string> defined) {
+    const std::vector<std::string> stages{"mesh_surface.vert", fragment_stage};
+    const gl::Program& opaque = gpu.program(stages, defined);
+    defined.emplace_back("MASKED");
+    return {&opaque, &gpu.program(stages, defined)};
+}
+
+void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs) {
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
     bind_materials(gpu, run, scene);
-    program.use();
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
         if (group.alpha == AlphaMode::blend) {
             continue;
@@ -111,6 +118,7 @@ void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::P
         } else {
             gl.Enable(GL_CULL_FACE);
         }
+        (group.alpha == AlphaMode::mask ? programs.masked : programs.opaque)->use();
         draw_group(gpu, group);
     }
 }

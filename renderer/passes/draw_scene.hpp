@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "engine/graph/execute.hpp"
 #include "renderer/gpu.hpp"
 #include "renderer/passes/scene_upload.hpp"
@@ -41,8 +44,26 @@ void begin_visible_surfaces(const Gpu& gpu);
 /// For surfaces that are drawn once more: adds to the colour of those that are seen.
 void begin_adding(const Gpu& gpu);
 
+/// A program for opaque surfaces, and the same for masked ones, which drops fragments in holes. Owned by the
+/// Gpu.
+struct SurfacePrograms {
+    const gl::Program* opaque;
+    const gl::Program* masked;
+
+    /// Calls `set(const gl::Program&)` for both, to bind and set what they read.
+    template <class Set>
+    void each(Set set) const {
+        set(*opaque);
+        set(*masked);
+    }
+};
+
+/// Programs of this fragment stage over meshes, with these words defined.
+[[nodiscard]] SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
+                                               std::vector<std::string> defined = {});
+
 /// Draws all opaque and masked surfaces with their materials; the backs of single-sided ones are culled.
 /// Binds what it needs.
-void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Program& program);
+void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs);
 
 }  // namespace candela

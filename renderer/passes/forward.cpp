@@ -13,8 +13,7 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         read_materials(pass, scene);
         read_lighting(pass, lighting);
         pass.read(view);
-        const gl::Program& program =
-            gpu.program({"mesh_surface.vert", "forward.frag"}, lighting_variant(lighting));
+        const SurfacePrograms programs = surface_programs(gpu, "forward.frag", lighting_variant(lighting));
         ShadedSurfaces out;
         out.radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
         if (prepass_depth) {
@@ -23,19 +22,21 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         } else {
             out.depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
         }
-        pass.run([=, &gpu, &program, after_prepass = prepass_depth.has_value()](Execution& run) {
+        pass.run([=, &gpu, after_prepass = prepass_depth.has_value()](Execution& run) {
             if (after_prepass) {
                 begin_visible_surfaces(gpu);
             } else {
                 begin_surfaces(gpu);
             }
-            bind_view(program, run.value(view), size);
-            bind_lighting(gpu, run, program, lighting);
-            draw_surfaces(gpu, run, scene, program);
+            programs.each([&](const gl::Program& program) {
+                bind_view(program, run.value(view), size);
+                bind_lighting(gpu, run, program, lighting);
+            });
+            draw_surfaces(gpu, run, scene, programs);
             for (std::uint32_t part = 1; part < lighting_parts(run, lighting); ++part) {
                 begin_adding(gpu);
-                begin_lighting_part(program, part);
-                draw_surfaces(gpu, run, scene, program);
+                programs.each([&](const gl::Program& program) { begin_lighting_part(program, part); });
+                draw_surfaces(gpu, run, scene, programs);
             }
         });
         return out;

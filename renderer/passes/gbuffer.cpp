@@ -11,15 +11,15 @@ Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHa
         read_meshes(pass, scene);
         read_materials(pass, scene);
         pass.read(view);
-        const gl::Program& program = gpu.program({"mesh_surface.vert", "gbuffer.frag"});
+        const SurfacePrograms programs = surface_programs(gpu, "gbuffer.frag");
         const Gbuffer out{
             .albedo = pass.write(graph.texture("albedo", {size, Format::rgba16f}), Usage::colour_target),
             .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target),
             .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target)};
-        pass.run([=, &gpu, &program](Execution& run) {
+        pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
-            program.set("clip_from_world", run.value(view).clip_from_world);
-            draw_surfaces(gpu, run, scene, program);
+            programs.each([&](const gl::Program& program) { bind_view(program, run.value(view), size); });
+            draw_surfaces(gpu, run, scene, programs);
         });
         return out;
     });

@@ -86,14 +86,14 @@ void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const
 /// Node that culls the bins in place: each cell keeps, in order, the lights that reach it.
 LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
                        LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
-                       ValueHandle<CameraView> view, std::optional<TextureHandle> depth) {
+                       ValueHandle<CameraView> view, std::optional<BufferHandle<gpu::TileDepth>> depths) {
     return graph.add(name, [&](Pass& pass) {
         pass.read(bins.bins);
         pass.read(view);
         pass.read(lights, Usage::storage);
         pass.read(bins.first, Usage::storage);
-        if (depth) {
-            pass.read(*depth, Usage::sampled);
+        if (depths) {
+            pass.read(*depths, Usage::storage);
         }
         const gl::Program& program = gpu.program({shader});
         const LightLists out{.kind = kind,
@@ -111,15 +111,35 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
             gpu.bind_storage(BINDING_LIST_FIRST, run.object(out.first));
             gpu.bind_storage(BINDING_LIST_COUNT, run.object(out.count));
             gpu.bind_storage(BINDING_LIST_ENTRIES, run.object(out.entries));
-            program.set("has_depth", depth.has_value());
-            if (depth) {
-                gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(*depth));
+            program.set("has_depth", depths.has_value());
+            if (depths) {
+                gpu.bind_storage(BINDING_TILE_DEPTHS, run.object(*depths));
             }
             set_grid(program, grid);
             set_rays(program, run.value(view));
             dispatch_culling(gpu.gl(), program, run.value(bins.bins));
         });
         return out;
+    });
+}
+
+BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
+                                             ValueHandle<CameraView> view, const CellGrid& grid) {
+    return graph.add("tile-depths", [&](Pass& pass) {
+        pass.read(depth, Usage::sampled);
+        pass.read(view);
+        const gl::Program& program = gpu.program({"tile_depths.comp"});
+        const auto depths = pass.write(
+            graph.buffer<gpu::TileDepth>("tile depths", grid.cells(), Lifetime::persistent), Usage::storage);
+        pass.run([=, &gpu, &program](Execution& run) {
+            gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(depth));
+            gpu.bind_storage(BINDING_TILE_DEPTHS, run.object(depths));
+            set_grid(program, grid);
+            set_rays(program, run.value(view));
+            program.use();
+            gpu.gl().DispatchCompute(grid.tiles.x, grid.tiles.y, 1);
+        });
+        return depths;
     });
 }
 
@@ -132,8 +152,12 @@ LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> 
     const BinBuffers bins = add_light_bins(
         graph, gpu, "light-tiles", lights, view, settings, [&](Pass& pass) { pass.parameter(size); },
         [=](Execution&) { return tile_grid(size, settings); }, [](Execution&) { return true; });
+    std::optional<BufferHandle<gpu::TileDepth>> depths;
+    if (depth) {
+        depths = add_tile_depths(graph, gpu, *depth, view, tile_grid(size, settings));
+    }
     return add_culling(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
-                       view, depth);
+                       view, depths);
 }
 
 LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,

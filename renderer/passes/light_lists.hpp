@@ -22,7 +22,8 @@ struct LightLists {
 };
 
 /// Node `light-tiles`. With a depth texture, tiles are bound by the nearest and the farthest surface in them,
-/// and by a mask of 32 slices between the two (Harada et al., "A 2.5D Culling for Forward+", 2012).
+/// and by a mask of 32 slices between the two (Harada et al., "A 2.5D Culling for Forward+", 2012), which the
+/// node `tile-depths` finds.
 [[nodiscard]] LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                                          BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
                                          std::optional<TextureHandle> depth, glm::uvec2 size,

@@ -67,7 +67,6 @@ std::uint32_t pack(const glm::u8vec4& texel) {
 
 std::uint32_t material_flags(const Material& material) {
     std::uint32_t flags = material.double_sided ? gpu::double_sided : 0U;
-    flags |= material.alpha_mode == AlphaMode::blend ? gpu::blended : 0U;
     if (const Image* image = material.base_colour_texture.get()) {
         flags |= static_cast<std::uint32_t>(image->wrap_u) << gpu::wrap_u_shift;
         flags |= static_cast<std::uint32_t>(image->wrap_v) << gpu::wrap_v_shift;

@@ -255,8 +255,9 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         read_materials(pass, scene);
         pass.read(plan);
         pass.parameter(settings);
-        const ShadowPrograms programs{.opaque = gpu.program({"shadow_maps.vert"}),
-                                      .masked = gpu.program({"mesh_surface.vert", "depth_prepass.frag"})};
+        const ShadowPrograms programs{
+            .opaque = gpu.program({"shadow_maps.vert"}),
+            .masked = gpu.program({"mesh_surface.vert", "depth_prepass.frag"}, {"MASKED"})};
         const ShadowMaps out{
             .plan = plan,
             .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),

@@ -67,8 +67,9 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         pass.read(scene.placement);
         pass.read(view);
         pass.read(surfaces.depth, Usage::depth_target);
-        const gl::Program& program =
-            gpu.program({"mesh_surface.vert", "forward.frag"}, lighting_variant(lighting));
+        std::vector<std::string> variant = lighting_variant(lighting);
+        variant.emplace_back("BLENDED");
+        const gl::Program& program = gpu.program({"mesh_surface.vert", "forward.frag"}, variant);
         const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::vector<SortedGroup> sorted =

@@ -164,7 +164,8 @@ std::vector<CheckedLength> checked_lengths(const std::vector<gpu::PathCheck>& ch
     std::vector<CheckedLength> lengths;
     lengths.reserve(checks.size());
     for (const gpu::PathCheck& check : checks) {
-        lengths.push_back({.bounces = check.bounces, .start = check.start, .canonical_start = check.canonical});
+        lengths.push_back(
+            {.bounces = check.bounces, .start = check.start, .canonical_start = check.canonical});
     }
     return lengths;
 }

@@ -21,36 +21,36 @@ namespace {
 
 // x: runs, by every path that has such a pass; .: does not. `surfaces` are gbuffer and depth-prepass,
 // `shading` forward, deferred and transparent. Of the lists of lights, `tiles` and `clusters` are those
-// unbound in depth, `bounded` those that the depth of surfaces bounds, and `blended` those of the blended
-// surfaces in front.
+// unbound in depth, `bounded` those that the depth of surfaces bounds, which `depths` tells, and `blended`
+// those of the blended surfaces in front.
 //
 // Passes that read transforms (scene-gather, lights, view) look again whenever one has changed, and stop
 // there if theirs is where it was. What only the picture's size and settings change is shaded anew from
 // surfaces that are found anew, as the targets in between are not kept. All edits but the first start from a
 // still frame without debt.
 constexpr std::string_view table = R"(
-                     gather upload instances bvh lights plan shadows light-upload view paths refresh trace vpl-maps surfaces tiles clusters bounded blended shading tone-map
-first frame             x      x       x      x    x     x      x         x        x     x      x      x      x         x      x       x       x       x      x       x
-nothing                 .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .       .       .      .       x
-light named             .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .       .       .      .       x
-camera moves            x      .       .      .    x     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
-camera zooms            .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
-light moves             x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x       x       x      x       x
-spot moves              x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x       x       x      x       x
-light changes colour    .      .       .      .    x     x      .         x        .     x      x      x      x         .      x       x       x       x      x       x
-light goes off          .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x       x       x      x       x
-light goes on           .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x       x       x      x       x
-light's shadow goes     .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x       x       x      x       x
-mesh moves              x      .       x      x    x     .      x         .        x     .      x      x      x         x      .       .       x       .      x       x
-mesh appears            x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x       x       x      x       x
-material changes        x      x       x      x    .     .      x         .        .     .      x      x      x         x      .       .       x       x      x       x
-mesh goes               x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x       x       x      x       x
-target widens           .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
-target doubles          .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x       x       x      x       x
-indirect light shown    .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .       .       .      x       x
-exposure changes        .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .       .       .      x       x
-more VPLs               .      .       .      .    .     .      .         .        .     x      x      x      x         x      .       .       .       .      x       x
-another path            .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .       .       .      x       x
+                     gather upload instances bvh lights plan shadows light-upload view paths refresh trace vpl-maps surfaces tiles clusters depths bounded blended shading tone-map
+first frame             x      x       x      x    x     x      x         x        x     x      x      x      x         x      x       x      x       x       x      x       x
+nothing                 .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .      .       .       .      .       x
+light named             .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .      .       .       .      .       x
+camera moves            x      .       .      .    x     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
+camera zooms            .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
+light moves             x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x      .       x       x      x       x
+spot moves              x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x      .       x       x      x       x
+light changes colour    .      .       .      .    x     x      .         x        .     x      x      x      x         .      x       x      .       x       x      x       x
+light goes off          .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x      .       x       x      x       x
+light goes on           .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x      .       x       x      x       x
+light's shadow goes     .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x      .       x       x      x       x
+mesh moves              x      .       x      x    x     .      x         .        x     .      x      x      x         x      .       .      x       x       .      x       x
+mesh appears            x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x      x       x       x      x       x
+material changes        x      x       x      x    .     .      x         .        .     .      x      x      x         x      .       .      x       x       x      x       x
+mesh goes               x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x      x       x       x      x       x
+target widens           .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
+target doubles          .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
+indirect light shown    .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .      .       .       .      x       x
+exposure changes        .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .      .       .       .      x       x
+more VPLs               .      .       .      .    .     .      .         .        .     x      x      x      x         x      .       .      .       .       .      x       x
+another path            .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .      .       .       .      x       x
 )";
 
 /// The column of a path's pass.
@@ -59,8 +59,8 @@ std::string column_of(std::string_view pass, ShadingPath path) {
         {"scene-gather", "gather"},    {"scene-upload", "upload"}, {"instance-upload", "instances"},
         {"shadow-plan", "plan"},       {"shadow-maps", "shadows"}, {"vpl-paths", "paths"},
         {"vpl-refresh", "refresh"},    {"vpl-trace", "trace"},     {"gbuffer", "surfaces"},
-        {"depth-prepass", "surfaces"}, {"forward", "shading"},     {"deferred", "shading"},
-        {"transparent", "shading"}};
+        {"depth-prepass", "surfaces"}, {"tile-depths", "depths"},  {"forward", "shading"},
+        {"deferred", "shading"},       {"transparent", "shading"}};
     if (pass.starts_with("light-tiles")) {
         return path == ShadingPath::tiled_forward ? "tiles" : "bounded";
     }

@@ -1,4 +1,5 @@
-// Every variant of every program passes a second compiler beside the driver's: glslang, the reference compiler.
+// Every variant of every program passes a second compiler beside the driver's: glslang, the reference
+// compiler.
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>
@@ -78,7 +79,8 @@ TEST_SUITE("second compiler") {
                     configuration.path = path;
                     configuration.visibility.method = method;
                     configuration.interleave = interleave;
-                    configuration.vpls.count = interleave == Interleave::one ? 16 : 256;  // so few that paths ask them
+                    configuration.vpls.count =
+                        interleave == Interleave::one ? 16 : 256;  // so few that paths ask them
                     REQUIRE(renderer.configure(configuration).empty());
                 }
             }

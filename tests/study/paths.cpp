@@ -14,7 +14,8 @@ namespace {
 
 /// Passes that build lists.
 bool builds_lists(std::string_view pass) {
-    return pass.find("light-tiles") != pass.npos || pass.find("light-clusters") != pass.npos;
+    return pass == "tile-depths" || pass.find("light-tiles") != pass.npos ||
+           pass.find("light-clusters") != pass.npos;
 }
 
 struct Sample {
