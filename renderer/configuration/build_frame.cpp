@@ -15,8 +15,9 @@
 namespace candela {
 namespace {
 
-/// That a blended surface asks where solid ones ask a share of them each.
-constexpr std::uint32_t most_vpls_of_blended = 128;
+/// That a blended surface asks where solid ones ask a share each. Of fewer, the pattern of who asks which
+/// would show.
+constexpr std::uint32_t most_vpls_of_blended = 1024;
 
 std::optional<TextureHandle> depth_of(const std::optional<VisibleSurfaces>& surfaces) {
     return surfaces ? std::optional(surfaces->depth) : std::nullopt;

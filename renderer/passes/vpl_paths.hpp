@@ -13,10 +13,10 @@
 namespace candela {
 
 struct VplSettings {
-    std::uint32_t count = 256;  ///< at most so many are placed
-    std::uint32_t bounces = 8;  ///< 1: light → surface → seen surface
+    std::uint32_t count = 1024;  ///< at most so many are placed
+    std::uint32_t bounces = 8;   ///< 1: light → surface → seen surface
     std::uint32_t seed = 0;
-    std::uint32_t budget = 8;  ///< VPLs, and maps of them, that a frame may make anew; 0: all that are due
+    std::uint32_t budget = 32;  ///< VPLs, and maps of them, that a frame may make anew; 0: all that are due
     bool operator==(const VplSettings&) const = default;
 };
 

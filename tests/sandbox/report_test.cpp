@@ -46,7 +46,7 @@ TEST_SUITE("report") {
         CHECK(json["animation"] == "orbit.json");
         CHECK(json["triangles"] == 36);
         CHECK(json["size"] == nlohmann::json::array({640, 480}));
-        CHECK(json["config"]["vpls"]["count"] == 256);
+        CHECK(json["config"]["vpls"]["count"] == Configuration{}.vpls.count);
         CHECK(json["frames"][0]["index"] == 3);
         CHECK(json["frames"][0]["passes"][0]["name"] == "gbuffer");
         CHECK(json["frames"][0]["passes"][0]["gpu_ms"] == 1.0);
