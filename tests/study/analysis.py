@@ -164,3 +164,15 @@ def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
             line[f"{time}_to_tracer"] = least / traced if least and traced else None
         table.append(line)
     return table
+
+
+def camera_flicker(played: Sequence[Row]) -> list[Row]:
+    """By script in which the camera moves, how much the indirect light flickers with every pixel asking all VPLs, and with
+    each asking one in 64."""
+    table = []
+    for script in dict.fromkeys(row["scene"] for row in select(played, suite="camera")):
+        found = {row["id"]: row["indirect_flicker"] for row in select(played, suite="camera", scene=script)}
+        if {"all", "shared"} <= found.keys():
+            ratio = found["shared"] / max(found["all"], 1e-30)
+            table.append({"script": script, **found, "shared_to_all": ratio})
+    return table

@@ -65,6 +65,13 @@ def motions() -> list[Motion]:
     return moving + still
 
 
+def camera_motions() -> list[Motion]:
+    """A camera that moves: what is fixed to pixels could crawl over surfaces."""
+    takes = tuple(Take(name, matrix.interleaved(1024, n).config) for name, n in (("all", 1), ("shared", 8)))
+    reference = Reference(samples=64, bounces=matrix.DEFAULT_BOUNCES)
+    return [Motion("camera", "orbit-camera", matrix.SIZE, reference, 30, takes)]
+
+
 def quick_motions() -> list[Motion]:
     """Few samples will do: their noise is nearly the same in all frames, a twentieth of what is asserted."""
     reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)

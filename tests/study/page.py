@@ -162,7 +162,7 @@ def flicker(table_rows: Sequence[Row]) -> str:
     return element("h2", "Flicker") + element("p", note) + table(columns, table_rows)
 
 
-def gathering(table_rows: Sequence[Row]) -> str:
+def gathering(table_rows: Sequence[Row], camera: Sequence[Row]) -> str:
     if not table_rows:
         return ""
     columns = {"scene": "", "indirect_to_all": "relMSE, indirect", "total_to_all": "relMSE, total",
@@ -172,7 +172,9 @@ def gathering(table_rows: Sequence[Row]) -> str:
         "1,024 VPLs with depth maps: where a pixel asks one in 64, as a multiple of where it asks all. Frames are those "
         "after a move of the camera."
     )
-    return element("h2", "What interleaving costs and saves") + element("p", note) + table(columns, table_rows)
+    heading = element("h2", "What interleaving costs and saves")
+    moving = {"script": "", "all": "flicker, every pixel asks all VPLs", "shared": "one in 64", "shared_to_all": "ratio"}
+    return heading + element("p", note) + table(columns, table_rows) + (table(moving, camera) if camera else "")
 
 
 def charts(made: dict[str, dict[str, str]]) -> str:
@@ -202,6 +204,7 @@ class Findings:
     flicker: Sequence[Row]
     visibility: Sequence[Row]
     gathering: Sequence[Row]
+    camera: Sequence[Row]
 
 
 def write(
@@ -219,7 +222,7 @@ def write(
         element("p", 'All figures: <a href="results.csv">results.csv</a>, <a href="results.json">results.json</a>.'),
         default_choice(found.best),
         charts(found.charts),
-        gathering(found.gathering),
+        gathering(found.gathering, found.camera),
         flicker(found.flicker),
         visibility_costs(out, rows, found.visibility),
         left_over(rows),

@@ -78,6 +78,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
 def planned_motions(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Motion]:
     """All scripts to play, in order."""
     wanted = motion.motions() if not parts or "motion" in parts else []
+    wanted += motion.camera_motions() if not parts or "gather" in parts else []
     chosen = motion.quick_motions() if quick else wanted
     return [each for each in chosen if only is None or motion.scene_of(each, ANIMATIONS) in only]
 
@@ -125,13 +126,13 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     best = results.choice(rows, groups)
     played = results.motion_rows(study, motions)
     flicker, costs = analysis.flicker_table(played), analysis.visibility_costs(rows)
-    gathering = analysis.gather_table(rows, tracer)
-    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs, "gathering": gathering}
+    gathering, camera = analysis.gather_table(rows, tracer), analysis.camera_flicker(played)
+    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs, "gathering": gathering, "camera": camera}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    page.write(study.out, rows, page.Findings(made, best, flicker, costs, gathering), study.machine, machine.provenance(STUDY))
-    for line in gathering:
+    page.write(study.out, rows, page.Findings(made, best, flicker, costs, gathering, camera), study.machine, machine.provenance(STUDY))
+    for line in gathering + camera:
         print("study: gathering,", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
     print(f"study: {study.out / 'index.html'}")
     if best:

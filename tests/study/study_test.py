@@ -82,6 +82,14 @@ class Gathering(unittest.TestCase):
         self.assertAlmostEqual(line["full_ms_to_tracer"], 40 / 100)
         self.assertEqual(analysis.gather_table(rows[:2], tracer), [])
 
+    def test_flicker_of_a_moving_camera_is_compared(self) -> None:
+        def take(name: str, flicker: float) -> dict[str, object]:
+            return {"suite": "camera", "scene": "orbit", "id": name, "failed": "", "indirect_flicker": flicker}
+
+        (line,) = analysis.camera_flicker([take("all", 0.02), take("shared", 0.03)])
+        self.assertAlmostEqual(line["shared_to_all"], 1.5)
+        self.assertEqual(analysis.camera_flicker([take("all", 0.02)]), [])
+
 
 def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
     base = {"path": "deferred", "vpls": 256, "bounces": 8, "bound": 1.0, "visibility": "maps", "lever": "none"}
