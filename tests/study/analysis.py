@@ -144,8 +144,8 @@ AIM = 0.03  # relMSE of the total light at which the methods' times are compared
 
 
 def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
-    """By scene, what interleaving 8 × 8 costs in error at 1,024 VPLs, how much more a frame takes for as many than for 128
-    after a move of the camera, and the least time to AIM beside the tracer's."""
+    """By scene, what interleaving 8 × 8 costs in error at 1,024 VPLs, how much more a frame takes for as many than for
+    128 after a move of the camera, and the least time to AIM beside the tracer's."""
     table = []
     for scene in dict.fromkeys(row["scene"] for row in select(rows, suite="gather")):
         found = {(row["vpls"], row["lever"]): row for row in select(rows, suite="gather", scene=scene)}
@@ -157,7 +157,8 @@ def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
             line[f"{part}_to_all"] = shared[f"{part}_rel_mse"] / all_asked[f"{part}_rel_mse"]
         line["frame_to_128"] = shared["frame_ms"] / few["frame_ms"]
         line["frame_to_all"] = shared["frame_ms"] / all_asked["frame_ms"]
-        curve = [(row["ms"], row["total_rel_mse"]) for row in tracer if row["suite"] == "gather" and row["scene"] == scene]
+        traced_here = [row for row in tracer if row["suite"] == "gather" and row["scene"] == scene]
+        curve = [(row["ms"], row["total_rel_mse"]) for row in traced_here]
         traced = time_to_error(curve, AIM)
         for time in ("frame_ms", "full_ms"):
             least = min((row[time] for row in found.values() if row["total_rel_mse"] <= AIM), default=None)
@@ -167,8 +168,8 @@ def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
 
 
 def camera_flicker(played: Sequence[Row]) -> list[Row]:
-    """By script in which the camera moves, how much the indirect light flickers with every pixel asking all VPLs, and with
-    each asking one in 64."""
+    """By script in which the camera moves, how much the indirect light flickers with every pixel asking all VPLs, and
+    with each asking one in 64."""
     table = []
     for script in dict.fromkeys(row["scene"] for row in select(played, suite="camera")):
         found = {row["id"]: row["indirect_flicker"] for row in select(played, suite="camera", scene=script)}

@@ -148,17 +148,19 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
         traced = sorted((row for row in tracer if row["scene"] == scene and row["suite"] == "gather"),
                         key=lambda row: row["samples"])
         figure, panels = plt.subplots(1, 2, figsize=(10, 4.6), sharey=True)
-        for axes, (time, label) in zip(panels, TIMES.items()):
+        for axes, (time, time_label) in zip(panels, TIMES.items()):
             for n, (colour, marker) in zip(matrix.GATHERED, SERIES):
-                points = sorted(select(chosen, lever=matrix.interleaved(64, n).axes["lever"]), key=lambda row: row["vpls"])
+                lever = matrix.interleaved(64, n).axes["lever"]
+                points = sorted(select(chosen, lever=lever), key=lambda row: row["vpls"])
+                label = "every pixel asks all VPLs" if n == 1 else f"one in {n * n}"
                 axes.plot([row[time] for row in points], [row["total_rel_mse"] for row in points], color=colour,
-                          marker=marker, markersize=5, label="every pixel asks all VPLs" if n == 1 else f"one in {n * n}")
+                          marker=marker, markersize=5, label=label)
                 for row in points:
                     axes.annotate(f"{row['vpls']:,}", (row[time], row["total_rel_mse"]), textcoords="offset points",
                                   xytext=(4, 4), fontsize=6.5, color=colour)
             axes.plot([row["ms"] for row in traced], [row["total_rel_mse"] for row in traced], "--", color=BLACK,
                       marker="*", markersize=7, label="path tracer (Embree, the same cores), 1 sample and up")
-            axes.set(xscale="log", yscale="log", xlabel=label, ylabel="relMSE of the total light")
+            axes.set(xscale="log", yscale="log", xlabel=time_label, ylabel="relMSE of the total light")
         figure.suptitle(f"{scene}: {chosen[0]['width']} × {chosen[0]['height']} pixels, VPLs with depth maps")
         legend_below(figure, panels[0], 5)
         name = f"gather-{scene}"

@@ -258,8 +258,8 @@ GATHERED = {1: [64, 128, 256, 1024], 2: [64, 128, 256, 1024], 4: [256, 1024, 409
 
 
 def gather_groups() -> list[Group]:
-    """Error against time at a size at which pixels count, by interleaving and number of VPLs. In scenes of many triangles
-    the maps of the most VPLs take minutes."""
+    """Error against time at a size at which pixels count, by interleaving and number of VPLs. In scenes of many
+    triangles the maps of the most VPLs take minutes."""
     most = {"cornell": 16384, "two-rooms": 16384, "glass": 4096, "fins": 4096, "atrium": 4096}
     return [
         Group(

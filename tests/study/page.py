@@ -96,6 +96,26 @@ def number(value: Any) -> str:
     return f"{value:,}" if isinstance(value, int) else html.escape(str(value))
 
 
+OPENING = """Candela lights a scene with virtual point lights (VPLs): points on its surfaces that pass on the light that
+reaches them. This page compares pictures made in many ways with those of a path tracer, and with the time that they
+took. relMSE, the error throughout, is the mean over all pixels of the squared difference from the path tracer's
+picture, divided by the square of that picture's brightness there: 0 is no difference, 1 is what a black picture has."""
+
+
+def opening(out: pathlib.Path, rows: Sequence[Row]) -> str:
+    """What the page is about, and one picture beside its reference."""
+    shown = next((row for row in rows if row["scene"] == "cornell" and not row["failed"] and row["vpls"] == 1024), None)
+    figures = []
+    if shown:
+        reference = str(pathlib.Path(shown["picture"]).parent / "reference.png")
+        caption = f"1,024 VPLs: relMSE {shown['total_rel_mse']:.3g}"
+        sources = {"opening": (shown["picture"], caption), "opening-reference": (reference, "the path tracer")}
+        for name, (source, words) in sources.items():
+            path = copied(source, out, f"{name}.png")
+            figures += [picture(path, words)] if path else []
+    return element("p", OPENING) + element("div", "".join(figures), class_="pictures")
+
+
 def table(columns: dict[str, str], rows: Iterable[Row]) -> str:
     head = "".join(element("th", label or name) for name, label in columns.items())
     body = []
@@ -218,6 +238,7 @@ def write(
     (out / "pictures").mkdir()
     body = [
         element("h1", "Candela: speed against accuracy"),
+        opening(out, rows),
         element("p", about),
         element("p", 'All figures: <a href="results.csv">results.csv</a>, <a href="results.json">results.json</a>.'),
         default_choice(found.best),

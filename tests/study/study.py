@@ -37,7 +37,8 @@ def names(text: str) -> list[str]:
 
 
 def arguments() -> argparse.Namespace:
-    parts, where = list(dict.fromkeys(SUITES + PROGRAM_PARTS)), "default: tests/study/results for a whole study, else build/study/results"
+    parts = list(dict.fromkeys(SUITES + PROGRAM_PARTS))
+    where = "default: tests/study/results for a whole study, else build/study/results"
     parser = argparse.ArgumentParser(prog="tests/study/run", description="Charts Candela's speed against its accuracy.")
     parser.add_argument("--quick", action="store_true", help="a small matrix, and checks of what must hold anywhere")
     parser.add_argument("--scenes", metavar="A,B", type=names, help="only these")
@@ -127,11 +128,13 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     played = results.motion_rows(study, motions)
     flicker, costs = analysis.flicker_table(played), analysis.visibility_costs(rows)
     gathering, camera = analysis.gather_table(rows, tracer), analysis.camera_flicker(played)
-    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs, "gathering": gathering, "camera": camera}
+    extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
+    extra |= {"gathering": gathering, "camera": camera}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    page.write(study.out, rows, page.Findings(made, best, flicker, costs, gathering, camera), study.machine, machine.provenance(STUDY))
+    found = page.Findings(made, best, flicker, costs, gathering, camera)
+    page.write(study.out, rows, found, study.machine, machine.provenance(STUDY))
     for line in gathering + camera:
         print("study: gathering,", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
     print(f"study: {study.out / 'index.html'}")
