@@ -7,11 +7,6 @@
 namespace candela {
 namespace {
 
-constexpr std::array<std::string_view, 13> pixel_passes{
-    "gbuffer",         "depth-prepass", "tile-depths",        "light-tiles", "vpl-reconstruct-rows",
-    "vpl-reconstruct", "vpl-lacking",   "vpl-fill",           "forward",     "deferred",
-    "transparent",     "accumulate",    "blended-light-tiles"};
-
 // From the best to the least. Asking fewer VPLs costs hardly any quality, and so comes first.
 constexpr std::array<Quality, 6> qualities{
     {{1.0F, 1}, {1.0F, 8}, {0.75F, 8}, {0.5F, 8}, {0.375F, 8}, {0.25F, 8}}};
@@ -29,6 +24,16 @@ bool is_better(const Quality& a, const Quality& b) {
 
 }  // namespace
 
+std::span<const std::string_view> pixel_passes() {
+    static constexpr std::array<std::string_view, 14> names{
+        "gbuffer",         "depth-prepass",      "tile-depths",
+        "light-tiles",     "light-clusters",     "vpl-reconstruct-rows",
+        "vpl-reconstruct", "vpl-lacking",        "vpl-fill",
+        "forward",         "deferred",           "transparent",
+        "accumulate",      "blended-light-tiles"};
+    return names;
+}
+
 FrameCost cost_of(const FrameReport& frame) {
     FrameCost cost;
     for (const PassReport& pass : frame.passes) {
@@ -37,7 +42,7 @@ FrameCost cost_of(const FrameReport& frame) {
         }
         if (pass.name == "vpl-gather") {
             cost.gather += pass.gpu_ms;
-        } else if (std::ranges::find(pixel_passes, std::string_view(pass.name)) != pixel_passes.end()) {
+        } else if (std::ranges::find(pixel_passes(), std::string_view(pass.name)) != pixel_passes().end()) {
             cost.pixels += pass.gpu_ms;
         }
     }

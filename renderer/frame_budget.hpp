@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
+#include <string_view>
 
 #include <glm/vec2.hpp>
 
@@ -22,6 +23,9 @@ struct FrameCost {
     double pixels = 0.0;  ///< on pixels alone
     double rest = 0.0;    ///< on neither
 };
+
+/// Names of the passes whose time is in proportion to the pixels rendered, but for the gathering of VPLs.
+[[nodiscard]] std::span<const std::string_view> pixel_passes();
 
 /// Whose passes ran; the time that nobody measured, on the CPU or between passes, is part of the rest.
 [[nodiscard]] FrameCost cost_of(const FrameReport& frame);

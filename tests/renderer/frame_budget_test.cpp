@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <thread>
 
@@ -67,6 +69,22 @@ TEST_SUITE("frame budget") {
         CHECK(cost.gather == 12.0);
         CHECK(cost.pixels == 9.0);
         CHECK(cost.rest == 9.0);
+    }
+
+    TEST_CASE_FIXTURE(FrameBudgetTests, "the passes that it names are those of frames") {
+        std::string graphs;
+        Configuration configuration = few_vpls();
+        configuration.refinement.enabled = true;
+        configuration.interleave = Interleave::eight;
+        for (const ShadingPath path : all_shading_paths) {
+            configuration.path = path;
+            configure(configuration);
+            graphs += renderer.describe(GraphFormat::json);
+        }
+        CHECK(graphs.find("\"vpl-gather\"") != std::string::npos);
+        for (const std::string_view name : pixel_passes()) {
+            CHECK_MESSAGE(graphs.find(fmt::format("\"{}\"", name)) != std::string::npos, name);
+        }
     }
 
     TEST_CASE("what a frame would take follows its pixels, and the VPLs that each asks") {
