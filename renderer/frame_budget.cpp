@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/common.hpp>
 #include <string_view>
 
 namespace candela {
@@ -68,10 +69,8 @@ Quality choose_quality(const FrameCost& cost, const Quality& measured, std::uint
 }
 
 glm::uvec2 rendered_size(glm::uvec2 target, const Quality& quality) {
-    const auto side = [&](std::uint32_t pixels) {
-        return std::max(static_cast<std::uint32_t>(static_cast<float>(pixels) * quality.scale + 0.5F), 1U);
-    };
-    return {side(target.x), side(target.y)};
+    const glm::vec2 size = glm::round(glm::vec2(target) * quality.scale);
+    return glm::max(glm::uvec2(size), 1U);
 }
 
 }  // namespace candela

@@ -78,7 +78,7 @@ Capture::Capture(Renderer& renderer, glm::ivec2 size)
       linear_(renderer.device(), size_, Format::rgba32f),
       encoded_(renderer.device(), size_, Format::rgba8) {}
 
-void Capture::add_pixels(std::vector<glm::vec3>& sum) {
+void Capture::add_pixels(std::vector<glm::vec3>& sum) const {
     const std::vector<float> rgba = linear_.colour.read_floats();
     for (std::size_t i = 0; i < sum.size(); ++i)
         sum[i] += glm::vec3(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);

@@ -44,7 +44,7 @@ class Capture {
         Canvas(gl::Device& device, glm::uvec2 size, Format format);
     };
 
-    void add_pixels(std::vector<glm::vec3>& sum);
+    void add_pixels(std::vector<glm::vec3>& sum) const;
 
     Renderer* renderer_;
     glm::uvec2 size_;

@@ -83,7 +83,8 @@ glm::vec2 pixel_sample(std::uint32_t i) {
     }
     // The powers of 1/p, p being the real root of x³ = x + 1.
     constexpr glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
-    const glm::dvec2 point = glm::fract(0.5 + step * static_cast<double>((i + 1) / 2)) - 0.5;
+    const std::uint32_t pair = (i + 1) / 2;
+    const glm::dvec2 point = glm::fract(0.5 + step * static_cast<double>(pair)) - 0.5;
     return glm::vec2(i % 2 == 1 ? point : -point);
 }
 
