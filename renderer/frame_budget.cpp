@@ -9,8 +9,8 @@ namespace candela {
 namespace {
 
 // From the best to the least. Asking fewer VPLs costs hardly any quality, and so comes first.
-constexpr std::array<Quality, 6> qualities{
-    {{1.0F, 1}, {1.0F, 8}, {0.75F, 8}, {0.5F, 8}, {0.375F, 8}, {0.25F, 8}}};
+constexpr std::array<Quality, 8> qualities{
+    {{1.0F, 1}, {1.0F, 8}, {0.8F, 8}, {0.65F, 8}, {0.5F, 8}, {0.4F, 8}, {0.32F, 8}, {0.25F, 8}}};
 
 constexpr double full = 0.9;   // of the budget, to which frames are planned
 constexpr double roomy = 0.7;  // of it, to which better frames than the measured are

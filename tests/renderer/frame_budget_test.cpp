@@ -99,8 +99,8 @@ TEST_SUITE("frame budget") {
         const FrameCost cost{.gather = 160.0, .pixels = 80.0, .rest = 10.0};
         const Quality whole{1.0F, 1};
         CHECK(choose_quality(cost, whole, 1, 1000.0) == whole);
-        CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});   // 92.5 ms
-        CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.75F, 8});  // 92.5 would be, by a hair
+        CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});  // 92.5 ms
+        CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.8F, 8});  // 92.5 would be, by a hair
         CHECK(choose_quality(cost, whole, 1, 40.0) == Quality{0.5F, 8});
         CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // nothing does
         // Where frames interleave anyway, more of that gains nothing.
@@ -109,14 +109,14 @@ TEST_SUITE("frame budget") {
     }
 
     TEST_CASE("a better quality is not taken that would be left again at once") {
-        // What half of the sides takes leaves room for three quarters, in which nothing is left to spare.
-        const FrameCost cost{.gather = 0.0, .pixels = 36.0, .rest = 0.0};
-        CHECK(expected_ms(cost, {0.5F, 8}, {0.75F, 8}) == 81.0);
+        // What half of the sides takes leaves room for 65 %, in which little is left to spare.
+        const FrameCost cost{.gather = 0.0, .pixels = 48.0, .rest = 0.0};
+        CHECK(expected_ms(cost, {0.5F, 8}, {0.65F, 8}) == doctest::Approx(81.12));
         CHECK(choose_quality(cost, {0.5F, 8}, 1, 100.0) == Quality{0.5F, 8});
-        CHECK(choose_quality(cost, {0.5F, 8}, 1, 120.0) == Quality{0.75F, 8});
+        CHECK(choose_quality(cost, {0.5F, 8}, 1, 120.0) == Quality{0.65F, 8});
         // Once there, it stays.
-        const FrameCost there{.gather = 0.0, .pixels = 81.0, .rest = 0.0};
-        CHECK(choose_quality(there, {0.75F, 8}, 1, 100.0) == Quality{0.75F, 8});
+        const FrameCost there{.gather = 0.0, .pixels = 81.12, .rest = 0.0};
+        CHECK(choose_quality(there, {0.65F, 8}, 1, 100.0) == Quality{0.65F, 8});
     }
 
     TEST_CASE("at least a pixel is rendered") {
