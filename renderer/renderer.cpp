@@ -89,9 +89,10 @@ EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
     return total;
 }
 
-/// Whether both give the same picture before it is tone-mapped.
+/// Whether both give the same picture, at rest and before it is tone-mapped.
 bool same_radiance(Configuration a, const Configuration& b) {
     a.tone_map = b.tone_map;
+    a.frame_budget_ms = b.frame_budget_ms;
     return a == b;
 }
 

@@ -34,9 +34,9 @@ struct FrameHandles {
 
 /// What is rendered, in pixels.
 struct FrameExtent {
-    glm::uvec2 size;    ///< that are shaded
-    glm::uvec2 target;  ///< to which they are scaled
-    std::uint32_t least_interleave = 1;
+    glm::uvec2 size;                     ///< that are shaded
+    glm::uvec2 target;                   ///< to which they are scaled
+    std::uint32_t least_interleave = 1;  ///< where the configuration asks for less
 };
 
 /// Declares the frame that a valid configuration asks for, at one size.

@@ -217,8 +217,9 @@ TEST_SUITE("refinement") {
         CHECK(ran("vpl-trace"));
     }
 
-    TEST_CASE_FIXTURE(RefinementTests,
-                      "resizing, another path and invalidating start anew; exposure does not") {
+    TEST_CASE_FIXTURE(
+        RefinementTests,
+        "resizing, another path and invalidating start anew; exposure and frame budget do not") {
         Configuration configuration = refining(16);
         configure(configuration);
         static_cast<void>(refined(4));
@@ -241,6 +242,10 @@ TEST_SUITE("refinement") {
         configure(configuration);
         static_cast<void>(render(scene, size));
         CHECK(renderer.report().refined == 6);
+        configuration.frame_budget_ms = 1e6F;
+        configure(configuration);
+        static_cast<void>(render(scene, size));
+        CHECK(renderer.report().refined == 7);
     }
 
     TEST_CASE_FIXTURE(RefinementTests, "another world begins anew, and jitter is a move") {
