@@ -67,7 +67,7 @@ vec4 reconstruct(ivec2 at) {
 
 layout(std430, binding = BINDING_LACKING_MASK) writeonly restrict buffer Mask { uint lacking_mask[]; };  // 32 pixels each
 
-const float ENOUGH = 0.75;  // of the classes, for a pixel not to ask VPLs itself
+const float ENOUGH = 0.6;  // of the classes, for a pixel not to ask VPLs itself
 
 shared uint group_mask[RECONSTRUCT_GROUP / 32];
 
