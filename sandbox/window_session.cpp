@@ -137,7 +137,11 @@ class WindowSession {
         }
     }
 
+    /// In full, however short a frame's time was in the window.
     void write_picture(const std::filesystem::path& path) {
+        Configuration whole = renderer_.configuration();
+        whole.frame_budget_ms = 0.0F;
+        apply(renderer_, whole);
         Capture capture(renderer_, pixels_);
         CaptureReport ignored;
         capture.write(path, capture.render(scene_.world, interaction_.viewer(), options_.samples, ignored));
