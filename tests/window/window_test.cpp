@@ -18,6 +18,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -390,6 +391,26 @@ TEST_SUITE("window") {
         app.press_key(XK_period);
         CHECK(std::abs(brightest_column(app.settled()) - column_of(0.0)) < column_tolerance);
         CHECK(app.quit() == 0);
+    }
+
+    TEST_CASE("what is written is the whole picture, however short a frame's time was") {
+        const TemporaryFolder folder;
+        const auto written = [&](const std::string& budget_ms) {
+            const fs::path config = folder / "config.json";
+            const fs::path out = folder / "out.pfm";
+            std::ofstream(config) << R"({"refinement": {"enabled": false}, "frame_budget_ms": )" << budget_ms
+                                  << "}";
+            const std::string command =
+                std::string(CANDELA_APP) +
+                " --context window --size 160x120 --vpls 64 --animate orbit-camera --frames 6"
+                " --config " +
+                config.string() + " --out " + out.string() + " > /dev/null";
+            REQUIRE(std::system(command.c_str()) == 0);
+            return text_of(out);
+        };
+        const std::string whole = written("0");
+        CHECK(whole.size() > 160 * 120 * 12);
+        CHECK((written("0.001") == whole));
     }
 
     TEST_CASE("a configuration that is saved goes into force, and a faulty one leaves it there") {
