@@ -59,6 +59,10 @@ void Gpu::bind_storage(GLuint binding, GLuint buffer) const {
     gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
 }
 
+void Gpu::bind_uniforms(GLuint binding, GLuint buffer) const {
+    gl().BindBufferBase(GL_UNIFORM_BUFFER, binding, buffer);
+}
+
 void Gpu::draw_fullscreen(const gl::Program& program) const {
     program.use();
     no_vertices_.bind();

@@ -40,6 +40,7 @@ class Gpu {
     [[nodiscard]] const gl::Sampler& shadow_sampler() const { return shadow_sampler_; }
 
     void bind_storage(GLuint binding, GLuint buffer) const;
+    void bind_uniforms(GLuint binding, GLuint buffer) const;
     void draw_fullscreen(const gl::Program& program) const;
 
  private:

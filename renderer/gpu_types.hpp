@@ -9,8 +9,8 @@
 #include "engine/bvh/bvh.hpp"
 #include "shaders/bindings.glsl"
 
-/// The structs that shaders read, byte for byte as std430 lays them out; their twins, with the meaning and
-/// unit of each member, are in shaders/types.glsl.
+/// The structs that shaders read, byte for byte as std430, or std140 for uniform blocks, lays them out; their
+/// twins, with the meaning and unit of each member, are in shaders/types.glsl.
 namespace candela::gpu {
 
 struct Instance {
@@ -63,6 +63,29 @@ struct Shadow {
     bool operator==(const Shadow&) const = default;
 };
 
+struct ViewConstants {
+    glm::mat4 clip_from_world;
+    glm::mat4 world_from_clip;
+    glm::mat4 view_from_world;
+    glm::vec2 target_size;
+    glm::vec2 ray_scale;
+    glm::vec2 ray_shift;
+    glm::vec2 depth_terms;
+    std::uint32_t orthographic;
+    std::uint32_t pad0 = 0;
+    std::uint32_t pad1 = 0;
+    std::uint32_t pad2 = 0;
+};
+
+struct CellConstants {
+    glm::uvec2 tiles;
+    glm::uvec2 target_size;
+    std::uint32_t slices;
+    std::uint32_t tile_size;
+    float first_depth;
+    float depth_ratio;
+};
+
 struct TileDepth {
     float nearest;
     float farthest;
@@ -81,6 +104,17 @@ struct Vpl {
     float pad2;
     glm::vec3 edges_down;
     float pad3;
+};
+
+struct VplConstants {
+    std::uint32_t count;
+    float radius2;
+    float crease_slack;
+    float ray_offset;
+    std::uint32_t map_resolution;
+    std::uint32_t map_tiles;
+    float map_side;
+    float map_inverse_reach;
 };
 
 using BvhNode = candela::BvhNode;

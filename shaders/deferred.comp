@@ -14,7 +14,7 @@ void main() {
     uvec2 pixels[SURFACES];
     float nearest = 0.0;
     for (int s = 0; s < SURFACES; ++s) {
-        ivec2 at = min(block_pixel(s), ivec2(target_size) - 1);
+        ivec2 at = min(block_pixel(s), ivec2(view.target_size) - 1);
         pixels[s] = uvec2(at);
         depth[s] = texelFetch(surface_depth, at, 0).r;
         nearest = max(nearest, depth[s]);

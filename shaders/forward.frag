@@ -1,8 +1,6 @@
 #include "mesh_surface.glsl"
 #include "lighting.glsl"
-
-uniform mat4 world_from_clip;
-uniform vec2 target_size;
+#include "view.glsl"
 
 #ifdef BLENDED
 // Blending leaves radiance + (1 - cover) · what is behind, and alpha telling where a surface is.
@@ -19,7 +17,7 @@ void main() {
     uvec2 pixels[SURFACES];
     vec3 reflected[SURFACES];
     pixels[0] = uvec2(gl_FragCoord.xy);
-    surfaces[0] = unpack_surface(fragment_surface(colour.rgb), gl_FragCoord.xyz, target_size, world_from_clip);
+    surfaces[0] = unpack_surface(fragment_surface(colour.rgb), gl_FragCoord.xyz, view.target_size, view.world_from_clip);
     reflect_radiance(surfaces, pixels, reflected);
 #ifdef BLENDED
     cover = vec4(colour.a);

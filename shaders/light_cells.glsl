@@ -1,15 +1,8 @@
-// The grid of cells that the view is cut into, and the lists of lights that each cell has. CellGrid in
-// renderer/passes/light_bins.hpp is its twin.
+// The grid of cells that the view is cut into, and the lists of lights that each cell has.
 #include "bindings.glsl"
+#include "types.glsl"
 
-uniform uvec2 grid_tiles;
-uniform uint grid_slices;
-uniform uint tile_size;      // pixels
-uniform float first_depth;   // metres: end of slice 0
-uniform float depth_ratio;   // of the ends of neighbouring slices
-uniform mat4 view_from_world;
-
-uniform uvec2 target_pixels;
+layout(std140, binding = UNIFORMS_CELLS) uniform Cells { CellConstants grid; };
 
 // Of the 32 slices between two depths, those from depth a to depth b, as bits.
 uint slices_between(float nearest, float farthest, float a, float b) {
@@ -23,9 +16,9 @@ uint slices_between(float nearest, float farthest, float a, float b) {
 
 // Slice in which a depth lies.
 uint slice_of(float depth) {
-    if (depth <= first_depth) return 0u;
-    float slice = 1.0 + floor(log(depth / first_depth) / log(depth_ratio));
-    return uint(min(slice, float(grid_slices - 1u)));
+    if (depth <= grid.first_depth) return 0u;
+    float slice = 1.0 + floor(log(depth / grid.first_depth) / log(grid.depth_ratio));
+    return uint(min(slice, float(grid.slices - 1u)));
 }
 
-uint cell_index(uvec2 tile, uint slice) { return (slice * grid_tiles.y + tile.y) * grid_tiles.x + tile.x; }
+uint cell_index(uvec2 tile, uint slice) { return (slice * grid.tiles.y + tile.y) * grid.tiles.x + tile.x; }

@@ -2,6 +2,7 @@
 #include "bindings.glsl"
 #include "light_cells.glsl"
 #include "types.glsl"
+#include "view.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -9,10 +10,6 @@ layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light
 layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
 layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };
-
-uniform vec2 ray_scale;     // view-space x and y at depth 1 (orthographic: at any) of ndc - ray_shift
-uniform vec2 ray_shift;
-uniform bool orthographic;
 
 // What a cell holds: rays between `lower` and `upper` (view-space x and y at depth 1; orthographic: at any depth),
 // between two depths, and within them only where the mask has bits.
@@ -25,10 +22,10 @@ struct Cell {
 };
 
 Cell make_cell(uvec2 tile, float nearest, float farthest, uint mask) {
-    vec2 low = vec2(tile * tile_size) / vec2(target_pixels);
-    vec2 high = vec2((tile + 1u) * tile_size) / vec2(target_pixels);
-    vec2 lower = (low * 2.0 - 1.0 - ray_shift) * ray_scale;
-    vec2 upper = (high * 2.0 - 1.0 - ray_shift) * ray_scale;
+    vec2 low = vec2(tile * grid.tile_size) / vec2(grid.target_size);
+    vec2 high = vec2((tile + 1u) * grid.tile_size) / vec2(grid.target_size);
+    vec2 lower = (low * 2.0 - 1.0 - view.ray_shift) * view.ray_scale;
+    vec2 upper = (high * 2.0 - 1.0 - view.ray_shift) * view.ray_scale;
     return Cell(lower, upper, nearest, farthest, mask);
 }
 
@@ -39,7 +36,7 @@ struct Bounds {
 
 // Box around the part of the cell between two depths.
 Bounds box_between(Cell cell, float a, float b) {
-    vec2 scale = orthographic ? vec2(1.0) : vec2(a, b);
+    vec2 scale = view.orthographic != 0u ? vec2(1.0) : vec2(a, b);
     vec2 low = min(cell.lower * scale.x, cell.lower * scale.y);
     vec2 high = max(cell.upper * scale.x, cell.upper * scale.y);
     return Bounds(vec3(low + high, -(a + b)) * 0.5, vec3(high - low, b - a) * 0.5);
@@ -47,10 +44,10 @@ Bounds box_between(Cell cell, float a, float b) {
 
 // Signed distances to the four side planes, positive inside, at least -radius: Hasselgren's and everybody's test.
 bool outside_planes(Cell cell, vec3 centre, float radius) {
-    vec2 depth = orthographic ? vec2(1.0) : vec2(-centre.z);
+    vec2 depth = view.orthographic != 0u ? vec2(1.0) : vec2(-centre.z);
     vec2 low = centre.xy - cell.lower * depth;
     vec2 high = cell.upper * depth - centre.xy;
-    if (!orthographic) {
+    if (view.orthographic == 0u) {
         low *= inversesqrt(1.0 + cell.lower * cell.lower);
         high *= inversesqrt(1.0 + cell.upper * cell.upper);
     }
@@ -70,7 +67,7 @@ bool outside_cone(Bounds box, vec3 apex, vec3 axis, float cos_angle) {
 // Whether any of the light's reach is in the cell. Never false where the light's irradiance is not zero.
 bool reaches(Light light, Cell cell) {
     if (isinf(light.range)) return true;
-    vec3 centre = (view_from_world * vec4(light.position, 1.0)).xyz;
+    vec3 centre = (view.view_from_world * vec4(light.position, 1.0)).xyz;
     // Widened by what rounding may move the centre.
     float radius = light.range * 1.0001 + 1e-6 * (length(centre) + length(light.position));
     float nearest = max(cell.nearest, -centre.z - radius);
@@ -82,7 +79,7 @@ bool reaches(Light light, Cell cell) {
     vec3 gap = max(abs(centre - box.centre) - box.half_extent * 1.0001, 0.0);
     if (dot(gap, gap) > radius * radius) return false;
     if (light.kind != LIGHT_SPOT) return true;
-    vec3 axis = mat3(view_from_world) * light.direction;
+    vec3 axis = mat3(view.view_from_world) * light.direction;
     return !outside_cone(box, centre, axis, light.cos_outer - 1e-4);
 }
 

@@ -1,6 +1,7 @@
 // Which lights a surface visits: all of them, or the list of its cell (LIGHT_LIST_CELLS).
 #include "bindings.glsl"
 #include "light_cells.glsl"
+#include "view.glsl"
 
 uniform uint light_count;  // in all; 0: none is shown
 
@@ -19,8 +20,8 @@ struct LightListRange {
 
 // The list for a surface under a pixel.
 LightListRange light_list_at(uvec2 pixel, vec3 position) {
-    float depth = grid_slices > 1u ? -(view_from_world * vec4(position, 1.0)).z : 0.0;
-    uint cell = cell_index(pixel / tile_size, grid_slices > 1u ? slice_of(depth) : 0u);
+    float depth = grid.slices > 1u ? -(view.view_from_world * vec4(position, 1.0)).z : 0.0;
+    uint cell = cell_index(pixel / grid.tile_size, grid.slices > 1u ? slice_of(depth) : 0u);
     return LightListRange(list_first[cell], light_count == 0u ? 0u : global_light_count + list_count[cell]);
 }
 

@@ -7,9 +7,9 @@ uniform bool has_depth;
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
-    if (index >= grid_tiles.x * grid_tiles.y) return;
-    uvec2 tile = uvec2(index % grid_tiles.x, index / grid_tiles.x);
-    TileDepth bounds = TileDepth(orthographic ? -1.0e30 : 0.0, 1.0e30, 0xffffffffu, 0u);
+    if (index >= grid.tiles.x * grid.tiles.y) return;
+    uvec2 tile = uvec2(index % grid.tiles.x, index / grid.tiles.x);
+    TileDepth bounds = TileDepth(view.orthographic != 0u ? -1.0e30 : 0.0, 1.0e30, 0xffffffffu, 0u);
     if (has_depth) bounds = tile_depths[index];
     cull(index, make_cell(tile, bounds.nearest, bounds.farthest, bounds.mask));
 }

@@ -1,5 +1,5 @@
-// The one evaluator of light: real lights with their shadows, and virtual point lights, unless INDIRECT_IRRADIANCE says
-// that their light has been gathered before. A shading path finds the surfaces; light_list.glsl says which lights each of
+// The one evaluator of light: real lights with their shadows, and light by way of surfaces, which has been gathered before
+// (INDIRECT_IRRADIANCE) or comes from the VPLs (VPLS). A shading path finds the surfaces; light_list.glsl says which lights each of
 // them visits. An invocation shades SURFACES of them, which have one list together unless LIGHT_LIST_PER_SURFACE says
 // otherwise.
 #include "bindings.glsl"
@@ -53,21 +53,26 @@ void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout v
     for (int s = 0; s < SURFACES; ++s) irradiance[s] = texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb;
 }
 
-#else
+#elif defined(VPLS)
 
 #include "vpl_light.glsl"
 
-uniform uint vpl_stride;  // 1: surfaces ask all VPLs
+uniform uint vpl_stride;  // 1: surfaces ask all VPLs; 0: none
 
 // π times the irradiance from the VPLs. All surfaces visit all of them: a VPL reaches everything in front of it. Where they
 // are too many, every vpl_stride-th of them stands for all, and for pixels side by side not the same ones.
 void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
-    for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < vpl_count; i += vpl_stride) {
+    if (vpl_stride == 0u) return;
+    for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < vpl_constants.count; i += vpl_stride) {
         Vpl vpl = vpls[i];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
     }
     for (int s = 0; s < SURFACES; ++s) irradiance[s] *= float(vpl_stride);
 }
+
+#else
+
+void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {}
 
 #endif
 

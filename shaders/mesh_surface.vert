@@ -1,6 +1,11 @@
 #include "mesh.glsl"
 
-uniform mat4 clip_from_world;
+#ifdef SHADOW_MAP
+uniform mat4 clip_from_world;  // the light's
+#else
+#include "view.glsl"
+mat4 clip_from_world = view.clip_from_world;
+#endif
 
 invariant gl_Position;  // a depth pre-pass and what is tested against it must agree to the bit
 

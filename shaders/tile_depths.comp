@@ -2,15 +2,13 @@
 #include "bindings.glsl"
 #include "light_cells.glsl"
 #include "types.glsl"
+#include "view.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430, binding = BINDING_TILE_DEPTHS) writeonly restrict buffer TileDepths { TileDepth tile_depths[]; };
 
 layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
-
-uniform vec2 depth_terms;  // a and b of window depth = a·z + b (orthographic), -a + b / depth (perspective)
-uniform bool orthographic;
 
 // Depths as integers that are in the same order.
 shared uint nearest_bits;
@@ -27,8 +25,8 @@ float from_ordered_bits(uint bits) {
 }
 
 float view_depth(float window_depth) {
-    if (orthographic) return (depth_terms.y - window_depth) / depth_terms.x;
-    return depth_terms.y / (window_depth + depth_terms.x);
+    if (view.orthographic != 0u) return (view.depth_terms.y - window_depth) / view.depth_terms.x;
+    return view.depth_terms.y / (window_depth + view.depth_terms.x);
 }
 
 void main() {
@@ -39,8 +37,8 @@ void main() {
     }
     barrier();
     uvec2 tile = gl_WorkGroupID.xy;
-    uvec2 first = tile * tile_size;
-    uvec2 extent = min(first + tile_size, target_pixels) - first;
+    uvec2 first = tile * grid.tile_size;
+    uvec2 extent = min(first + grid.tile_size, grid.target_size) - first;
     uint pixels = extent.x * extent.y;
     float nearest = 1.0 / 0.0;
     float farthest = -1.0 / 0.0;
@@ -71,5 +69,5 @@ void main() {
     barrier();
     if (gl_LocalInvocationIndex > 0u) return;
     bounds.mask = mask;
-    tile_depths[tile.y * grid_tiles.x + tile.x] = bounds;
+    tile_depths[tile.y * grid.tiles.x + tile.x] = bounds;
 }

@@ -56,6 +56,32 @@ struct Shadow {
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u
 
+// The viewpoint, and what is drawn for it. A uniform block: shaders/view.glsl.
+struct ViewConstants {
+    mat4 clip_from_world;
+    mat4 world_from_clip;
+    mat4 view_from_world;
+    vec2 target_size;    // pixels
+    vec2 ray_scale;      // view-space x and y at depth 1 (orthographic: at any) of ndc - ray_shift
+    vec2 ray_shift;
+    vec2 depth_terms;    // a and b of window depth = a·z + b (orthographic), -a + b / depth (perspective)
+    uint orthographic;   // 1: it is
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
+// The grid of cells that the view is cut into; CellGrid in renderer/passes/light_bins.hpp says more. A uniform block:
+// shaders/light_cells.glsl.
+struct CellConstants {
+    uvec2 tiles;         // cells across and up
+    uvec2 target_size;   // pixels
+    uint slices;
+    uint tile_size;      // pixels
+    float first_depth;   // metres: end of slice 0
+    float depth_ratio;   // of the ends of neighbouring slices
+};
+
 // Of the surfaces in a screen tile.
 struct TileDepth {
     float nearest;   // metres; beyond `farthest` where there is no surface
@@ -75,6 +101,18 @@ struct Vpl {
     float pad2;
     vec3 edges_down;  // along -x, -y, -z
     float pad3;
+};
+
+// What all VPLs have in common. A uniform block: shaders/vpl_constants.glsl.
+struct VplConstants {
+    uint count;
+    float radius2;            // m²: nearer than its root a VPL lights no more than from there
+    float crease_slack;       // metres: by so many a surface behind a VPL's plane still counts as before it
+    float ray_offset;         // metres, off a surface: where rays and depth maps start
+    uint map_resolution;      // texels along a side of a tile of the atlas
+    uint map_tiles;           // along a side of a layer
+    float map_side;           // texels along a side of a layer
+    float map_inverse_reach;  // 1/m: where depth is 0
 };
 
 struct BvhNode {

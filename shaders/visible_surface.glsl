@@ -1,9 +1,7 @@
 // The surface that a pixel sees, from the textures that hold depth and normals.
 #include "bindings.glsl"
 #include "surface.glsl"
-
-uniform mat4 world_from_clip;
-uniform vec2 target_size;
+#include "view.glsl"
 
 layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
 layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
@@ -11,5 +9,5 @@ layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
 // `depth` is the pixel's, above 0 where there is a surface.
 Surface visible_surface(ivec2 at, float depth, vec3 albedo) {
     PackedSurface stored = PackedSurface(albedo, texelFetch(surface_normal, at, 0).rg);
-    return unpack_surface(stored, vec3(vec2(at) + 0.5, depth), target_size, world_from_clip);
+    return unpack_surface(stored, vec3(vec2(at) + 0.5, depth), view.target_size, view.world_from_clip);
 }

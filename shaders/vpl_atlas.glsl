@@ -3,11 +3,7 @@
 // nothing is.
 #include "maths.glsl"
 #include "types.glsl"
-
-uniform uint vpl_map_resolution;    // texels along a side of a tile
-uniform uint vpl_tiles;             // along a side of a layer
-uniform float vpl_map_inverse_reach;  // 1/m: where depth is 0
-uniform float vpl_ray_offset;       // metres, off the VPL's surface: where its map, and its rays, start
+#include "vpl_constants.glsl"
 
 struct VplTile {
     uvec2 corner;  // its first texel
@@ -15,11 +11,12 @@ struct VplTile {
 };
 
 VplTile vpl_tile(uint map) {
-    uint of_layer = map % (vpl_tiles * vpl_tiles);
-    uvec2 place = uvec2(of_layer % vpl_tiles, of_layer / vpl_tiles);
-    return VplTile(place * vpl_map_resolution, map / (vpl_tiles * vpl_tiles));
+    uint tiles = vpl_constants.map_tiles;
+    uint of_layer = map % (tiles * tiles);
+    uvec2 place = uvec2(of_layer % tiles, of_layer / tiles);
+    return VplTile(place * vpl_constants.map_resolution, map / (tiles * tiles));
 }
 
-vec3 vpl_map_origin(Vpl vpl) { return vpl.position + vpl_ray_offset * vpl.normal; }
+vec3 vpl_map_origin(Vpl vpl) { return vpl.position + vpl_constants.ray_offset * vpl.normal; }
 
-float vpl_map_depth(float distance) { return 1.0 - distance * vpl_map_inverse_reach; }
+float vpl_map_depth(float distance) { return 1.0 - distance * vpl_constants.map_inverse_reach; }

@@ -24,7 +24,7 @@ void main() {
     ivec2 at = ivec2(packed_pixel & 0xffffu, packed_pixel >> 16);
     Surface surface = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
     vec3 irradiance = vec3(0.0);
-    uint end = min(vpl_count, 2u * (asked_before + asked_now));
+    uint end = min(vpl_constants.count, 2u * (asked_before + asked_now));
     for (uint i = 2u * asked_before + uint(at.x + at.y) % 2u; i < end; i += 2u) {
         irradiance += irradiance_from_vpl(vpls[vpl_order[i]], surface);
     }

@@ -20,7 +20,7 @@ void main() {
     vec3 irradiance[SURFACES];
     float nearest = 0.0;
     for (int s = 0; s < SURFACES; ++s) {
-        ivec2 at = min(int(interleave) * block_pixel(s) + ivec2(offset), ivec2(target_size) - 1);
+        ivec2 at = min(int(interleave) * block_pixel(s) + ivec2(offset), ivec2(view.target_size) - 1);
         depth[s] = texelFetch(surface_depth, at, 0).r;
         nearest = max(nearest, depth[s]);
         surfaces[s] = visible_surface(at, depth[s], vec3(0.0));
@@ -28,8 +28,8 @@ void main() {
     }
     uint classes = interleave * interleave;
     uint share = share_of_class(offset);
-    uint first = share * vpl_count / classes + asked_before;
-    uint last = nearest > 0.0 ? min((share + 1u) * vpl_count / classes, first + asked_now) : first;
+    uint first = share * vpl_constants.count / classes + asked_before;
+    uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + asked_now) : first;
     for (uint i = first; i < last; ++i) {
         Vpl vpl = vpls[vpl_order[i]];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);

@@ -2,12 +2,10 @@
 #include "bindings.glsl"
 #include "surface.glsl"
 #include "types.glsl"
+#include "vpl_constants.glsl"
 #include "vpl_visibility.glsl"
 
 layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
-
-uniform uint vpl_count;
-uniform float vpl_radius2;  // m²: nearer than its root a VPL lights no more than from there
 
 // 1 above the surface that a VPL sits on, 0 beyond its edges, with a rim a quarter as wide between; `aside`: from the
 // VPL, in its plane. Towards a straight edge `ahead` is the share of the way to it.
@@ -17,7 +15,7 @@ float share_on_surface(Vpl vpl, vec3 aside) {
 }
 
 // Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997), kept from growing
-// beyond 4/3 of 1/R², R² being vpl_radius2, in two ways, as the surface turns to the VPL. Facing it, the VPL stands for
+// beyond 4/3 of 1/R², R² being vpl_constants.radius2, in two ways, as the surface turns to the VPL. Facing it, the VPL stands for
 // a disc, whose form factor on its axis is R² / (R² + r²) and not R² / r² (Howell et al., "Thermal Radiation Heat
 // Transfer", configuration factor of a disc). Square to it that would darken creases, where a wall takes up half of the
 // floor's sky from however near: there the VPL is seen as if it sank behind its own surface, by R at contact and R²/r
@@ -26,15 +24,15 @@ float share_on_surface(Vpl vpl, vec3 aside) {
 float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float height = -dot(vpl.normal, to_vpl);
-    if (height <= -crease_slack) return 0.0;
+    if (height <= -vpl_constants.crease_slack) return 0.0;
     height = max(height, 0.0);
     float square = 1.0 - max(-dot(vpl.normal, surface.normal), 0.0);
     square *= share_on_surface(vpl, -to_vpl - height * vpl.normal);
-    float depth = square * vpl_radius2 * inversesqrt(vpl_radius2 + max(dot(to_vpl, to_vpl), 1e-12));
+    float depth = square * vpl_constants.radius2 * inversesqrt(vpl_constants.radius2 + max(dot(to_vpl, to_vpl), 1e-12));
     vec3 to_sunk = to_vpl - depth * vpl.normal;
     float distance2 = max(dot(to_sunk, to_sunk), 1e-12);
     float cos_surface = max(dot(surface.normal, to_sunk), 0.0);
-    return cos_surface * (height + depth) / (distance2 * (distance2 + (1.0 - square) * vpl_radius2));
+    return cos_surface * (height + depth) / (distance2 * (distance2 + (1.0 - square) * vpl_constants.radius2));
 }
 
 // Geometry term times the share of the light that nothing holds back; that is looked up only where there is light.

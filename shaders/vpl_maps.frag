@@ -12,7 +12,7 @@ void main() {
     // Llvmpipe reads zeros for fragments that cover nothing, and walks in a circle through a hierarchy of zeros.
     if (gl_HelperInvocation) return;
     Vpl vpl = vpls[mapped_vpl];
-    vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl.map).corner)) / float(vpl_map_resolution);
+    vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl.map).corner)) / float(vpl_constants.map_resolution);
     vec3 local = hemi_octahedral_decode(at * 2.0 - 1.0);
     vec3 tangent, bitangent;
     basis_around(vpl.normal, tangent, bitangent);

@@ -25,8 +25,8 @@ const float SAME_PLANE = 2.0;   // pixels, as wide as they are there: farther of
 // the distance from the plane in pixels' widths: with w the factor by which world_from_clip scales the point, the distance
 // in metres is the plane's product over w, and a pixel is |column 1| · 2 / (height · w) metres wide.
 vec4 tangent_plane(Surface surface) {
-    vec4 plane = vec4(surface.normal, -dot(surface.normal, surface.position)) * world_from_clip;
-    return plane * (0.5 * target_size.y / length(world_from_clip[1].xyz));
+    vec4 plane = vec4(surface.normal, -dot(surface.normal, surface.position)) * view.world_from_clip;
+    return plane * (0.5 * view.target_size.y / length(view.world_from_clip[1].xyz));
 }
 
 // Irradiance of the pixel in the middle, and the share of the classes that it is from.
@@ -34,9 +34,9 @@ vec4 reconstruct(ivec2 at) {
     float depth = texelFetch(surface_depth, at, 0).r;
     Surface surface = visible_surface(at, depth, vec3(0.0));
     vec4 plane = tangent_plane(surface);
-    float step_off = dot(plane.xy, 2.0 * vec2(along) / target_size);  // how far a pixel more leads off the plane
+    float step_off = dot(plane.xy, 2.0 * vec2(along) / view.target_size);  // how far a pixel more leads off the plane
     ivec2 before = at * along;
-    ivec2 behind = (ivec2(target_size) - 1 - at) * along;
+    ivec2 behind = (ivec2(view.target_size) - 1 - at) * along;
     int least = -(before.x + before.y);
     int most = behind.x + behind.y;
 
@@ -86,7 +86,7 @@ void note_lacking(bool lacks) {
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    bool is_surface = at.x < int(target_size.x) && texelFetch(surface_depth, at, 0).r > 0.0;
+    bool is_surface = at.x < int(view.target_size.x) && texelFetch(surface_depth, at, 0).r > 0.0;
     vec4 result = is_surface ? reconstruct(at) : vec4(0.0);
     imageStore(reconstructed, at, result);  // beyond the target it is discarded by the GL
 #ifdef COLUMNS

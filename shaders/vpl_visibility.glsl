@@ -3,10 +3,7 @@
 #include "maths.glsl"
 #include "surface.glsl"
 #include "types.glsl"
-
-// A pixel on the line where two surfaces meet may lie behind the other one, by the rasteriser's rounding of corners to a
-// 256th of a pixel: by so many metres it still counts as before it.
-uniform float crease_slack;
+#include "vpl_constants.glsl"
 
 #if defined(VPL_VISIBILITY_MAPS)
 
@@ -33,7 +30,7 @@ float footprint_sine(vec3 direction, float texels) {
 // of it; shadows begin at the foot of what casts them and end at most two texels from their true edge. A tenth of the
 // distance more pays for shading normals that are some 5 degrees off, four ray offsets for rounding.
 float lift_above_map(float aside, float distance, float sine) {
-    return (aside + 0.1 * distance) * sine * inversesqrt(1.0 - sine * sine) + 4.0 * vpl_ray_offset;
+    return (aside + 0.1 * distance) * sine * inversesqrt(1.0 - sine * sine) + 4.0 * vpl_constants.ray_offset;
 }
 
 // Share of the VPL's light that reaches the surface, in [0, 1].
@@ -41,7 +38,7 @@ float vpl_visibility(Vpl vpl, Surface surface) {
     vec3 from_vpl = surface.position - vpl_map_origin(vpl);
     vec3 tangent, bitangent;
     basis_around(vpl.normal, tangent, bitangent);
-    float texels = float(vpl_map_resolution);
+    float texels = float(vpl_constants.map_resolution);
 
     float distance = length(from_vpl);
     float height = dot(surface.normal, from_vpl);
@@ -65,14 +62,12 @@ float vpl_visibility(Vpl vpl, Surface surface) {
 
 #include "bvh.glsl"
 
-uniform float vpl_ray_offset;  // metres, off both surfaces
-
 float vpl_visibility(Vpl vpl, Surface surface) {
-    vec3 target = vpl.position + vpl_ray_offset * vpl.normal;
-    vec3 origin = surface.position + vpl_ray_offset * surface.normal;
+    vec3 target = vpl.position + vpl_constants.ray_offset * vpl.normal;
+    vec3 origin = surface.position + vpl_constants.ray_offset * surface.normal;
     origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;  // no lower than the target, above its surface
     vec3 to_vpl = target - origin;
-    float t_min = crease_slack / max(length(to_vpl), 1e-30);
+    float t_min = vpl_constants.crease_slack / max(length(to_vpl), 1e-30);
     return any_hit(origin, to_vpl, t_min, 1.0) ? 0.0 : 1.0;
 }
 

@@ -10,6 +10,7 @@
 #include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/transparent.hpp"
 #include "renderer/passes/vpl_gather.hpp"
+#include "renderer/passes/vpl_maps.hpp"
 #include "renderer/passes/vpl_reconstruct.hpp"
 
 namespace candela {
@@ -42,12 +43,13 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     frame.shadows = shadows.plan;
     frame.drawn_shadows = shadows.drawn;
     const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
-    ValueHandle<CameraView> view = add_view(graph, frame.request);
+    ValueHandle<CameraView> camera = add_view(graph, frame.request);
     if (configuration.refinement.enabled) {
         frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
-        frame.refinement = add_refinement(graph, *frame.refinement_clock, scene, frame.lights, view);
-        view = add_refined_view(graph, frame.request, *frame.refinement);
+        frame.refinement = add_refinement(graph, *frame.refinement_clock, scene, frame.lights, camera);
+        camera = add_refined_view(graph, frame.request, *frame.refinement);
     }
+    const FrameView view = add_view_upload(graph, gpu, camera, size);
     if (configuration.indirect) {
         DueVpls due{
             .paths = add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, configuration.vpls),
@@ -62,10 +64,12 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     }
     std::optional<VplLight> vpl_light;
     if (frame.vpls) {
-        vpl_light = VplLight{
-            .vpls = *frame.vpls, .metrics = frame.metrics, .geometry_bound = configuration.geometry_bound};
+        vpl_light =
+            VplLight{.vpls = *frame.vpls,
+                     .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->paths,
+                                                 configuration.visibility, configuration.geometry_bound)};
         if (configuration.visibility.method == VplVisibility::maps) {
-            vpl_light->maps = add_vpl_maps(graph, gpu, tracing, *frame.vpls, configuration.visibility);
+            vpl_light->maps = add_vpl_maps(graph, gpu, tracing, *frame.vpls, vpl_light->common);
         } else if (configuration.visibility.method == VplVisibility::rays) {
             vpl_light->rays = tracing;
         }
@@ -93,12 +97,12 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const bool bounds_lists = path.surface != SurfaceStage::forward;
 
     if (path.list == LightList::tile) {
-        frame.lists =
-            add_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
-                            bounds_lists ? depth_of(visible) : std::nullopt, size, configuration.lists);
+        const LightGrid grid = add_tile_grid(graph, gpu, size, configuration.lists);
+        frame.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, grid,
+                                      bounds_lists ? depth_of(visible) : std::nullopt);
     } else if (path.list == LightList::cluster) {
-        frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, frame.metrics, size,
-                                         configuration.lists);
+        const LightGrid grid = add_cluster_grid(graph, gpu, camera, frame.metrics, size, configuration.lists);
+        frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, grid);
     }
 
     Lighting lighting{.lights = frame.lights,
@@ -115,7 +119,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     }
     if (path.list == LightList::tile && bounds_lists) {
         of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
-                                                   scene.layout, size, configuration.lists);
+                                                   frame.lists->grid, scene.layout);
     }
 
     if (gathers) {
@@ -133,7 +137,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const ShadedSurfaces solid =
         gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
                 : add_forward(graph, gpu, scene, lighting, view, depth_of(visible), size);
-    TextureHandle radiance = add_transparent(graph, gpu, scene, of_blended, view, solid, size);
+    TextureHandle radiance = add_transparent(graph, gpu, scene, of_blended, view, solid);
     if (frame.refinement) {
         radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, size);
     }

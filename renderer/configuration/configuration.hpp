@@ -13,8 +13,8 @@
 #include "renderer/passes/refinement.hpp"
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/tone_map.hpp"
+#include "renderer/passes/vpl_constants.hpp"
 #include "renderer/passes/vpl_gather.hpp"
-#include "renderer/passes/vpl_maps.hpp"
 #include "renderer/passes/vpl_trace.hpp"
 
 namespace candela {

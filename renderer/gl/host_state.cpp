@@ -60,6 +60,9 @@ HostState::~HostState() {
     for (GLuint binding = 0; binding <= BINDING_LAST; ++binding) {
         gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
     }
+    for (GLuint binding = 0; binding <= UNIFORMS_LAST; ++binding) {
+        gl.BindBufferBase(GL_UNIFORM_BUFFER, binding, 0);
+    }
     for (GLuint image = 0; image <= IMAGE_LAST; ++image) {
         gl.BindImageTexture(image, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
     }

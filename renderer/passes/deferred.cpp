@@ -12,13 +12,13 @@ constexpr std::uint32_t tile_size =
 }  // namespace
 
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
-                           ValueHandle<CameraView> view, glm::uvec2 size) {
+                           const FrameView& view, glm::uvec2 size) {
     return graph.add("deferred", [&](Pass& pass) {
         pass.read(gbuffer.albedo, Usage::sampled);
         pass.read(gbuffer.normal, Usage::sampled);
         pass.read(gbuffer.depth, Usage::sampled);
         read_lighting(pass, lighting);
-        pass.read(view);
+        read_view(pass, view);
         const gl::Program& program = gpu.program({"deferred.comp"}, lighting_variant(lighting));
         const auto radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::storage);
         pass.run([=, &gpu, &program](Execution& run) {
@@ -28,7 +28,7 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
             gl.BindTextureUnit(UNIT_DEPTH, run.object(gbuffer.depth));
             gl.BindImageTexture(IMAGE_RADIANCE, run.object(radiance), 0, GL_FALSE, 0, GL_READ_WRITE,
                                 GL_RGBA32F);
-            bind_view(program, run.value(view), size);
+            bind_view(gpu, run, view);
             bind_lighting(gpu, run, program, lighting);
             program.use();
             for (std::uint32_t part = 0; part < lighting_parts(run, lighting); ++part) {

@@ -10,7 +10,6 @@ namespace candela {
 
 /// Node `deferred`: shades the G-buffer in one dispatch over all lights. Gives radiance, rgba32f.
 [[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer,
-                                         const Lighting& lighting, ValueHandle<CameraView> view,
-                                         glm::uvec2 size);
+                                         const Lighting& lighting, const FrameView& view, glm::uvec2 size);
 
 }  // namespace candela

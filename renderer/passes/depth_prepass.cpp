@@ -5,19 +5,19 @@
 
 namespace candela {
 
-VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                  ValueHandle<CameraView> view, glm::uvec2 size) {
+VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
+                                  glm::uvec2 size) {
     return graph.add("depth-prepass", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);
-        pass.read(view);
+        read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "depth_prepass.frag", {"WITH_NORMALS"});
         const VisibleSurfaces out{
             .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target),
             .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target)};
         pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
-            programs.each([&](const gl::Program& program) { bind_view(program, run.value(view), size); });
+            bind_view(gpu, run, view);
             draw_surfaces(gpu, run, scene, programs);
         });
         return out;

@@ -15,6 +15,6 @@ struct VisibleSurfaces {
 
 /// Node `depth-prepass`: depth and normals of the solid surfaces.
 [[nodiscard]] VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                                ValueHandle<CameraView> view, glm::uvec2 size);
+                                                const FrameView& view, glm::uvec2 size);
 
 }  // namespace candela

@@ -6,13 +6,13 @@
 namespace candela {
 
 ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                           ValueHandle<CameraView> view, std::optional<TextureHandle> prepass_depth,
+                           const FrameView& view, std::optional<TextureHandle> prepass_depth,
                            glm::uvec2 size) {
     return graph.add("forward", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);
         read_lighting(pass, lighting);
-        pass.read(view);
+        read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "forward.frag", lighting_variant(lighting));
         ShadedSurfaces out;
         out.radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
@@ -28,10 +28,8 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             } else {
                 begin_surfaces(gpu);
             }
-            programs.each([&](const gl::Program& program) {
-                bind_view(program, run.value(view), size);
-                bind_lighting(gpu, run, program, lighting);
-            });
+            bind_view(gpu, run, view);
+            programs.each([&](const gl::Program& program) { bind_lighting(gpu, run, program, lighting); });
             draw_surfaces(gpu, run, scene, programs);
             for (std::uint32_t part = 1; part < lighting_parts(run, lighting); ++part) {
                 begin_adding(gpu);

@@ -19,7 +19,7 @@ struct ShadedSurfaces {
 /// Node `forward`: rasterises the surfaces and shades them at once. With the depth of a pre-pass only those
 /// are shaded that are seen in the end.
 [[nodiscard]] ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                         const Lighting& lighting, ValueHandle<CameraView> view,
+                                         const Lighting& lighting, const FrameView& view,
                                          std::optional<TextureHandle> prepass_depth, glm::uvec2 size);
 
 }  // namespace candela

@@ -5,12 +5,12 @@
 
 namespace candela {
 
-Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHandle<CameraView> view,
+Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
                     glm::uvec2 size) {
     return graph.add("gbuffer", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);
-        pass.read(view);
+        read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "gbuffer.frag");
         const Gbuffer out{
             .albedo = pass.write(graph.texture("albedo", {size, Format::rgba16f}), Usage::colour_target),
@@ -18,7 +18,7 @@ Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, ValueHa
             .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target)};
         pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
-            programs.each([&](const gl::Program& program) { bind_view(program, run.value(view), size); });
+            bind_view(gpu, run, view);
             draw_surfaces(gpu, run, scene, programs);
         });
         return out;

@@ -15,7 +15,7 @@ struct Gbuffer {
 };
 
 /// Node `gbuffer`.
-[[nodiscard]] Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                  ValueHandle<CameraView> view, glm::uvec2 size);
+[[nodiscard]] Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
+                                  glm::uvec2 size);
 
 }  // namespace candela

@@ -11,39 +11,52 @@ namespace {
 
 constexpr std::uint32_t cells_a_group = 64;  // as in shaders/light_cells.glsl
 
-void set_grid(const gl::Program& program, const CellGrid& grid) {
-    program.set("grid_tiles", grid.tiles);
-    program.set("grid_slices", grid.slices);
-    program.set("tile_size", grid.tile_size);
-    program.set("first_depth", grid.first_depth);
-    program.set("depth_ratio", grid.depth_ratio);
-    program.set("target_pixels", grid.size);
+gpu::CellConstants cell_constants(const CellGrid& grid) {
+    return {.tiles = grid.tiles,
+            .target_size = grid.size,
+            .slices = grid.slices,
+            .tile_size = grid.tile_size,
+            .first_depth = grid.first_depth,
+            .depth_ratio = grid.depth_ratio};
 }
 
-/// What turns pixels and depths into view space: see shaders/light_cells.glsl.
-void set_rays(const gl::Program& program, const CameraView& view) {
-    const glm::mat4& clip = view.clip_from_view;
-    const glm::vec2 scale(1.0F / clip[0][0], 1.0F / clip[1][1]);
-    const glm::vec2 shift = view.orthographic ? glm::vec2(clip[3]) : -glm::vec2(clip[2]);
-    program.set("view_from_world", view.view_from_world);
-    program.set("ray_scale", scale);
-    program.set("ray_shift", shift);
-    program.set("orthographic", view.orthographic);
-    program.set("depth_terms", glm::vec2(clip[2][2], clip[3][2]));
+/// `declare(Pass&)` states what `make_grid(Execution&)` reads.
+template <class Declare, class MakeGrid>
+LightGrid add_light_grid(FrameGraph& graph, const Gpu& gpu, Declare declare, MakeGrid make_grid) {
+    return graph.add("light-grid", [&](Pass& pass) {
+        declare(pass);
+        const LightGrid out{
+            .cells = pass.write(graph.value<CellGrid>("light grid")),
+            .constants = pass.write(
+                graph.buffer<gpu::CellConstants>("cell constants", 1, Lifetime::persistent), Usage::copy)};
+        pass.run([=, &gpu](Execution& run) {
+            const CellGrid grid = make_grid(run);
+            const gpu::CellConstants content = cell_constants(grid);
+            upload<gpu::CellConstants>(gpu, run, out.constants, {&content, 1});
+            run.set(out.cells, grid);
+        });
+        return out;
+    });
 }
 
-/// Node that sorts the lights into cells on the CPU and uploads them. `declare(Pass&)` states what the other
-/// two read; `make_grid(Execution&)` gives the cells, `is_wanted(Execution&)` whether anybody will look at
-/// the lists.
-template <class Declare, class MakeGrid, class IsWanted>
+void read_light_grid(Pass& pass, const LightGrid& grid) {
+    pass.read(grid.constants, Usage::uniform);
+}
+
+void bind_light_grid(const Gpu& gpu, Execution& run, const LightGrid& grid) {
+    gpu.bind_uniforms(UNIFORMS_CELLS, run.object(grid.constants));
+}
+
+/// Node that sorts the lights into cells on the CPU and uploads them. `declare(Pass&)` states what
+/// `is_wanted(Execution&)` reads, which tells whether anybody will look at the lists.
+template <class Declare, class IsWanted>
 BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
-                          ValueHandle<LightTable> lights, ValueHandle<CameraView> view,
-                          const ListSettings& settings, Declare declare, MakeGrid make_grid,
-                          IsWanted is_wanted) {
+                          ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
+                          ValueHandle<CellGrid> cells, Declare declare, IsWanted is_wanted) {
     return graph.add(fmt::format("{}-bins", name), [&](Pass& pass) {
         pass.read(lights);
-        pass.read(view);
-        pass.parameter(settings);
+        pass.read(camera);
+        pass.read(cells);
         declare(pass);
         const auto buffer = [&](std::string_view what) {
             return pass.write(
@@ -56,13 +69,20 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         pass.run([=, &gpu](Execution& run) {
             const LightTable nothing;
             const LightTable& table = is_wanted(run) ? run.value(lights) : nothing;
-            LightBins bins = bin_lights(table, run.value(view), make_grid(run));
+            LightBins bins = bin_lights(table, run.value(camera), run.value(cells));
             upload<std::uint32_t>(gpu, run, out.first, bins.first);
             upload<std::uint32_t>(gpu, run, out.entries, bins.entries);
             run.set(out.bins, std::move(bins));
         });
         return out;
     });
+}
+
+BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
+                          ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
+                          ValueHandle<CellGrid> cells) {
+    return add_light_bins(
+        graph, gpu, name, lights, camera, cells, [](Pass&) {}, [](Execution&) { return true; });
 }
 
 /// As many dispatches as it takes for none to walk through too much of a list: see `most_asked`.
@@ -86,10 +106,12 @@ void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const
 /// Node that culls the bins in place: each cell keeps, in order, the lights that reach it.
 LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
                        LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
-                       ValueHandle<CameraView> view, std::optional<BufferHandle<gpu::TileDepth>> depths) {
+                       const FrameView& view, const LightGrid& grid,
+                       std::optional<BufferHandle<gpu::TileDepth>> depths) {
     return graph.add(name, [&](Pass& pass) {
         pass.read(bins.bins);
-        pass.read(view);
+        read_view(pass, view);
+        read_light_grid(pass, grid);
         pass.read(lights, Usage::storage);
         pass.read(bins.first, Usage::storage);
         if (depths) {
@@ -97,16 +119,16 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
         }
         const gl::Program& program = gpu.program({shader});
         const LightLists out{.kind = kind,
-                             .bins = bins.bins,
+                             .grid = grid,
                              .view = view,
+                             .bins = bins.bins,
                              .first = bins.first,
                              .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1,
                                                                              Lifetime::persistent),
                                                  Usage::storage),
                              .entries = pass.write(bins.entries, Usage::storage)};
         pass.run([=, &gpu, &program](Execution& run) {
-            const CellGrid& grid = run.value(bins.bins).grid;
-            run.reserve(out.count, grid.cells());
+            run.reserve(out.count, run.value(bins.bins).grid.cells());
             gpu.bind_storage(BINDING_LIGHTS, run.object(lights));
             gpu.bind_storage(BINDING_LIST_FIRST, run.object(out.first));
             gpu.bind_storage(BINDING_LIST_COUNT, run.object(out.count));
@@ -115,8 +137,8 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
             if (depths) {
                 gpu.bind_storage(BINDING_TILE_DEPTHS, run.object(*depths));
             }
-            set_grid(program, grid);
-            set_rays(program, run.value(view));
+            bind_view(gpu, run, view);
+            bind_light_grid(gpu, run, grid);
             dispatch_culling(gpu.gl(), program, run.value(bins.bins));
         });
         return out;
@@ -124,20 +146,24 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
 }
 
 BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
-                                             ValueHandle<CameraView> view, const CellGrid& grid) {
+                                             const FrameView& view, const LightGrid& grid) {
     return graph.add("tile-depths", [&](Pass& pass) {
         pass.read(depth, Usage::sampled);
-        pass.read(view);
+        pass.read(grid.cells);
+        read_view(pass, view);
+        read_light_grid(pass, grid);
         const gl::Program& program = gpu.program({"tile_depths.comp"});
-        const auto depths = pass.write(
-            graph.buffer<gpu::TileDepth>("tile depths", grid.cells(), Lifetime::persistent), Usage::storage);
+        const auto depths =
+            pass.write(graph.buffer<gpu::TileDepth>("tile depths", 1, Lifetime::persistent), Usage::storage);
         pass.run([=, &gpu, &program](Execution& run) {
+            const CellGrid& cells = run.value(grid.cells);
+            run.reserve(depths, cells.cells());
             gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(depth));
             gpu.bind_storage(BINDING_TILE_DEPTHS, run.object(depths));
-            set_grid(program, grid);
-            set_rays(program, run.value(view));
+            bind_view(gpu, run, view);
+            bind_light_grid(gpu, run, grid);
             program.use();
-            gpu.gl().DispatchCompute(grid.tiles.x, grid.tiles.y, 1);
+            gpu.gl().DispatchCompute(cells.tiles.x, cells.tiles.y, 1);
         });
         return depths;
     });
@@ -145,76 +171,84 @@ BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, Textur
 
 }  // namespace
 
-LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                           BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
-                           std::optional<TextureHandle> depth, glm::uvec2 size,
-                           const ListSettings& settings) {
-    const BinBuffers bins = add_light_bins(
-        graph, gpu, "light-tiles", lights, view, settings, [&](Pass& pass) { pass.parameter(size); },
-        [=](Execution&) { return tile_grid(size, settings); }, [](Execution&) { return true; });
-    std::optional<BufferHandle<gpu::TileDepth>> depths;
-    if (depth) {
-        depths = add_tile_depths(graph, gpu, *depth, view, tile_grid(size, settings));
-    }
-    return add_culling(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
-                       view, depths);
-}
-
-LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                                   BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
-                                   ValueHandle<SceneLayout> layout, glm::uvec2 size,
-                                   const ListSettings& settings) {
-    const BinBuffers bins = add_light_bins(
-        graph, gpu, "blended-light-tiles", lights, view, settings,
+LightGrid add_tile_grid(FrameGraph& graph, const Gpu& gpu, glm::uvec2 size, const ListSettings& settings) {
+    return add_light_grid(
+        graph, gpu,
         [&](Pass& pass) {
-            pass.read(layout);
             pass.parameter(size);
+            pass.parameter(settings);
         },
-        [=](Execution&) { return tile_grid(size, settings); },
-        [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
-    return add_culling(graph, gpu, "blended-light-tiles", "light_tiles.comp", LightList::tile, bins,
-                       light_buffer, view, std::nullopt);
+        [=](Execution&) { return tile_grid(size, settings); });
 }
 
-LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                              BufferHandle<gpu::Light> light_buffer, ValueHandle<CameraView> view,
-                              ValueHandle<SceneMetrics> metrics, glm::uvec2 size,
-                              const ListSettings& settings) {
+LightGrid add_cluster_grid(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                           ValueHandle<SceneMetrics> metrics, glm::uvec2 size, const ListSettings& settings) {
     const auto make_grid = [=](Execution& run) {
         const SceneMetrics& scene = run.value(metrics);
-        const float distance = glm::length(scene.centre() - run.value(view).eye);
+        const float distance = glm::length(scene.centre() - run.value(camera).eye);
         const float farthest = std::max(distance + scene.radius(), 1e-6F);
         // Nearer than a thousandth of the scene one slice is enough.
         const float nearest = std::max(distance - scene.radius(), 1e-3F * farthest);
         return cluster_grid(size, settings, nearest, farthest);
     };
-    const BinBuffers bins = add_light_bins(
-        graph, gpu, "light-clusters", lights, view, settings,
+    return add_light_grid(
+        graph, gpu,
         [&](Pass& pass) {
+            pass.read(camera);
             pass.read(metrics);
             pass.parameter(size);
+            pass.parameter(settings);
         },
-        make_grid, [](Execution&) { return true; });
+        make_grid);
+}
+
+LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                           BufferHandle<gpu::Light> light_buffer, const FrameView& view,
+                           const LightGrid& grid, std::optional<TextureHandle> depth) {
+    const BinBuffers bins = add_light_bins(graph, gpu, "light-tiles", lights, view.camera, grid.cells);
+    std::optional<BufferHandle<gpu::TileDepth>> depths;
+    if (depth) {
+        depths = add_tile_depths(graph, gpu, *depth, view, grid);
+    }
+    return add_culling(graph, gpu, "light-tiles", "light_tiles.comp", LightList::tile, bins, light_buffer,
+                       view, grid, depths);
+}
+
+LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                                   BufferHandle<gpu::Light> light_buffer, const FrameView& view,
+                                   const LightGrid& grid, ValueHandle<SceneLayout> layout) {
+    const BinBuffers bins = add_light_bins(
+        graph, gpu, "blended-light-tiles", lights, view.camera, grid.cells,
+        [&](Pass& pass) { pass.read(layout); },
+        [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
+    return add_culling(graph, gpu, "blended-light-tiles", "light_tiles.comp", LightList::tile, bins,
+                       light_buffer, view, grid, std::nullopt);
+}
+
+LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                              BufferHandle<gpu::Light> light_buffer, const FrameView& view,
+                              const LightGrid& grid) {
+    const BinBuffers bins = add_light_bins(graph, gpu, "light-clusters", lights, view.camera, grid.cells);
     return add_culling(graph, gpu, "light-clusters", "light_clusters.comp", LightList::cluster, bins,
-                       light_buffer, view, std::nullopt);
+                       light_buffer, view, grid, std::nullopt);
 }
 
 void read_light_lists(Pass& pass, const LightLists& lists) {
     pass.read(lists.bins);
-    pass.read(lists.view);
+    read_view(pass, lists.view);
+    read_light_grid(pass, lists.grid);
     pass.read(lists.first, Usage::storage);
     pass.read(lists.count, Usage::storage);
     pass.read(lists.entries, Usage::storage);
 }
 
 void bind_light_lists(const Gpu& gpu, Execution& run, const gl::Program& program, const LightLists& lists) {
-    const LightBins& bins = run.value(lists.bins);
     gpu.bind_storage(BINDING_LIST_FIRST, run.object(lists.first));
     gpu.bind_storage(BINDING_LIST_COUNT, run.object(lists.count));
     gpu.bind_storage(BINDING_LIST_ENTRIES, run.object(lists.entries));
-    program.set("global_light_count", bins.global_count);
-    program.set("view_from_world", run.value(lists.view).view_from_world);
-    set_grid(program, bins.grid);
+    bind_view(gpu, run, lists.view);
+    bind_light_grid(gpu, run, lists.grid);
+    program.set("global_light_count", run.value(lists.bins).global_count);
 }
 
 }  // namespace candela

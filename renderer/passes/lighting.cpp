@@ -51,6 +51,8 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         lighting.vpls ? vpl_light_variant(*lighting.vpls) : std::vector<std::string>{};
     if (lighting.indirect) {
         words.emplace_back("INDIRECT_IRRADIANCE");
+    } else if (lighting.vpls) {
+        words.emplace_back("VPLS");
     }
     if (lighting.lists) {
         words.emplace_back("LIGHT_LIST_CELLS");
@@ -94,13 +96,11 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
     }
     if (lighting.indirect) {
         gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(*lighting.indirect));
-    } else if (lighting.vpls && lighting.show != Show::direct) {
+    } else if (lighting.vpls) {
         bind_vpl_light(gpu, run, program, *lighting.vpls);
         const std::uint32_t vpls = run.value(lighting.vpls->vpls.paths).vpl_count;
         const std::uint32_t most = std::min(most_asked(*lighting.vpls), lighting.most_vpls);
-        program.set("vpl_stride", vpl_stride(vpls, most));
-    } else {
-        program.set("vpl_count", 0U);
+        program.set("vpl_stride", lighting.show == Show::direct ? 0U : vpl_stride(vpls, most));
     }
 }
 

@@ -30,7 +30,7 @@ ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<Refinement
 ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,
                                          ValueHandle<Refinement> refinement) {
     return graph.add("refined-view", [&](Pass& pass) {
-        read_view(pass, request);
+        read_request(pass, request);
         pass.read(refinement);
         const auto out = pass.write(graph.value<CameraView>("refined view"));
         pass.run([=](Execution& run) {

@@ -257,7 +257,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         pass.parameter(settings);
         const ShadowPrograms programs{
             .opaque = gpu.program({"shadow_maps.vert"}),
-            .masked = gpu.program({"mesh_surface.vert", "depth_prepass.frag"}, {"MASKED"})};
+            .masked = gpu.program({"mesh_surface.vert", "depth_prepass.frag"}, {"MASKED", "SHADOW_MAP"})};
         const ShadowMaps out{
             .plan = plan,
             .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),

@@ -59,13 +59,14 @@ void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
 }  // namespace
 
 TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                              ValueHandle<CameraView> view, const ShadedSurfaces& surfaces, glm::uvec2 size) {
+                              const FrameView& view, const ShadedSurfaces& surfaces) {
     return graph.add("transparent", [&](Pass& pass) {
         read_meshes(pass, scene);
         read_materials(pass, scene);
         read_lighting(pass, lighting);
         pass.read(scene.placement);
-        pass.read(view);
+        pass.read(view.camera);
+        read_view(pass, view);
         pass.read(surfaces.depth, Usage::depth_target);
         std::vector<std::string> variant = lighting_variant(lighting);
         variant.emplace_back("BLENDED");
@@ -73,7 +74,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::vector<SortedGroup> sorted =
-                back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view));
+                back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
             if (sorted.empty()) {
                 return;
             }
@@ -81,7 +82,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
             begin_blending(gpu.gl());
             bind_meshes(gpu, run, scene);
             bind_materials(gpu, run, scene);
-            bind_view(program, run.value(view), size);
+            bind_view(gpu, run, view);
             bind_lighting(gpu, run, program, lighting);
             program.set("lights_now", most_lights);
             program.use();

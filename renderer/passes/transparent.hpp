@@ -20,7 +20,7 @@ namespace candela {
 /// each other; the triangles of others are drawn in the mesh's order. Blended surfaces receive light, direct
 /// and indirect, and shadows, but neither cast shadows nor place VPLs.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                            const Lighting& lighting, ValueHandle<CameraView> view,
-                                            const ShadedSurfaces& surfaces, glm::uvec2 size);
+                                            const Lighting& lighting, const FrameView& view,
+                                            const ShadedSurfaces& surfaces);
 
 }  // namespace candela

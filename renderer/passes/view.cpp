@@ -7,6 +7,7 @@
 
 #include "engine/graph/execute.hpp"
 #include "engine/scene/hierarchy.hpp"
+#include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {
@@ -42,6 +43,18 @@ glm::mat4 rigid(const glm::mat4& world_from_camera) {
     return {glm::vec4(x, 0.0F), glm::vec4(glm::cross(z, x), 0.0F), glm::vec4(z, 0.0F), world_from_camera[3]};
 }
 
+gpu::ViewConstants view_constants(const CameraView& view, glm::uvec2 size) {
+    const glm::mat4& clip = view.clip_from_view;
+    return {.clip_from_world = view.clip_from_world,
+            .world_from_clip = view.world_from_clip,
+            .view_from_world = view.view_from_world,
+            .target_size = glm::vec2(size),
+            .ray_scale = {1.0F / clip[0][0], 1.0F / clip[1][1]},
+            .ray_shift = view.orthographic ? glm::vec2(clip[3]) : -glm::vec2(clip[2]),
+            .depth_terms = {clip[2][2], clip[3][2]},
+            .orthographic = view.orthographic ? 1U : 0U};
+}
+
 }  // namespace
 
 CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request) {
@@ -65,16 +78,10 @@ CameraView requested_view(const World& world, const ViewRequest& request) {
     return make_view(world.get<Camera>(request.camera), world_matrix(world, request.camera), request);
 }
 
-void read_view(Pass& pass, ValueHandle<ViewRequest> request) {
+void read_request(Pass& pass, ValueHandle<ViewRequest> request) {
     pass.read(request);
     pass.read<Camera>();
     pass.read<Transform>();
-}
-
-void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size) {
-    program.set("clip_from_world", view.clip_from_world);
-    program.set("world_from_clip", view.world_from_clip);
-    program.set("target_size", glm::vec2(size));
 }
 
 glm::vec2 pixel_sample(std::uint32_t i) {
@@ -90,11 +97,34 @@ glm::vec2 pixel_sample(std::uint32_t i) {
 
 ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request) {
     return graph.add("view", [&](Pass& pass) {
-        read_view(pass, request);
+        read_request(pass, request);
         const auto view = pass.write(graph.value<CameraView>("view"));
         pass.run([=](Execution& run) { run.set(view, requested_view(run.world(), run.value(request))); });
         return view;
     });
+}
+
+FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                          glm::uvec2 size) {
+    return graph.add("view-upload", [&](Pass& pass) {
+        pass.read(camera);
+        pass.parameter(size);
+        const auto constants = pass.write(
+            graph.buffer<gpu::ViewConstants>("view constants", 1, Lifetime::persistent), Usage::copy);
+        pass.run([=, &gpu](Execution& run) {
+            const gpu::ViewConstants content = view_constants(run.value(camera), size);
+            upload<gpu::ViewConstants>(gpu, run, constants, {&content, 1});
+        });
+        return FrameView{camera, constants};
+    });
+}
+
+void read_view(Pass& pass, const FrameView& view) {
+    pass.read(view.constants, Usage::uniform);
+}
+
+void bind_view(const Gpu& gpu, Execution& run, const FrameView& view) {
+    gpu.bind_uniforms(UNIFORMS_VIEW, run.object(view.constants));
 }
 
 }  // namespace candela

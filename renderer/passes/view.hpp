@@ -7,7 +7,8 @@
 #include "engine/ecs/world.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/scene/components.hpp"
-#include "renderer/gl/program.hpp"
+#include "renderer/gpu.hpp"
+#include "renderer/gpu_types.hpp"
 
 namespace candela {
 
@@ -38,10 +39,7 @@ struct CameraView {
 /// View that the host asks for. Throws EntityError if the requested camera is none.
 [[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
 /// What a pass reads that calls it.
-void read_view(Pass& pass, ValueHandle<ViewRequest> request);
-
-/// Sets the uniforms by which shaders go between pixels and the world.
-void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 size);
+void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 
 /// Sample i within a pixel, in pixels from its centre, within [-0.5, 0.5]. Sample 0 is the centre; 2k - 1 and
 /// 2k lie opposite each other, at point k of the sequence R2 (Roberts, "The Unreasonable Effectiveness of
@@ -50,5 +48,19 @@ void bind_view(const gl::Program& program, const CameraView& view, glm::uvec2 si
 
 /// Node `view` (CPU).
 [[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
+
+/// The view that a frame is drawn for.
+struct FrameView {
+    ValueHandle<CameraView> camera;
+    BufferHandle<gpu::ViewConstants> constants;
+};
+
+/// Node `view-upload`: the view for shaders, with a target of `size` pixels.
+[[nodiscard]] FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                                        glm::uvec2 size);
+
+/// For a pass whose shader includes view.glsl: declares what that reads, and binds it when the pass runs.
+void read_view(Pass& pass, const FrameView& view);
+void bind_view(const Gpu& gpu, Execution& run, const FrameView& view);
 
 }  // namespace candela

@@ -85,7 +85,7 @@ std::vector<std::uint32_t> deal_vpls(const VplPaths& paths) {
 }
 
 GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                            const VplLight& light, ValueHandle<CameraView> view, std::uint32_t interleave,
+                            const VplLight& light, const FrameView& view, std::uint32_t interleave,
                             glm::uvec2 size) {
     const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.paths);
     return graph.add("vpl-gather", [&](Pass& pass) {
@@ -93,7 +93,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& 
         pass.read(surfaces.depth, Usage::sampled);
         pass.read(order, Usage::storage);
         read_vpl_light(pass, light);
-        pass.read(view);
+        read_view(pass, view);
         pass.parameter(interleave);
         const gl::Program& program = gpu.program({"vpl_gather.comp"}, vpl_light_variant(light));
         const GatheredVpls out{
@@ -107,7 +107,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& 
             gl.BindImageTexture(IMAGE_INDIRECT, run.object(out.irradiance), 0, GL_FALSE, 0, GL_READ_WRITE,
                                 GL_RGBA32F);
             gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
-            bind_view(program, run.value(view), size);
+            bind_view(gpu, run, view);
             bind_vpl_light(gpu, run, program, light);
             program.set("interleave", interleave);
             dispatch_gather(gl, program, size, interleave, run.value(light.vpls.paths).vpl_count,

@@ -33,7 +33,7 @@ struct GatheredVpls {
 /// Node `vpl-deal` (CPU): the order of the VPLs. Node `vpl-gather` (compute): each pixel asks the VPLs of its
 /// class's share. Wald et al., "Interactive Global Illumination using Fast Ray Tracing" (2002).
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                                          const VplLight& light, ValueHandle<CameraView> view,
+                                          const VplLight& light, const FrameView& view,
                                           std::uint32_t interleave, glm::uvec2 size);
 
 }  // namespace candela

@@ -1,14 +1,8 @@
 #include "renderer/passes/vpl_light.hpp"
 
-#include <numbers>
-
 #include "engine/graph/execute.hpp"
 
 namespace candela {
-
-float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
-    return 4.0F * area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
-}
 
 std::uint32_t most_asked(const VplLight& light) {
     return light.rays ? 64 : 8192;
@@ -25,34 +19,26 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
 }
 
 void read_vpl_light(Pass& pass, const VplLight& light) {
-    pass.read(light.metrics);
     pass.read(light.vpls.paths);
     pass.read(light.vpls.vpls, Usage::storage);
+    read_vpl_constants(pass, light.common);
     if (light.maps) {
-        read_vpl_maps(pass, *light.maps);
+        pass.read(*light.maps, Usage::sampled);
     }
     if (light.rays) {
         read_tracing(pass, *light.rays);
     }
-    pass.parameter(light.geometry_bound);
 }
 
 void bind_vpl_light(const Gpu& gpu, Execution& run, const gl::Program& program, const VplLight& light) {
-    const std::uint32_t vpls = run.value(light.vpls.paths).vpl_count;
-    program.set("vpl_count", vpls);
-    if (vpls == 0) {
-        return;
-    }
     gpu.bind_storage(BINDING_VPLS, run.object(light.vpls.vpls));
-    const SceneMetrics& metrics = run.value(light.metrics);
-    program.set("vpl_radius2", vpl_radius2(light.geometry_bound, vpls, metrics.area));
-    program.set("crease_slack", 16.0F * metrics.ray_offset());
+    bind_vpl_constants(gpu, run, light.common);
     if (light.maps) {
-        bind_vpl_maps(gpu, run, program, *light.maps, metrics);
+        gpu.gl().BindTextureUnit(UNIT_VPL_MAPS, run.object(*light.maps));
+        gpu.shadow_sampler().bind(UNIT_VPL_MAPS);
     }
     if (light.rays) {
         bind_tracing(gpu, run, program, *light.rays);
-        program.set("vpl_ray_offset", metrics.ray_offset());
     }
 }
 

@@ -8,7 +8,7 @@ namespace {
 /// What all nodes read of the surfaces, and where they write.
 struct Pixels {
     VisibleSurfaces surfaces;
-    ValueHandle<CameraView> view;
+    FrameView view;
     std::uint32_t interleave;
     glm::uvec2 size;
 };
@@ -16,16 +16,15 @@ struct Pixels {
 void read_pixels(Pass& pass, const Pixels& pixels) {
     pass.read(pixels.surfaces.normal, Usage::sampled);
     pass.read(pixels.surfaces.depth, Usage::sampled);
-    pass.read(pixels.view);
+    read_view(pass, pixels.view);
     pass.parameter(pixels.interleave);
 }
 
-void bind_pixels(const Gpu& gpu, Execution& run, const gl::Program& program, const Pixels& pixels,
-                 TextureHandle written, GLenum access) {
+void bind_pixels(const Gpu& gpu, Execution& run, const Pixels& pixels, TextureHandle written, GLenum access) {
     gpu.gl().BindTextureUnit(UNIT_NORMAL, run.object(pixels.surfaces.normal));
     gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(pixels.surfaces.depth));
     gpu.gl().BindImageTexture(IMAGE_INDIRECT, run.object(written), 0, GL_FALSE, 0, access, GL_RGBA32F);
-    bind_view(program, run.value(pixels.view), pixels.size);
+    bind_view(gpu, run, pixels.view);
 }
 
 std::uint32_t groups_of_row(glm::uvec2 size) {
@@ -46,7 +45,7 @@ TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, Textur
         const TextureHandle out = pass.write(
             graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}), Usage::storage);
         pass.run([=, &gpu, &program](Execution& run) {
-            bind_pixels(gpu, run, program, pixels, out, GL_WRITE_ONLY);
+            bind_pixels(gpu, run, pixels, out, GL_WRITE_ONLY);
             gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(gathered));
             dispatch(gpu, program, pixels);
         });
@@ -77,7 +76,7 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHa
                                                        std::uint64_t{row_words(pixels.size)} * pixels.size.y),
                            Usage::storage)};
         pass.run([=, &gpu, &program](Execution& run) {
-            bind_pixels(gpu, run, program, pixels, out.irradiance, GL_WRITE_ONLY);
+            bind_pixels(gpu, run, pixels, out.irradiance, GL_WRITE_ONLY);
             gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(rows));
             gpu.bind_storage(BINDING_LACKING_MASK, run.object(out.lacking_mask));
             dispatch(gpu, program, pixels);
@@ -131,7 +130,7 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         const gl::Program& program = gpu.program({"vpl_fill.comp"}, vpl_light_variant(light));
         const TextureHandle out = pass.write(found.irradiance, Usage::storage);
         pass.run([=, &gpu, &program](Execution& run) {
-            bind_pixels(gpu, run, program, pixels, out, GL_READ_WRITE);
+            bind_pixels(gpu, run, pixels, out, GL_READ_WRITE);
             gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
             gpu.bind_storage(BINDING_LACKING, run.object(found.lacking));
             bind_vpl_light(gpu, run, program, light);
@@ -145,8 +144,8 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
 }  // namespace
 
 IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                                  const GatheredVpls& gathered, const VplLight& light,
-                                  ValueHandle<CameraView> view, std::uint32_t interleave, glm::uvec2 size) {
+                                  const GatheredVpls& gathered, const VplLight& light, const FrameView& view,
+                                  std::uint32_t interleave, glm::uvec2 size) {
     const Pixels pixels{surfaces, view, interleave, size};
     const TextureHandle rows = add_rows(graph, gpu, pixels, gathered.irradiance);
     const Columns columns = add_columns(graph, gpu, pixels, rows);

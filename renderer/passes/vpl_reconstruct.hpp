@@ -19,7 +19,7 @@ struct IndirectLight {
 /// (compute): the pixels for which too few classes have such pixels are listed, and ask VPLs themselves.
 [[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                                                 const GatheredVpls& gathered, const VplLight& light,
-                                                ValueHandle<CameraView> view, std::uint32_t interleave,
+                                                const FrameView& view, std::uint32_t interleave,
                                                 glm::uvec2 size);
 
 }  // namespace candela

@@ -152,18 +152,14 @@ TEST_SUITE("configuration") {
             }
             return names;
         };
+        const std::string scene =
+            "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
+            "view view-upload ";
+        const std::string vpls = "vpl-paths vpl-refresh vpl-trace vpl-constants ";
         CHECK(passes_of(ShadingPath::deferred, true) ==
-              "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-              "view vpl-paths vpl-refresh "
-              "vpl-trace gbuffer deferred transparent tone-map");
-        CHECK(passes_of(ShadingPath::forward, true) ==
-              "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-              "view vpl-paths vpl-refresh "
-              "vpl-trace forward transparent tone-map");
-        CHECK(passes_of(ShadingPath::deferred, false) ==
-              "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-              "view gbuffer "
-              "deferred transparent tone-map");
+              scene + vpls + "gbuffer deferred transparent tone-map");
+        CHECK(passes_of(ShadingPath::forward, true) == scene + vpls + "forward transparent tone-map");
+        CHECK(passes_of(ShadingPath::deferred, false) == scene + "gbuffer deferred transparent tone-map");
     }
 
     TEST_CASE_FIXTURE(RenderFixture,

@@ -29,28 +29,28 @@ namespace {
 // surfaces that are found anew, as the targets in between are not kept. All edits but the first start from a
 // still frame without debt.
 constexpr std::string_view table = R"(
-                     gather upload instances bvh lights plan shadows light-upload view paths refresh trace vpl-maps surfaces tiles clusters depths bounded blended shading tone-map
-first frame             x      x       x      x    x     x      x         x        x     x      x      x      x         x      x       x      x       x       x      x       x
-nothing                 .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .      .       .       .      .       x
-light named             .      .       .      .    .     .      .         .        .     .      .      .      .         .      .       .      .       .       .      .       x
-camera moves            x      .       .      .    x     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
-camera zooms            .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
-light moves             x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x      .       x       x      x       x
-spot moves              x      .       .      .    x     x      x         x        x     x      x      x      x         .      x       x      .       x       x      x       x
-light changes colour    .      .       .      .    x     x      .         x        .     x      x      x      x         .      x       x      .       x       x      x       x
-light goes off          .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x      .       x       x      x       x
-light goes on           .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x      .       x       x      x       x
-light's shadow goes     .      .       .      .    x     x      x         x        .     x      x      x      x         .      x       x      .       x       x      x       x
-mesh moves              x      .       x      x    x     .      x         .        x     .      x      x      x         x      .       .      x       x       .      x       x
-mesh appears            x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x      x       x       x      x       x
-material changes        x      x       x      x    .     .      x         .        .     .      x      x      x         x      .       .      x       x       x      x       x
-mesh goes               x      x       x      x    x     x      x         .        x     x      x      x      x         x      .       x      x       x       x      x       x
-target widens           .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
-target doubles          .      .       .      .    .     .      .         .        x     .      .      .      .         x      x       x      x       x       x      x       x
-indirect light shown    .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .      .       .       .      x       x
-exposure changes        .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .      .       .       .      x       x
-more VPLs               .      .       .      .    .     .      .         .        .     x      x      x      x         x      .       .      .       .       .      x       x
-another path            .      .       .      .    .     .      .         .        .     .      .      .      .         x      .       .      .       .       .      x       x
+                     gather upload instances bvh lights plan shadows light-upload view view-upload paths refresh trace vpl-constants vpl-maps surfaces tiles tile-grid clusters cluster-grid depths bounded blended shading tone-map
+first frame            x      x        x      x    x     x      x         x        x        x        x      x      x         x          x        x       x       x        x          x         x       x       x       x       x
+nothing                .      .        .      .    .     .      .         .        .        .        .      .      .         .          .        .       .       .        .          .         .       .       .       .       x
+light named            .      .        .      .    .     .      .         .        .        .        .      .      .         .          .        .       .       .        .          .         .       .       .       .       x
+camera moves           x      .        .      .    x     .      .         .        x        x        .      .      .         .          .        x       x       .        x          x         x       x       x       x       x
+camera zooms           .      .        .      .    .     .      .         .        x        x        .      .      .         .          .        x       x       .        x          x         x       x       x       x       x
+light moves            x      .        .      .    x     x      x         x        x        .        x      x      x         x          x        .       x       .        x          .         .       x       x       x       x
+spot moves             x      .        .      .    x     x      x         x        x        .        x      x      x         x          x        .       x       .        x          .         .       x       x       x       x
+light changes colour   .      .        .      .    x     x      .         x        .        .        x      x      x         x          x        .       x       .        x          .         .       x       x       x       x
+light goes off         .      .        .      .    x     x      x         x        .        .        x      x      x         x          x        .       x       .        x          .         .       x       x       x       x
+light goes on          .      .        .      .    x     x      x         x        .        .        x      x      x         x          x        .       x       .        x          .         .       x       x       x       x
+light's shadow goes    .      .        .      .    x     x      x         x        .        .        x      x      x         x          x        .       x       .        x          .         .       x       x       x       x
+mesh moves             x      .        x      x    x     .      x         .        x        .        .      x      x         x          x        x       .       .        .          .         x       x       .       x       x
+mesh appears           x      x        x      x    x     x      x         .        x        .        x      x      x         x          x        x       .       .        x          x         x       x       x       x       x
+material changes       x      x        x      x    .     .      x         .        .        .        .      x      x         x          x        x       .       .        .          .         x       x       x       x       x
+mesh goes              x      x        x      x    x     x      x         .        x        .        x      x      x         x          x        x       .       .        x          x         x       x       x       x       x
+target widens          .      .        .      .    .     .      .         .        x        x        .      .      .         .          .        x       x       x        x          x         x       x       x       x       x
+target doubles         .      .        .      .    .     .      .         .        x        x        .      .      .         .          .        x       x       x        x          x         x       x       x       x       x
+indirect light shown   .      .        .      .    .     .      .         .        .        .        .      .      .         .          .        x       .       .        .          .         .       .       .       x       x
+exposure changes       .      .        .      .    .     .      .         .        .        .        .      .      .         .          .        x       .       .        .          .         .       .       .       x       x
+more VPLs              .      .        .      .    .     .      .         .        .        .        x      x      x         x          x        x       .       .        .          .         .       .       .       x       x
+another path           .      .        .      .    .     .      .         .        .        .        .      .      .         .          .        x       .       .        .          .         .       .       .       x       x
 )";
 
 /// The column of a path's pass.
@@ -61,6 +61,11 @@ std::string column_of(std::string_view pass, ShadingPath path) {
         {"vpl-refresh", "refresh"},    {"vpl-trace", "trace"},     {"gbuffer", "surfaces"},
         {"depth-prepass", "surfaces"}, {"tile-depths", "depths"},  {"forward", "shading"},
         {"deferred", "shading"},       {"transparent", "shading"}};
+    if (pass == "light-grid") {
+        const bool clusters =
+            path == ShadingPath::clustered_forward || path == ShadingPath::clustered_deferred;
+        return clusters ? "cluster-grid" : "tile-grid";
+    }
     if (pass.starts_with("light-tiles")) {
         return path == ShadingPath::tiled_forward ? "tiles" : "bounded";
     }

@@ -54,6 +54,18 @@ const std::vector<Layout>& layouts() {
          sizeof(gpu::Shadow),
          {MEMBER(Shadow, from_world), MEMBER(Shadow, axis), MEMBER(Shadow, texel), MEMBER(Shadow, near_plane),
           MEMBER(Shadow, layer), MEMBER(Shadow, kind), MEMBER(Shadow, pad0)}},
+        {"ViewConstants",
+         sizeof(gpu::ViewConstants),
+         {MEMBER(ViewConstants, clip_from_world), MEMBER(ViewConstants, world_from_clip),
+          MEMBER(ViewConstants, view_from_world), MEMBER(ViewConstants, target_size),
+          MEMBER(ViewConstants, ray_scale), MEMBER(ViewConstants, ray_shift),
+          MEMBER(ViewConstants, depth_terms), MEMBER(ViewConstants, orthographic),
+          MEMBER(ViewConstants, pad0), MEMBER(ViewConstants, pad1), MEMBER(ViewConstants, pad2)}},
+        {"CellConstants",
+         sizeof(gpu::CellConstants),
+         {MEMBER(CellConstants, tiles), MEMBER(CellConstants, target_size), MEMBER(CellConstants, slices),
+          MEMBER(CellConstants, tile_size), MEMBER(CellConstants, first_depth),
+          MEMBER(CellConstants, depth_ratio)}},
         {"TileDepth",
          sizeof(gpu::TileDepth),
          {MEMBER(TileDepth, nearest), MEMBER(TileDepth, farthest), MEMBER(TileDepth, mask),
@@ -63,6 +75,12 @@ const std::vector<Layout>& layouts() {
          {MEMBER(Vpl, position), MEMBER(Vpl, map), MEMBER(Vpl, normal), MEMBER(Vpl, pad0), MEMBER(Vpl, flux),
           MEMBER(Vpl, pad1), MEMBER(Vpl, edges_up), MEMBER(Vpl, pad2), MEMBER(Vpl, edges_down),
           MEMBER(Vpl, pad3)}},
+        {"VplConstants",
+         sizeof(gpu::VplConstants),
+         {MEMBER(VplConstants, count), MEMBER(VplConstants, radius2), MEMBER(VplConstants, crease_slack),
+          MEMBER(VplConstants, ray_offset), MEMBER(VplConstants, map_resolution),
+          MEMBER(VplConstants, map_tiles), MEMBER(VplConstants, map_side),
+          MEMBER(VplConstants, map_inverse_reach)}},
         {"BvhNode",
          sizeof(gpu::BvhNode),
          {MEMBER(BvhNode, lower), MEMBER(BvhNode, first), MEMBER(BvhNode, upper), MEMBER(BvhNode, count)}},
@@ -110,29 +128,49 @@ std::string copying_shader(const std::string& type) {
         type);
 }
 
-/// What the driver says about variables of a program's buffers.
-class BufferVariables {
+/// A shader whose uniform block holds one element.
+std::string shader_with_constants(const std::string& type) {
+    return fmt::format(
+        "#include \"types.glsl\"\n"
+        "layout(local_size_x = 1) in;\n"
+        "layout(std140, binding = 0) uniform Block {{ {0} constants; }};\n"
+        "layout(std430, binding = 0) buffer Copy {{ {0} copy; }};\n"
+        "void main() {{ copy = constants; }}\n",
+        type);
+}
+
+/// What the driver says about members of a program's buffers, or of its uniform blocks.
+class BlockMembers {
  public:
-    BufferVariables(const gl::Functions& gl, GLuint program) : gl_(gl), program_(program) {}
+    BlockMembers(const gl::Functions& gl, GLuint program, GLenum interface = GL_BUFFER_VARIABLE)
+        : gl_(gl), program_(program), interface_(interface) {}
 
     [[nodiscard]] GLint count() const {
         GLint count = 0;
-        gl_.GetProgramInterfaceiv(program_, GL_BUFFER_VARIABLE, GL_ACTIVE_RESOURCES, &count);
+        gl_.GetProgramInterfaceiv(program_, interface_, GL_ACTIVE_RESOURCES, &count);
         return count;
     }
     /// -1 if there is no such variable.
     [[nodiscard]] GLint get(const std::string& variable, GLenum property) const {
-        const GLuint index = gl_.GetProgramResourceIndex(program_, GL_BUFFER_VARIABLE, variable.c_str());
+        const GLuint index = gl_.GetProgramResourceIndex(program_, interface_, variable.c_str());
         GLint value = -1;
         if (index == GL_INVALID_INDEX) return value;
-        gl_.GetProgramResourceiv(program_, GL_BUFFER_VARIABLE, index, 1, &property, 1, nullptr, &value);
+        gl_.GetProgramResourceiv(program_, interface_, index, 1, &property, 1, nullptr, &value);
         return value;
     }
 
  private:
     const gl::Functions& gl_;
     GLuint program_;
+    GLenum interface_;
 };
+
+gl::Program compile_with_shipped(gl::Device& device, const std::string& compute_shader) {
+    const auto shipped = gl::embedded_shaders();
+    std::vector<gl::EmbeddedShader> files(shipped.begin(), shipped.end());
+    files.push_back({"copy.comp", compute_shader});
+    return gl::compile(device, gl::ShaderLibrary(files), {"copy.comp"});
+}
 
 }  // namespace
 
@@ -140,12 +178,8 @@ TEST_SUITE("gpu types") {
     TEST_CASE_FIXTURE(GlFixture, "every struct lies in buffers as the driver says") {
         for (const Layout& layout : layouts()) {
             CAPTURE(layout.name);
-            const std::string source = copying_shader(layout.name);
-            const auto shipped = gl::embedded_shaders();
-            std::vector<gl::EmbeddedShader> files(shipped.begin(), shipped.end());
-            files.push_back({"copy.comp", source});
-            const gl::Program program = gl::compile(device, gl::ShaderLibrary(files), {"copy.comp"});
-            const BufferVariables variables(device.gl(), program.name());
+            const gl::Program program = compile_with_shipped(device, copying_shader(layout.name));
+            const BlockMembers variables(device.gl(), program.name());
             CHECK(variables.count() == static_cast<GLint>(layout.members.size()));
             for (const Member& member : layout.members) {
                 CAPTURE(member.name);
@@ -162,6 +196,23 @@ TEST_SUITE("gpu types") {
                 CHECK(variables.get("element[0].from_world", GL_IS_ROW_MAJOR) == GL_FALSE);
             }
         }
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "structs of uniform blocks lie there as they do in buffers") {
+        std::size_t blocks = 0;
+        for (const Layout& layout : layouts()) {
+            if (!layout.name.ends_with("Constants")) continue;
+            CAPTURE(layout.name);
+            ++blocks;
+            const gl::Program program = compile_with_shipped(device, shader_with_constants(layout.name));
+            const BlockMembers members(device.gl(), program.name(), GL_UNIFORM);
+            for (const Member& member : layout.members) {
+                CAPTURE(member.name);
+                CHECK(members.get("constants." + member.name, GL_OFFSET) ==
+                      static_cast<GLint>(member.offset));
+            }
+        }
+        CHECK(blocks == 3);
     }
 
     TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is among those compared") {

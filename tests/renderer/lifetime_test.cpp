@@ -69,6 +69,7 @@ TEST_SUITE("lifetime") {
             static_cast<void>(renderer.take_frames(true));
         };
         round(240, 48);  // every configuration and every size once: pools and the driver's caches fill
+        round(1, 1);     // and what follows upon the end of a round
         const gl::ObjectCounts before = renderer.device().live();
         const std::uint64_t memory_before = resident_bytes();
         round(1000, 200);
