@@ -9,6 +9,7 @@
 #include "renderer/passes/gbuffer.hpp"
 #include "renderer/passes/light_lists.hpp"
 #include "renderer/passes/transparent.hpp"
+#include "renderer/passes/view_cull.hpp"
 #include "renderer/passes/vpl_gather.hpp"
 #include "renderer/passes/vpl_maps.hpp"
 #include "renderer/passes/vpl_reconstruct.hpp"
@@ -50,6 +51,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         camera = add_refined_view(graph, frame.request, *frame.refinement);
     }
     const FrameView view = add_view_upload(graph, gpu, camera, size);
+    const SceneData seen = add_view_cull(graph, gpu, scene, camera);
     if (configuration.indirect) {
         DueVpls due{
             .paths = add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, configuration.vpls),
@@ -89,10 +91,10 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     std::optional<VisibleSurfaces> visible;
     std::optional<Gbuffer> gbuffer;
     if (path.surface == SurfaceStage::gbuffer) {
-        gbuffer = add_gbuffer(graph, gpu, scene, view, size);
+        gbuffer = add_gbuffer(graph, gpu, seen, view, size);
         visible = {gbuffer->depth, gbuffer->normal};
     } else if (path.surface == SurfaceStage::forward_after_prepass || gathers) {
-        visible = add_depth_prepass(graph, gpu, scene, view, size);
+        visible = add_depth_prepass(graph, gpu, seen, view, size);
     }
     const bool bounds_lists = path.surface != SurfaceStage::forward;
 
@@ -136,8 +138,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
 
     const ShadedSurfaces solid =
         gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
-                : add_forward(graph, gpu, scene, lighting, view, depth_of(visible), size);
-    TextureHandle radiance = add_transparent(graph, gpu, scene, of_blended, view, solid);
+                : add_forward(graph, gpu, seen, lighting, view, depth_of(visible), size);
+    TextureHandle radiance = add_transparent(graph, gpu, seen, of_blended, view, solid);
     if (frame.refinement) {
         radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, size);
     }

@@ -40,6 +40,17 @@ Gathered add_scene_gather(FrameGraph& graph) {
     });
 }
 
+Box bounds_of(const Primitive& primitive) {
+    if (primitive.vertices.empty()) {
+        return {glm::vec3(0.0F), glm::vec3(0.0F)};
+    }
+    Box bounds;
+    for (const Vertex& vertex : primitive.vertices) {
+        bounds.grow(vertex.position);
+    }
+    return bounds;
+}
+
 /// Indices of the drawables in drawing order: grouped by alpha mode, image, sidedness and winding, otherwise
 /// as they were.
 template <class Key>
@@ -62,7 +73,8 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
     std::vector<SceneLayout::Drawable> drawables;
     for (std::uint32_t item = 0; item < geometry.items.size(); ++item) {
         for (const Primitive& primitive : geometry.items[item].mesh->primitives) {
-            drawables.push_back({item, &primitive, materials.index_of(primitive.material)});
+            drawables.push_back(
+                {item, &primitive, materials.index_of(primitive.material), bounds_of(primitive)});
         }
     }
     const auto key = [&](std::uint32_t i) {
@@ -101,19 +113,6 @@ PackedMeshes pack_meshes(const std::vector<SceneLayout::Drawable>& drawables) {
     return packed;
 }
 
-glm::vec3 centre_of_bounds(const Primitive& primitive) {
-    if (primitive.vertices.empty()) {
-        return glm::vec3(0.0F);
-    }
-    glm::vec3 lower = primitive.vertices.front().position;
-    glm::vec3 upper = lower;
-    for (const Vertex& vertex : primitive.vertices) {
-        lower = glm::min(lower, vertex.position);
-        upper = glm::max(upper, vertex.position);
-    }
-    return (lower + upper) * 0.5F;
-}
-
 bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
     return a.alpha != AlphaMode::blend && a.alpha == b.alpha && a.texture == b.texture &&
            a.double_sided == b.double_sided && a.mirrored == b.mirrored;
@@ -139,7 +138,7 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
                                  .double_sided = material.double_sided,
                                  .mirrored = geometry.items[drawable.item].mirrored};
         if (group.alpha == AlphaMode::blend) {
-            group.centre = centre_of_bounds(*drawable.primitive);
+            group.centre = (drawable.bounds.lower + drawable.bounds.upper) * 0.5F;
         }
         if (!groups.empty() && can_share(groups.back(), group)) {
             ++groups.back().draw_count;
@@ -160,7 +159,7 @@ void upload_scene(Gpu& gpu, Execution& run, const SceneData& out, const SceneGeo
     layout.opaque_count = count_until(layout.drawables, AlphaMode::opaque);
     layout.solid_count = count_until(layout.drawables, AlphaMode::mask);
 
-    const PackedMeshes meshes = pack_meshes(layout.drawables);
+    PackedMeshes meshes = pack_meshes(layout.drawables);
     std::vector<std::uint32_t> instance_ids(meshes.draws.size());
     std::iota(instance_ids.begin(), instance_ids.end(), 0U);
     upload<Vertex>(gpu, run, out.vertices, meshes.vertices);
@@ -169,6 +168,7 @@ void upload_scene(Gpu& gpu, Execution& run, const SceneData& out, const SceneGeo
     upload<std::uint32_t>(gpu, run, out.instance_ids, instance_ids);
     upload<gpu::Material>(gpu, run, out.materials, materials.records());
     upload<std::uint32_t>(gpu, run, out.texels, materials.texels());
+    layout.draws = std::move(meshes.draws);
     run.set(out.layout, std::move(layout));
 }
 

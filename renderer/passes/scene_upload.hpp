@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/bvh/box.hpp"
 #include "engine/graph/frame_graph.hpp"
 #include "engine/scene/components.hpp"
 #include "renderer/gpu.hpp"
@@ -42,6 +43,7 @@ struct SceneLayout {
         std::uint32_t item;
         const Primitive* primitive;  ///< kept alive by `geometry`
         std::uint32_t material;      ///< index into `materials`
+        Box bounds;                  ///< of the primitive, local space
     };
     /// Consecutive draws that differ in nothing but their geometry. Blended draws have a group each, so that
     /// they can be sorted.
@@ -55,8 +57,9 @@ struct SceneLayout {
         glm::vec3 centre{0.0F};  ///< of the bounds of a blended draw, local space
     };
     SceneGeometry geometry;
-    std::vector<Drawable> drawables;  ///< the opaque ones first, then the masked, then the blended ones
-    std::vector<Group> groups;        ///< in the order of the drawables
+    std::vector<Drawable> drawables;      ///< the opaque ones first, then the masked, then the blended ones
+    std::vector<gpu::DrawCommand> draws;  ///< of the drawables
+    std::vector<Group> groups;            ///< in the order of the drawables
     std::vector<std::shared_ptr<const Material>> materials;
     std::uint32_t opaque_count = 0;  ///< of drawables
     std::uint32_t solid_count = 0;   ///< of drawables, opaque and masked: those that stop light

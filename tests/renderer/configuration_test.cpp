@@ -154,7 +154,7 @@ TEST_SUITE("configuration") {
         };
         const std::string scene =
             "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-            "view view-upload ";
+            "view view-upload view-cull ";
         const std::string vpls = "vpl-paths vpl-refresh vpl-trace vpl-constants ";
         CHECK(passes_of(ShadingPath::deferred, true) ==
               scene + vpls + "gbuffer deferred transparent tone-map");
