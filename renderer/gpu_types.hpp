@@ -97,13 +97,51 @@ struct Vpl {
     glm::vec3 position;
     std::uint32_t map;
     glm::vec3 normal;
+    float radius2;
+    glm::vec3 flux;
+    std::uint32_t first_point;
+    glm::vec3 edges_up;
+    std::uint32_t point_count;
+    glm::vec3 edges_down;
+    float area;
+    glm::vec3 map_origin;
+    float pad0;
+};
+
+struct CellPoint {
+    glm::vec3 position;
+    std::uint32_t material;
+    glm::vec3 normal;
+    float area;
+    glm::vec2 uv;
+    glm::vec2 pad0;
+};
+
+struct DirectPoint {
+    glm::vec3 flux;
+    float area;
+    glm::vec3 albedo;
+    float pad0;
+};
+
+struct LitPoint {
+    glm::vec3 position;
+    float area;
+    glm::vec3 normal;
     float pad0;
     glm::vec3 flux;
     float pad1;
-    glm::vec3 edges_up;
-    float pad2;
-    glm::vec3 edges_down;
-    float pad3;
+};
+
+struct CellLight {
+    glm::vec3 centre;
+    float radius2;
+    glm::vec3 direct;
+    float pad0;
+    glm::vec3 albedo;
+    float area;
+    glm::vec3 indirect;
+    float pad1;
 };
 
 struct VplConstants {

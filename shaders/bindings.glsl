@@ -21,6 +21,16 @@
 // Where light is traced there are no lists.
 #define BINDING_VPL_RECORDS BINDING_LIST_FIRST
 #define BINDING_PATH_CHECKS BINDING_LIST_COUNT
+// Surfels are lit without paths, and shaded with them.
+#define BINDING_SURFELS BINDING_INSTANCES
+#define BINDING_SURFEL_ROWS BINDING_VPLS
+#define BINDING_CELL_POINTS BINDING_PATHS
+#define BINDING_LIT_POINTS BINDING_VPL_PLACES
+#define BINDING_CELL_LIGHT BINDING_FLUX
+#define BINDING_FORM_FACTORS BINDING_LIST_FIRST
+#define BINDING_COVER BINDING_LIST_COUNT
+#define BINDING_BOUNCE BINDING_LIST_ENTRIES
+#define BINDING_DIRECT_POINTS BINDING_MAPS_DUE
 // Nor where VPLs are gathered.
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_LACKING_MASK BINDING_LIST_COUNT
@@ -58,3 +68,7 @@
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
 #define FILL_GROUP 64       // pixels that a work group asks VPLs for
+#define SURFEL_GROUP 64     // surfels, points or pairs of them that a work group lights
+#define COVER_RAYS 16       // that an invocation casts to find how much of a hemisphere is covered
+#define COVER_PARTS 16      // invocations a surfel
+#define MOST_COLUMNS 2048   // surfels that another one gathers from

@@ -38,11 +38,14 @@ vec4 bilinear_texel(Material material, vec2 uv) {
     return mix(top, bottom, f.y);
 }
 
-vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {
-    Material material = materials[triangle.material];
+vec4 colour_at(Material material, vec2 uv) {
     if (material.texel_width == 0u) return material.base_colour;
-    vec2 uv = triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
     return material.base_colour * bilinear_texel(material, uv);
+}
+
+vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {
+    vec2 uv = triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
+    return colour_at(materials[triangle.material], uv);
 }
 
 // Whether a ray passes through a hole of the triangle's mask there.

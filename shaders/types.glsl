@@ -91,16 +91,58 @@ struct TileDepth {
 };
 
 struct Vpl {
-    vec3 position;    // metres, on the surface
-    uint map;         // tile of its depth map in the atlas
-    vec3 normal;      // unit; it emits into this half-space
+    vec3 position;     // metres, on the surface
+    uint map;          // tile of its depth map in the atlas
+    vec3 normal;       // unit; it emits into this half-space
+    float radius2;     // m², of the disc that shines; of surfels
+    vec3 flux;         // reflected flux, lm or W as the lights have it; zero: not alive
+    uint first_point;  // of its cell, of surfels
+    vec3 edges_up;     // 1/m, of its surface along +x, +y, +z, 0 where none is near: vpl_edges.glsl; of traced ones
+    uint point_count;  // of its cell
+    vec3 edges_down;   // along -x, -y, -z
+    float area;        // m², of its cell
+    vec3 map_origin;   // metres, on the surface: where its depth map is drawn
     float pad0;
-    vec3 flux;        // reflected flux, lm or W as the lights have it; zero: not alive
+};
+
+// A point of a surfel's cell, which stands for a part of the surface.
+struct CellPoint {
+    vec3 position;  // metres
+    uint material;
+    vec3 normal;    // unit
+    float area;     // m²
+    vec2 uv;
+    vec2 pad0;
+};
+
+// What a point of a cell has of the lights.
+struct DirectPoint {
+    vec3 flux;    // reflected
+    float area;   // m²; 0: a hole in a mask
+    vec3 albedo;
+    float pad0;
+};
+
+// A point of a cell with all its light.
+struct LitPoint {
+    vec3 position;  // metres
+    float area;     // m²
+    vec3 normal;    // unit
+    float pad0;
+    vec3 flux;      // reflected
     float pad1;
-    vec3 edges_up;    // 1/m, of its surface along +x, +y, +z, 0 where none is near: vpl_edges.glsl
-    float pad2;
-    vec3 edges_down;  // along -x, -y, -z
-    float pad3;
+};
+
+// What a surfel's cell as a whole has of the lights, and of other surfels.
+struct CellLight {
+    vec3 centre;    // metres: where the lights' flux comes from, in the mean
+    float radius2;  // m², of a disc as wide as that
+    vec3 direct;    // reflected flux of the lights
+    float pad0;
+    vec3 albedo;    // in the mean of its points
+    float area;     // m², of its points that are no holes
+    vec3 indirect;  // irradiance from the other surfels, of all bounces together
+    float pad1;
 };
 
 // What all VPLs have in common. A uniform block: shaders/vpl_constants.glsl.

@@ -17,6 +17,6 @@ VplTile vpl_tile(uint map) {
     return VplTile(place * vpl_constants.map_resolution, map / (tiles * tiles));
 }
 
-vec3 vpl_map_origin(Vpl vpl) { return vpl.position + vpl_constants.ray_offset * vpl.normal; }
+vec3 vpl_map_origin(Vpl vpl) { return vpl.map_origin + vpl_constants.ray_offset * vpl.normal; }
 
 float vpl_map_depth(float distance) { return 1.0 - distance * vpl_constants.map_inverse_reach; }

@@ -35,6 +35,8 @@ float geometry_term(Vpl vpl, Surface surface) {
     return cos_surface * (height + depth) / (distance2 * (distance2 + (1.0 - square) * vpl_constants.radius2));
 }
 
+#ifndef SURFELS
+
 // Geometry term times the share of the light that nothing holds back; that is looked up only where there is light.
 float visible_geometry_term(Vpl vpl, Surface surface) {
     float geometry = geometry_term(vpl, surface);
@@ -44,3 +46,31 @@ float visible_geometry_term(Vpl vpl, Surface surface) {
 
 // π times the irradiance from the VPL.
 vec3 irradiance_from_vpl(Vpl vpl, Surface surface) { return vpl.flux * visible_geometry_term(vpl, surface); }
+
+#else
+
+#include "disc.glsl"
+
+layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints { LitPoint lit_points[]; };
+
+// π times the irradiance from the cell of a surfel, were nothing in the way.
+vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
+    if (!is_near(vpl.map_origin - surface.position, vpl.area)) {
+        return vpl.flux * disc_term(vpl.position, vpl.normal, vpl.radius2, surface.position, surface.normal);
+    }
+    vec3 sum = vec3(0.0);
+    for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {
+        LitPoint point = lit_points[i];
+        sum += point.flux * disc_term(point.position, point.normal, point.area / PI, surface.position, surface.normal);
+    }
+    return sum;
+}
+
+// π times the irradiance from the VPL.
+vec3 irradiance_from_vpl(Vpl vpl, Surface surface) {
+    if (vpl.flux == vec3(0.0)) return vec3(0.0);
+    vec3 unoccluded = unoccluded_from_cell(vpl, surface);
+    return unoccluded == vec3(0.0) ? unoccluded : unoccluded * vpl_visibility(vpl, surface);
+}
+
+#endif

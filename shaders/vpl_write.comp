@@ -24,7 +24,7 @@ float first_window(Light light, VplRecord first) {
 
 // Its edges are left to vpl_edges.comp.
 Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint tile) {
-    return Vpl(position, tile, normal, 0.0, flux, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    return Vpl(position, tile, normal, 0.0, flux, 0u, vec3(0.0), 0u, vec3(0.0), 0.0, position, 0.0);
 }
 
 void main() {

@@ -8,6 +8,7 @@
 #include "renderer/passes/forward.hpp"
 #include "renderer/passes/gbuffer.hpp"
 #include "renderer/passes/light_lists.hpp"
+#include "renderer/passes/surfel_light.hpp"
 #include "renderer/passes/transparent.hpp"
 #include "renderer/passes/view_cull.hpp"
 #include "renderer/passes/vpl_gather.hpp"
@@ -51,8 +52,16 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         camera = add_refined_view(graph, frame.request, *frame.refinement);
     }
     const FrameView view = add_view_upload(graph, gpu, camera, size);
+    BufferHandle<gpu::Vpl> mapped;  // VPLs, at least as far as their depth maps are concerned
     const SceneData seen = add_view_cull(graph, gpu, scene, camera);
-    if (configuration.indirect) {
+    if (configuration.indirect && configuration.vpls.placement == VplPlacement::surfels) {
+        const Surfels surfels = add_surfels(graph, gpu, scene, frame.refinement, configuration.vpls);
+        const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels);
+        const Lighting lights{.lights = frame.lights, .buffers = buffers, .shadows = shadows};
+        frame.vpls =
+            add_surfel_light(graph, gpu, scene, surfels, visibility, lights, configuration.vpls.bounces);
+        mapped = surfels.surfels;
+    } else if (configuration.indirect) {
         DueVpls due{
             .paths = add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, configuration.vpls),
             .records = vpl_records(graph)};
@@ -63,6 +72,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
                                   configuration.visibility.method == VplVisibility::maps);
         }
         frame.vpls = add_vpl_trace(graph, gpu, tracing, due, buffers.lights);
+        mapped = frame.vpls->vpls;
     }
     std::optional<VplLight> vpl_light;
     if (frame.vpls) {
@@ -71,7 +81,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
                      .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->paths,
                                                  configuration.visibility, configuration.geometry_bound)};
         if (configuration.visibility.method == VplVisibility::maps) {
-            vpl_light->maps = add_vpl_maps(graph, gpu, tracing, *frame.vpls, vpl_light->common);
+            vpl_light->maps =
+                add_vpl_maps(graph, gpu, tracing, {frame.vpls->paths, mapped}, vpl_light->common);
         } else if (configuration.visibility.method == VplVisibility::rays) {
             vpl_light->rays = tracing;
         }

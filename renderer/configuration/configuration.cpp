@@ -17,6 +17,7 @@ constexpr std::array<std::string_view, all_shading_paths.size()> path_names{
     "tiled-deferred", "clustered-forward", "clustered-deferred"};
 constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
 constexpr std::array<std::string_view, 3> visibility_names{"none", "maps", "rays"};
+constexpr std::array<std::string_view, 2> placement_names{"paths", "surfels"};
 constexpr std::array<std::string_view, 5> interleave_names{"auto", "1", "2", "4", "8"};
 
 std::span<const std::string_view> names_of(ShadingPath /*type*/) {
@@ -27,6 +28,10 @@ std::span<const std::string_view> names_of(Show /*type*/) {
 }
 std::span<const std::string_view> names_of(VplVisibility /*type*/) {
     return visibility_names;
+}
+
+std::span<const std::string_view> names_of(VplPlacement /*type*/) {
+    return placement_names;
 }
 
 std::span<const std::string_view> names_of(Interleave /*type*/) {
@@ -47,6 +52,7 @@ void visit(Config& c, Visitor& visitor) {
     visitor.member("show", c.show);
     visitor.member("indirect", c.indirect);
     visitor.group("vpls", [&] {
+        visitor.member("placement", c.vpls.placement);
         visitor.member("count", c.vpls.count, {0, 1 << 20});
         visitor.member("bounces", c.vpls.bounces, {0, 64});
         visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
@@ -333,6 +339,10 @@ std::string_view to_string(Show show) {
 }
 std::string_view to_string(VplVisibility visibility) {
     return visibility_names[static_cast<std::size_t>(visibility)];
+}
+
+std::string_view to_string(VplPlacement placement) {
+    return placement_names[static_cast<std::size_t>(placement)];
 }
 
 std::string_view to_string(Interleave interleave) {

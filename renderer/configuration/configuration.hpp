@@ -92,6 +92,7 @@ struct NamedConfiguration {
 [[nodiscard]] std::string_view to_string(ShadingPath path);
 [[nodiscard]] std::string_view to_string(Show show);
 [[nodiscard]] std::string_view to_string(VplVisibility visibility);
+[[nodiscard]] std::string_view to_string(VplPlacement placement);
 [[nodiscard]] std::string_view to_string(Interleave interleave);
 
 }  // namespace candela

@@ -33,9 +33,9 @@ struct Lighting {
     ValueHandle<LightTable> lights;
     LightBuffers buffers;
     ShadowMaps shadows;
-    std::optional<VplLight> vpls;  ///< that every surface asks; none: no indirect light, or gathered before
+    std::optional<VplLight> vpls{};  ///< that every surface asks; none: no indirect light, or gathered before
     std::optional<TextureHandle> indirect{};  ///< what was gathered before: see add_vpl_reconstruct
-    std::optional<LightLists> lists;          ///< none: every surface visits every light
+    std::optional<LightLists> lists{};        ///< none: every surface visits every light
     std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();  ///< a surface asks no more of them
     Show show = Show::total;
 };

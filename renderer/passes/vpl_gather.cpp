@@ -61,7 +61,26 @@ std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count) {
     return n;
 }
 
+namespace {
+
+/// Surfels lie in the order of the surfaces: those of a share are spread over all of them.
+std::vector<std::uint32_t> deal_surfels(std::uint32_t count) {
+    constexpr std::uint32_t most_shares = 64;
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t share = 0; share < most_shares; ++share) {
+        for (std::uint32_t i = share; i < count; i += most_shares) {
+            order.push_back(i);
+        }
+    }
+    return order;
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> deal_vpls(const VplPaths& paths) {
+    if (paths.paths.empty()) {
+        return deal_surfels(paths.vpl_count);
+    }
     using Group = std::pair<std::uint32_t, std::uint32_t>;  // light and bounce
     std::map<Group, std::uint32_t> sizes;
     for (const gpu::Path& path : paths.paths) {

@@ -30,7 +30,7 @@ struct DrawnAtlas {
 /// What the node is made of.
 struct MapNode {
     Tracing tracing;
-    Vpls vpls;
+    MappedVpls vpls;
     VplCommon common;
     TextureHandle depth;
     ValueHandle<DrawnAtlas> drawn;
@@ -77,7 +77,7 @@ void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
 
 }  // namespace
 
-TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Vpls& vpls,
+TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const MappedVpls& vpls,
                            const VplCommon& common) {
     return graph.add("vpl-maps", [&](Pass& pass) {
         pass.read(vpls.paths);

@@ -12,7 +12,14 @@
 
 namespace candela {
 
+/// Where VPLs are.
+enum class VplPlacement : std::uint8_t {
+    paths,   ///< where paths of light from the lights meet surfaces: Keller, "Instant Radiosity" (1997)
+    surfels  ///< evenly on all surfaces, whatever the lights do; they gather their light
+};
+
 struct VplSettings {
+    VplPlacement placement = VplPlacement::paths;
     std::uint32_t count = 1024;  ///< at most so many are placed
     std::uint32_t bounces = 8;   ///< 1: light → surface → seen surface
     std::uint32_t seed = 0;
@@ -28,6 +35,7 @@ struct VplPaths {
     std::uint32_t vpl_count = 0;          ///< places for VPLs
     std::uint32_t max_bounces = 0;        ///< of the longest path
     std::uint32_t seed = 0;               ///< of all sequences
+    std::uint32_t point_count = 0;        ///< of the surfels' cells
     std::uint32_t map_count = 0;          ///< tiles for depth maps: `gpu::VplPlace::tile` is below it
     std::vector<std::uint32_t> maps_due;  ///< places of the VPLs whose depth maps are to be drawn
     std::uint32_t debt = 0;               ///< VPLs that are missing, and depth maps that are out of date

@@ -10,7 +10,8 @@ namespace candela {
 struct Vpls {
     ValueHandle<VplPaths> paths;
     BufferHandle<gpu::Vpl> vpls;  ///< `VplPaths::vpl_count` of them, in the order of paths, then bounces
-    BufferHandle<gpu::FluxAccount> flux;  ///< one a path
+    BufferHandle<gpu::FluxAccount> flux;                  ///< one a path
+    std::optional<BufferHandle<gpu::LitPoint>> points{};  ///< of surfels' cells; none: VPLs were traced
 };
 
 /// What is to be traced in a frame, and what it builds on.

@@ -1,0 +1,206 @@
+#include "renderer/passes/surfel_light.hpp"
+
+#include <algorithm>
+
+#include "engine/graph/execute.hpp"
+
+namespace candela {
+namespace {
+
+/// Points of the cells, lit by the lights, and the cells as wholes.
+struct DirectLight {
+    BufferHandle<gpu::DirectPoint> points;
+    BufferHandle<gpu::CellLight> cells;
+};
+
+std::uint32_t groups(std::uint32_t count) {
+    return (count + SURFEL_GROUP - 1) / SURFEL_GROUP;
+}
+
+std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
+    return run.value(surfels.plan).vpl_count;
+}
+
+/// `surfel_count` and what follows from it: shaders/surfel.glsl.
+void set_count(const gl::Program& program, std::uint32_t count) {
+    const SurfelColumns columns = surfel_columns(count);
+    program.set("surfel_count", count);
+    program.set("columns", columns.count);
+    program.set("column_stride", columns.stride);
+}
+
+void dispatch_surfels(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(groups(count), 1, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void find_form_factors(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    constexpr std::uint32_t rows_a_layer = 32768;
+    const std::uint32_t layers = (count + rows_a_layer - 1) / rows_a_layer;
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(groups(surfel_columns(count).count / 2), std::min(count, rows_a_layer), layers);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void find_cover(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    constexpr std::uint32_t most_a_line = 32768;
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(std::min(count, most_a_line), (count + most_a_line - 1) / most_a_line, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Surfels& surfels,
+                             const Lighting& lights) {
+    return graph.add("surfel-light", [&](Pass& pass) {
+        pass.read(surfels.plan);
+        pass.read(surfels.surfels, Usage::storage);
+        pass.read(surfels.points, Usage::storage);
+        pass.read(scene.materials, Usage::storage);
+        pass.read(scene.texels, Usage::storage);
+        read_lighting(pass, lights);
+        const gl::Program& lighter = gpu.program({"surfel_light.comp"}, lighting_variant(lights));
+        const gl::Program& adder = gpu.program({"surfel_cells.comp"});
+        const DirectLight out{
+            .points =
+                pass.write(graph.buffer<gpu::DirectPoint>("directly lit points", 1, Lifetime::persistent),
+                           Usage::storage),
+            .cells = pass.write(graph.buffer<gpu::CellLight>("directly lit cells", 1, Lifetime::persistent),
+                                Usage::storage)};
+        pass.run(
+            [=, &gpu, &lighter, &adder, materials = scene.materials, texels = scene.texels](Execution& run) {
+                const std::uint32_t count = count_of(run, surfels);
+                const std::uint32_t points = run.value(surfels.plan).point_count;
+                run.reserve(out.points, std::max(points, 1U));
+                run.reserve(out.cells, std::max(count, 1U));
+                if (count == 0) {
+                    return;
+                }
+                gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
+                gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
+                gpu.bind_storage(BINDING_MATERIALS, run.object(materials));
+                gpu.bind_storage(BINDING_TEXELS, run.object(texels));
+                gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(out.points));
+                gpu.bind_storage(BINDING_CELL_LIGHT, run.object(out.cells));
+                bind_lighting(gpu, run, lighter, lights);
+                lighter.set("point_count", points);
+                lighter.use();
+                for (std::uint32_t part = 0; part < lighting_parts(run, lights); ++part) {
+                    begin_lighting_part(lighter, part);
+                    gpu.gl().DispatchCompute(groups(points), 1, 1);
+                    gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+                }
+                dispatch_surfels(gpu.gl(), adder, count);
+            });
+        return out;
+    });
+}
+
+}  // namespace
+
+SurfelColumns surfel_columns(std::uint32_t surfels) {
+    const std::uint32_t stride = std::max((surfels + MOST_COLUMNS - 1) / MOST_COLUMNS, 1U);
+    const std::uint32_t count = (surfels + stride - 1) / stride;
+    return {.count = count + count % 2, .stride = stride};
+}
+
+SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                       const Surfels& surfels) {
+    return graph.add("surfel-visibility", [&](Pass& pass) {
+        pass.read(surfels.plan);
+        pass.read(surfels.surfels, Usage::storage);
+        pass.read(surfels.points, Usage::storage);
+        read_tracing(pass, tracing);
+        const gl::Program& factors = gpu.program({"surfel_form_factors.comp"});
+        const gl::Program& cover = gpu.program({"surfel_cover.comp"});
+        const gl::Program& rows = gpu.program({"surfel_rows.comp"});
+        const SurfelVisibility out{
+            .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
+                                       Usage::storage),
+            .rows =
+                pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent), Usage::storage)};
+        const auto hits =
+            pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent), Usage::storage);
+        pass.run([=, &gpu, &factors, &cover, &rows](Execution& run) {
+            const std::uint32_t count = count_of(run, surfels);
+            run.reserve(out.form_factors,
+                        std::max<std::uint64_t>(std::uint64_t{count} * surfel_columns(count).count / 2, 1));
+            run.reserve(out.rows, std::max(count, 1U));
+            run.reserve(hits, std::max(count * COVER_PARTS, 1U));
+            if (count == 0) {
+                return;
+            }
+            gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
+            gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
+            gpu.bind_storage(BINDING_FORM_FACTORS, run.object(out.form_factors));
+            gpu.bind_storage(BINDING_COVER, run.object(hits));
+            gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(out.rows));
+            const float offset = run.value(tracing.metrics).ray_offset();
+            for (const gl::Program* tracer : {&factors, &cover}) {
+                bind_tracing(gpu, run, *tracer, tracing);
+                tracer->set("ray_offset", offset);
+            }
+            find_form_factors(gpu.gl(), factors, count);
+            find_cover(gpu.gl(), cover, count);
+            dispatch_surfels(gpu.gl(), rows, count);
+        });
+        return out;
+    });
+}
+
+Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Surfels& surfels,
+                      const SurfelVisibility& visibility, const Lighting& lights, std::uint32_t bounces) {
+    const DirectLight direct = add_direct_light(graph, gpu, scene, surfels, lights);
+    return graph.add("surfel-bounce", [&](Pass& pass) {
+        pass.read(surfels.plan);
+        pass.read(surfels.surfels, Usage::storage);
+        pass.read(surfels.points, Usage::storage);
+        pass.read(direct.points, Usage::storage);
+        pass.read(visibility.form_factors, Usage::storage);
+        pass.read(visibility.rows, Usage::storage);
+        pass.parameter(bounces);
+        const gl::Program& first = gpu.program({"surfel_bounce.comp"}, {"FIRST"});
+        const gl::Program& further = gpu.program({"surfel_bounce.comp"});
+        const gl::Program& writer = gpu.program({"surfel_write.comp"});
+        const auto cells = pass.write(direct.cells, Usage::storage);
+        const auto irradiance =
+            pass.write(graph.buffer<glm::vec4>("surfel irradiance", 1, Lifetime::persistent), Usage::storage);
+        const Vpls out{
+            .paths = surfels.plan,
+            .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
+            .flux =
+                pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage),
+            .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
+                                 Usage::storage)};
+        pass.run([=, &gpu, &first, &further, &writer](Execution& run) {
+            const std::uint32_t count = count_of(run, surfels);
+            run.reserve(irradiance, std::max(2 * count, 1U));
+            run.reserve(out.vpls, std::max(count, 1U));
+            run.reserve(*out.points, std::max(run.value(surfels.plan).point_count, 1U));
+            if (count == 0) {
+                return;
+            }
+            gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
+            gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
+            gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(direct.points));
+            gpu.bind_storage(BINDING_CELL_LIGHT, run.object(cells));
+            gpu.bind_storage(BINDING_FORM_FACTORS, run.object(visibility.form_factors));
+            gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(visibility.rows));
+            gpu.bind_storage(BINDING_BOUNCE, run.object(irradiance));
+            for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
+                const gl::Program& program = bounce == 2 ? first : further;
+                program.set("bounce", bounce);
+                dispatch_surfels(gpu.gl(), program, count);
+            }
+            gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
+            gpu.bind_storage(BINDING_LIT_POINTS, run.object(*out.points));
+            dispatch_surfels(gpu.gl(), writer, count);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

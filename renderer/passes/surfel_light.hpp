@@ -1,0 +1,36 @@
+#pragma once
+
+#include "engine/graph/frame_graph.hpp"
+#include "renderer/gpu.hpp"
+#include "renderer/passes/bvh.hpp"
+#include "renderer/passes/lighting.hpp"
+#include "renderer/passes/surfels.hpp"
+#include "renderer/passes/vpl_trace.hpp"
+
+namespace candela {
+
+/// What surfels see of each other.
+struct SurfelVisibility {
+    BufferHandle<std::uint32_t> form_factors;  ///< half floats, two a word: `surfel_columns` a row
+    BufferHandle<glm::vec2> rows;  ///< by surfel: scale of its row, share of its hemisphere that is open
+};
+
+/// How many others a surfel gathers from: where they are many, every n-th stands for all.
+struct SurfelColumns {
+    std::uint32_t count = 0;   ///< even
+    std::uint32_t stride = 1;  ///< n
+};
+[[nodiscard]] SurfelColumns surfel_columns(std::uint32_t surfels);
+
+/// Node `surfel-visibility` (compute): form factors between surfels, with a ray for each pair that faces each
+/// other; on geometry.
+[[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                                     const Surfels& surfels);
+
+/// Nodes `surfel-light` (the real lights at the points of the cells) and `surfel-bounce` (what surfels gather
+/// of each other, to `bounces`): the light of surfels, as VPLs.
+[[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                    const Surfels& surfels, const SurfelVisibility& visibility,
+                                    const Lighting& lights, std::uint32_t bounces);
+
+}  // namespace candela

@@ -1,0 +1,13 @@
+// Surfels: points on the surfaces, even in area, that gather light and send it on. Each has a cell of the surface around
+// it, which is known by its points.
+#include "bindings.glsl"
+#include "disc.glsl"
+#include "maths.glsl"
+#include "types.glsl"
+
+uniform uint surfel_count;
+uniform uint columns;  // surfels that each one gathers from: all, or where they are many every column_stride-th
+uniform uint column_stride;
+
+// The surfel that a row has in a column.
+uint surfel_of(uint row, uint column) { return column * column_stride + row % column_stride; }

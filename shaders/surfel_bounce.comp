@@ -1,0 +1,58 @@
+// Surfels gather what others reflect: first of the lights' flux, from where in its cell that falls (FIRST), then of what
+// they have gathered last. One invocation a surfel.
+#include "surfel.glsl"
+
+layout(local_size_x = SURFEL_GROUP) in;
+
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
+layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
+layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
+layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // scale, open share
+layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight cells[]; };
+layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 irradiance[]; };  // of the last bounce and of this one
+
+uniform uint bounce;  // from 2 on
+
+// Irradiance from the lights' flux that a cell reflects.
+vec3 from_lit_cell(Vpl from, uint other) {
+    CellLight cell = cells[other];
+    if (cell.direct == vec3(0.0)) return vec3(0.0);
+    Vpl to = surfels[other];
+    if (!is_near(to.position - from.position, to.area)) {
+        return cell.direct / PI * disc_term(cell.centre, to.normal, cell.radius2, from.position, from.normal);
+    }
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < to.point_count; ++i) {
+        vec3 flux = direct_points[to.first_point + i].flux;
+        if (flux == vec3(0.0)) continue;
+        CellPoint point = cell_points[to.first_point + i];
+        sum += flux / PI * disc_term(point.position, point.normal, point.area / PI, from.position, from.normal);
+    }
+    return sum;
+}
+
+vec3 from_column(Vpl from, uint row, uint column, float factor) {
+    if (factor == 0.0) return vec3(0.0);
+    uint other = surfel_of(row, column);
+#ifdef FIRST
+    return from_lit_cell(from, other);
+#else
+    return factor * cells[other].albedo * irradiance[(bounce % 2u) * surfel_count + other].rgb;
+#endif
+}
+
+void main() {
+    uint id = gl_GlobalInvocationID.x;
+    if (id >= surfel_count) return;
+    Vpl from = surfels[id];
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < columns / 2u; ++i) {
+        vec2 factors = unpackHalf2x16(form_factors[id * (columns / 2u) + i]);
+        if (factors == vec2(0.0)) continue;
+        sum += from_column(from, id, 2u * i, factors.x) + from_column(from, id, 2u * i + 1u, factors.y);
+    }
+    sum *= rows[id].x;
+    irradiance[((bounce + 1u) % 2u) * surfel_count + id] = vec4(sum, 0.0);
+    cells[id].indirect += sum;
+}

@@ -1,0 +1,32 @@
+// How much of a surfel's hemisphere shows surfaces that reflect, by cosine-weighted rays: what the form factors of a row
+// should come to. A part of the rays an invocation, so that none works without bound.
+#include "bvh.glsl"
+#include "sampling.glsl"
+#include "surfel.glsl"
+
+layout(local_size_x = COVER_PARTS) in;
+
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_COVER) writeonly restrict buffer Cover { uint cover[]; };
+
+uniform float ray_offset;  // metres, off the surface
+
+bool reflects(Hit hit, vec3 direction) {
+    if (hit.triangle == NO_TRIANGLE) return false;
+    TraceTriangle triangle = triangles[hit.triangle];
+    return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
+}
+
+void main() {
+    uint id = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+    if (id >= surfel_count) return;
+    Vpl surfel = surfels[id];
+    uint hits = 0u;
+    for (uint i = 0u; i < COVER_RAYS; ++i) {
+        vec2 u = sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, id);
+        vec3 direction = cosine_direction(surfel.normal, u);
+        Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
+        if (reflects(hit, direction)) ++hits;
+    }
+    cover[id * COVER_PARTS + gl_LocalInvocationID.x] = hits;
+}
