@@ -26,7 +26,11 @@ void main() {
     vec3 irradiance = vec3(0.0);
     uint end = min(vpl_constants.count, 2u * (asked_before + asked_now));
     for (uint i = 2u * asked_before + uint(at.x + at.y) % 2u; i < end; i += 2u) {
+#ifdef SURFELS
+        irradiance += irradiance_from_vpl(vpls[i], surface);  // those side by side go into different halves
+#else
         irradiance += irradiance_from_vpl(vpls[vpl_order[i]], surface);
+#endif
     }
     vec4 found = imageLoad(reconstructed, at);
     float weight = 1.0 / (found.a + 0.5);  // half of them send half of what all would

@@ -229,6 +229,19 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<gpu::CellPoint>& poi
     return set;
 }
 
+SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t seed) {
+    constexpr int rounds = 2;
+    const auto spacing = static_cast<float>(std::sqrt(all.area_before.back() / count));
+    const std::vector<gpu::CellPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
+    SurfelGrid grid = grid_of(spread_points(all, count, hash(seed ^ 0x5bd1e995U)), spacing);
+    std::vector<std::uint32_t> owners = assign(grid, points);
+    for (int round = 0; round < rounds; ++round) {
+        grid = grid_of(middles(points, owners, grid.surfels()), spacing);
+        owners = assign(grid, points);
+    }
+    return collect(grid, points, owners);
+}
+
 VplPaths plan_of(const SurfelSet& set) {
     VplPaths plan;
     plan.vpl_count = plan.map_count = static_cast<std::uint32_t>(set.surfels.size());
@@ -258,16 +271,14 @@ SurfelSet place_surfels(std::span<const gpu::TraceTriangle> triangles, const std
     if (all.sides.empty() || count == 0) {
         return {};
     }
-    constexpr int rounds = 2;
-    const auto spacing = static_cast<float>(std::sqrt(all.area_before.back() / count));
-    const std::vector<gpu::CellPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
-    SurfelGrid grid = grid_of(spread_points(all, count, hash(seed ^ 0x5bd1e995U)), spacing);
-    std::vector<std::uint32_t> owners = assign(grid, points);
-    for (int round = 0; round < rounds; ++round) {
-        grid = grid_of(middles(points, owners, grid.surfels()), spacing);
-        owners = assign(grid, points);
+    constexpr int attempts = 4;
+    std::uint32_t wanted = count;
+    SurfelSet set = spread_surfels(all, wanted, seed);
+    for (int i = 1; i < attempts && set.surfels.size() > count; ++i) {
+        wanted = static_cast<std::uint32_t>(std::uint64_t{wanted} * count / set.surfels.size());
+        set = spread_surfels(all, std::max(wanted, 1U), seed);
     }
-    return collect(grid, points, owners);
+    return set;
 }
 
 Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
