@@ -118,7 +118,7 @@ struct CellPoint {
 };
 
 struct DirectPoint {
-    glm::vec3 flux;
+    glm::vec3 arriving;
     float area;
     glm::vec3 albedo;
     float pad0;
@@ -136,6 +136,8 @@ struct LitPoint {
 struct CellLight {
     glm::vec3 centre;
     float radius2;
+    glm::vec3 arriving;
+    float pad2;
     glm::vec3 direct;
     float pad0;
     glm::vec3 albedo;
@@ -177,16 +179,7 @@ struct Path {
     std::uint32_t seed;
     std::uint32_t first_vpl;
     std::uint32_t vpl_count;
-    glm::vec2 start{-1.0F};
-    std::uint32_t kept = 0;
-    std::uint32_t bounces = 0;
     bool operator==(const Path&) const = default;
-};
-
-struct VplPlace {
-    float weight;
-    std::uint32_t tile;
-    bool operator==(const VplPlace&) const = default;
 };
 
 enum class VplState : std::uint32_t { placed, escaped };
@@ -198,24 +191,6 @@ struct VplRecord {
     float pad0;
     glm::vec3 throughput;
     float pad1;
-};
-
-struct CheckedPath {
-    std::uint32_t light;
-    std::uint32_t index;
-    std::uint32_t seed;
-    std::uint32_t first_tile;
-    std::uint32_t bounces;
-    std::uint32_t tested;
-    std::uint32_t canonical;
-    std::uint32_t traced_seed;
-};
-
-struct PathCheck {
-    glm::vec2 start;
-    glm::vec2 canonical;
-    std::uint32_t bounces;
-    std::uint32_t pad0;
 };
 
 struct FluxAccount {

@@ -145,7 +145,11 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
     }
     runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
-    set_vpl_clock(world);
+    // A frame that was cut short is not built upon, nor is another world's.
+    if (std::exchange(world_, nullptr) != &world) {
+        ++refinement_clock_.epoch;
+        refine_ = false;
+    }
     set_refinement_clock();
 
     const auto start = std::chrono::steady_clock::now();
@@ -155,15 +159,11 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
         last_passes_ = runtime_.run(world, Timing::on).passes;
     }
     world_ = &world;
-    if (frame_.vpls) {
-        const VplPaths& vpls = runtime_.value(frame_.vpls->paths);
-        vpl_work_ = vpls.debt > 0 || vpls.stale > 0;
-    }
     if (frame_.refinement) {
         const std::uint32_t sets = runtime_.value(*frame_.refinement).set + 1;
         constexpr std::uint32_t samples_of_direct_light = 64;
         const std::uint32_t wanted = configuration_.refinement.frames;
-        refine_ = !vpl_work_ && sets < (frame_.vpls ? wanted : std::min(wanted, samples_of_direct_light));
+        refine_ = sets < (frame_.vpls ? wanted : std::min(wanted, samples_of_direct_light));
     }
     pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), this->quality()});
     match_times(backend_.timer().collect());
@@ -201,21 +201,9 @@ Quality Renderer::quality_now(const World& world, const ViewRequest& request) {
 void Renderer::learn_cost(const PendingFrame& frame) {
     const FrameCost cost = cost_of(frame.report);
     if (budget_ms() > 0.0 && cost.pixels > 0.0) {
-        const std::uint32_t configured = interleaving(configuration_.interleave, configuration_.vpls.count);
+        const std::uint32_t configured =
+            interleaving(configuration_.interleave, configuration_.vpls.count, size_);
         quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms());
-    }
-}
-
-/// VPLs of another world, or of a frame that was cut short, are not built upon.
-void Renderer::set_vpl_clock(const World& world) {
-    if (std::exchange(world_, nullptr) != &world) {
-        ++vpl_clock_.epoch;
-        ++refinement_clock_.epoch;
-        vpl_work_ = refine_ = false;
-    }
-    vpl_clock_.round += vpl_work_ ? 1 : 0;
-    if (frame_.vpl_clock) {
-        runtime_.set(*frame_.vpl_clock, vpl_clock_);
     }
 }
 
@@ -286,26 +274,17 @@ std::string Renderer::describe(GraphFormat format) const {
 }
 
 VplReport Renderer::report_vpls(const Vpls& vpls) const {
-    const VplPaths& plan = runtime_.value(vpls.paths);
+    const VplPlan& plan = runtime_.value(vpls.plan);
     auto placed = backend_.buffer(runtime_.object(vpls.vpls)).download<gpu::Vpl>();
     auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
     placed.resize(plan.vpl_count);
-    accounts.resize(plan.paths.size());
+    accounts.resize(vpls.points ? std::min(plan.vpl_count, 1U) : plan.paths.size());
     const auto alive =
         std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
-    const auto made = [&](const PassRecord& pass) { return pass.name == "vpl-trace" && pass.ran; };
-    const bool any_made = std::ranges::any_of(last_passes_, made);
-    const auto traced = [](std::uint32_t sum, const gpu::Path& path) {
-        return sum + path.bounces - path.kept;
-    };
     return {.requested = configuration_.vpls.count,
             .alive = static_cast<std::uint32_t>(alive),
             .paths = static_cast<std::uint32_t>(plan.paths.size()),
             .rays = count_rays(plan.paths, placed),
-            .debt = plan.debt,
-            .stale = plan.stale,
-            .traced = any_made ? std::accumulate(plan.paths.begin(), plan.paths.end(), 0U, traced) : 0,
-            .maps_drawn = any_made ? static_cast<std::uint32_t>(plan.maps_due.size()) : 0,
             .interleave = frame_.interleave,
             .lacking_pixels = count_lacking(),
             .flux = sum_up(accounts)};

@@ -25,7 +25,8 @@ struct Target {
     glm::uvec2 size{1};  ///< pixels
 };
 
-/// Where the light went, in the lights' unit of flux: emitted = absorbed + escaped + truncated + roulette.
+/// Where the light went, in the lights' unit of flux: emitted = absorbed + escaped + truncated + roulette. Of
+/// surfels `emitted` is what arrives of it at surfaces, and the sum is right to within their spacing.
 struct EnergyAccount {
     glm::dvec3 emitted{0.0};
     glm::dvec3 absorbed{0.0};
@@ -40,12 +41,8 @@ struct EnergyAccount {
 struct VplReport {
     std::uint32_t requested = 0;
     std::uint32_t alive = 0;
-    std::uint32_t paths = 0;
+    std::uint32_t paths = 0;           ///< 0 of surfels
     std::uint32_t rays = 0;            ///< segments of the paths, those that hit nothing included
-    std::uint32_t debt = 0;            ///< VPLs that are missing, and depth maps of VPLs that are out of date
-    std::uint32_t stale = 0;           ///< VPLs that light the scene rightly, but will give way to others
-    std::uint32_t traced = 0;          ///< VPLs that were made anew in the last frame
-    std::uint32_t maps_drawn = 0;      ///< depth maps of VPLs that were due in it
     std::uint32_t interleave = 1;      ///< n, where a pixel asks one in n² VPLs
     std::uint32_t lacking_pixels = 0;  ///< that asked more of them, as too few neighbours fitted
     EnergyAccount flux;
@@ -140,7 +137,6 @@ class Renderer {
     [[nodiscard]] double budget_ms() const;
     [[nodiscard]] Quality quality_now(const World& world, const ViewRequest& request);
     void learn_cost(const PendingFrame& frame);
-    void set_vpl_clock(const World& world);
     void set_refinement_clock();
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls) const;
@@ -159,9 +155,7 @@ class Renderer {
     Clock::time_point last_move_;
     FrameHandles frame_;
     RefinementClock refinement_clock_;
-    bool refine_ = false;  // whether the next frame is to add another set of VPLs to the mean
-    VplClock vpl_clock_;
-    bool vpl_work_ = false;         // whether the last frame left some for its VPLs
+    bool refine_ = false;           // whether the next frame is to add another set of VPLs to the mean
     const World* world_ = nullptr;  // of the last frame, if that was finished
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;

@@ -37,6 +37,7 @@ Configuration choose_configuration(const Options& options, bool in_window) {
     override_by(options.show, configuration.show);
     override_by(options.path, configuration.path);
     override_by(options.indirect, configuration.indirect);
+    override_by(options.vpl_placement, configuration.vpls.placement);
     override_by(options.vpls, configuration.vpls.count);
     override_by(options.bounces, configuration.vpls.bounces);
     override_by(options.seed, configuration.vpls.seed);

@@ -136,9 +136,13 @@ void declare(CLI::App& app, Options& options) {
                                                         "how visible surfaces meet their lights");
     add_choice<std::optional<bool>, bool>(app, "--indirect", options.indirect, {{"on", true}, {"off", false}},
                                           "light by way of surfaces");
+    add_choice<std::optional<VplPlacement>, VplPlacement>(
+        app, "--vpl-placement", options.vpl_placement,
+        {{"paths", VplPlacement::paths}, {"surfels", VplPlacement::surfels}},
+        "virtual lights where paths from the lights meet surfaces, or evenly on all surfaces");
     add_number(app, "--vpls", options.vpls, 0U, "virtual point lights");
     add_number(app, "--bounces", options.bounces, 0U, "indirect bounces: 0 is direct light only");
-    add_number(app, "--seed", options.seed, 0U, "of the light paths");
+    add_number(app, "--seed", options.seed, 0U, "of the places of virtual lights");
     add_choice<std::optional<VplVisibility>, VplVisibility>(
         app, "--vpl-visibility", options.vpl_visibility,
         {{"none", VplVisibility::none}, {"maps", VplVisibility::maps}, {"rays", VplVisibility::rays}},

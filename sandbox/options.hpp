@@ -29,6 +29,7 @@ struct Options {
     std::optional<Show> show;
     std::optional<ShadingPath> path;
     std::optional<bool> indirect;
+    std::optional<VplPlacement> vpl_placement;
     std::optional<std::uint32_t> vpls;
     std::optional<std::uint32_t> bounces;  ///< indirect ones: 1 is light, surface, seen surface
     std::optional<std::uint32_t> seed;

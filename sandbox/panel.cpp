@@ -188,8 +188,7 @@ void draw_light_counts(const LightReport& lights) {
 }
 
 void draw_vpls(const VplReport& vpls) {
-    text(fmt::format("{} of {} VPLs on {} paths", vpls.alive, vpls.requested, vpls.paths));
-    text(fmt::format("still to make: {}; to give way: {}", vpls.debt, vpls.stale));
+    text(fmt::format("{} of {} VPLs alive", vpls.alive, vpls.requested));
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g,
                          line.value.b));
@@ -229,12 +228,12 @@ void Panel::draw_configuration(Configuration& wanted, const Quality& present) {
     draw_list_settings(parts_of(wanted.path).list, wanted.lists);
     combo("show", wanted.show, std::array{Show::total, Show::direct, Show::indirect});
     ImGui::Checkbox("indirect light", &wanted.indirect);
+    combo("placement", wanted.vpls.placement, std::array{VplPlacement::paths, VplPlacement::surfels});
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("VPLs where paths from the lights meet surfaces, or evenly on all surfaces");
     drag("VPLs", wanted.vpls.count, 1.0F);
     drag("bounces", wanted.vpls.bounces, 0.05F);
     drag("seed", wanted.vpls.seed, 0.05F);
-    drag("budget a frame", wanted.vpls.budget, 0.2F);
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("VPLs, and maps of them, made anew in a frame; 0: all that are due");
     draw_visibility(wanted.visibility);
     combo("interleave", wanted.interleave,
           std::array{Interleave::automatic, Interleave::one, Interleave::two, Interleave::four,

@@ -9,28 +9,27 @@
 #define BINDING_TRIANGLES 6
 #define BINDING_TEXELS 7
 #define BINDING_PATHS 8
-#define BINDING_VPL_PLACES 9
+#define BINDING_PATH_WEIGHTS 9
 #define BINDING_FLUX 10
 #define BINDING_LIST_FIRST 11
 #define BINDING_LIST_COUNT 12
 #define BINDING_LIST_ENTRIES 13
-#define BINDING_MAPS_DUE 14
+#define BINDING_DIRECT_POINTS 14
 #define BINDING_LAST 14
 // Where lists are culled no meshes are drawn.
 #define BINDING_TILE_DEPTHS BINDING_INSTANCES
 // Where light is traced there are no lists.
 #define BINDING_VPL_RECORDS BINDING_LIST_FIRST
-#define BINDING_PATH_CHECKS BINDING_LIST_COUNT
 // Surfels are lit without paths, and shaded with them.
 #define BINDING_SURFELS BINDING_INSTANCES
 #define BINDING_SURFEL_ROWS BINDING_VPLS
 #define BINDING_CELL_POINTS BINDING_PATHS
-#define BINDING_LIT_POINTS BINDING_VPL_PLACES
+#define BINDING_LIT_POINTS BINDING_PATH_WEIGHTS
 #define BINDING_CELL_LIGHT BINDING_FLUX
+#define BINDING_FLUX_ACCOUNT BINDING_BVH_NODES
 #define BINDING_FORM_FACTORS BINDING_LIST_FIRST
 #define BINDING_COVER BINDING_LIST_COUNT
 #define BINDING_BOUNCE BINDING_LIST_ENTRIES
-#define BINDING_DIRECT_POINTS BINDING_MAPS_DUE
 // Nor where VPLs are gathered.
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_LACKING_MASK BINDING_LIST_COUNT
@@ -72,3 +71,4 @@
 #define COVER_RAYS 16       // that an invocation casts to find how much of a hemisphere is covered
 #define COVER_PARTS 16      // invocations a surfel
 #define MOST_COLUMNS 2048   // surfels that another one gathers from
+#define MOST_CHANGED_BOXES 8  // that passes are told of; more are told as one

@@ -24,7 +24,8 @@ vec3 from_lit_cell(Vpl from, uint other) {
     }
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < to.point_count; ++i) {
-        vec3 flux = direct_points[to.first_point + i].flux;
+        DirectPoint direct = direct_points[to.first_point + i];
+        vec3 flux = direct.albedo * direct.arriving;
         if (flux == vec3(0.0)) continue;
         CellPoint point = cell_points[to.first_point + i];
         sum += flux / PI * disc_term(point.position, point.normal, point.area / PI, from.position, from.normal);

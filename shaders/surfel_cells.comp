@@ -12,6 +12,7 @@ void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= surfel_count) return;
     Vpl surfel = surfels[id];
+    vec3 arriving = vec3(0.0);
     vec3 direct = vec3(0.0);
     vec3 albedo = vec3(0.0);
     float area = 0.0;
@@ -20,16 +21,18 @@ void main() {
     float second = 0.0;
     for (uint i = 0u; i < surfel.point_count; ++i) {
         DirectPoint point = direct_points[surfel.first_point + i];
-        direct += point.flux;
+        vec3 flux = point.albedo * point.arriving;
+        arriving += point.arriving;
+        direct += flux;
         albedo += point.area * point.albedo;
         area += point.area;
-        float w = dot(point.flux, vec3(1.0));
+        float w = dot(flux, vec3(1.0));
         vec3 off = cell_points[surfel.first_point + i].position - surfel.position;
         weight += w;
         first += w * off;
         second += w * dot(off, off);
     }
-    CellLight cell = CellLight(surfel.position, surfel.radius2, direct, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
+    CellLight cell = CellLight(surfel.position, surfel.radius2, arriving, 0.0, direct, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
     if (area > 0.0) cell.albedo = albedo / area;
     if (weight > 0.0) {
         vec3 mean = first / weight;

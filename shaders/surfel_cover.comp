@@ -1,6 +1,7 @@
 // How much of a surfel's hemisphere shows surfaces that reflect, by cosine-weighted rays: what the form factors of a row
 // should come to. A part of the rays an invocation, so that none works without bound.
 #include "bvh.glsl"
+#include "changed_boxes.glsl"
 #include "sampling.glsl"
 #include "surfel.glsl"
 
@@ -17,14 +18,22 @@ bool reflects(Hit hit, vec3 direction) {
     return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
 }
 
+vec3 ray_direction(Vpl surfel, uint id, uint i) {
+    return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, id));
+}
+
 void main() {
     uint id = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
     if (id >= surfel_count) return;
     Vpl surfel = surfels[id];
+    bool changed = false;
+    for (uint i = 0u; i < COVER_RAYS && !changed; ++i) {
+        changed = may_have_changed(surfel.position, ray_direction(surfel, id, i), 1.0 / 0.0);
+    }
+    if (!changed) return;
     uint hits = 0u;
     for (uint i = 0u; i < COVER_RAYS; ++i) {
-        vec2 u = sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, id);
-        vec3 direction = cosine_direction(surfel.normal, u);
+        vec3 direction = ray_direction(surfel, id, i);
         Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
         if (reflects(hit, direction)) ++hits;
     }

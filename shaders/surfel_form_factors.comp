@@ -1,13 +1,14 @@
 // The share of a surfel's hemisphere that each of its columns takes up, 0 where it does not see it. Two columns an
 // invocation; work groups go along columns, then rows.
 #include "bvh.glsl"
+#include "changed_boxes.glsl"
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
-layout(std430, binding = BINDING_FORM_FACTORS) writeonly restrict buffer FormFactors { uint form_factors[]; };
+layout(std430, binding = BINDING_FORM_FACTORS) restrict buffer FormFactors { uint form_factors[]; };
 
 uniform float ray_offset;  // metres, off both surfaces
 
@@ -29,6 +30,13 @@ bool sees(Vpl from, Vpl to) {
     return !any_hit(origin, target - origin, 0.0, 1.0);
 }
 
+bool pair_may_have_changed(uint row, uint column) {
+    uint other = surfel_of(row, column);
+    if (column >= columns || other >= surfel_count) return everything_changed;
+    vec3 from = surfels[row].position;
+    return may_have_changed(from, surfels[other].position - from, 1.0);
+}
+
 float visible_form_factor(uint row, uint column) {
     uint other = surfel_of(row, column);
     if (column >= columns || other >= surfel_count || other == row) return 0.0;
@@ -42,6 +50,7 @@ void main() {
     uint pair = gl_GlobalInvocationID.x;
     uint row = gl_WorkGroupID.y + gl_NumWorkGroups.y * gl_WorkGroupID.z;
     if (2u * pair >= columns || row >= surfel_count) return;
+    if (!pair_may_have_changed(row, 2u * pair) && !pair_may_have_changed(row, 2u * pair + 1u)) return;
     vec2 factors = vec2(visible_form_factor(row, 2u * pair), visible_form_factor(row, 2u * pair + 1u));
     form_factors[row * (columns / 2u) + pair] = packHalf2x16(factors);
 }

@@ -25,7 +25,7 @@ void main() {
     irradiance[0] = vec3(0.0);
     gather_lights(surfaces, pixels, irradiance);
     float area = colour.a < material.alpha_cutoff ? 0.0 : point.area;
-    vec3 flux = colour.rgb * irradiance[0] * area;
-    if (lights_before > 0u) flux += direct_points[id].flux;
-    direct_points[id] = DirectPoint(flux, area, colour.rgb, 0.0);
+    vec3 arriving = irradiance[0] * area;
+    if (lights_before > 0u) arriving += direct_points[id].arriving;
+    direct_points[id] = DirectPoint(arriving, area, colour.rgb, 0.0);
 }

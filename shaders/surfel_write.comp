@@ -18,7 +18,7 @@ void main() {
     for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {
         CellPoint point = cell_points[i];
         DirectPoint direct = direct_points[i];
-        vec3 flux = direct.flux + direct.area * direct.albedo * cell.indirect;
+        vec3 flux = direct.albedo * (direct.arriving + direct.area * cell.indirect);
         lit_points[i] = LitPoint(point.position, point.area, point.normal, 0.0, flux, 0.0);
     }
     vec3 spread = cell.area * cell.albedo * cell.indirect;

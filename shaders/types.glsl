@@ -117,8 +117,8 @@ struct CellPoint {
 
 // What a point of a cell has of the lights.
 struct DirectPoint {
-    vec3 flux;    // reflected
-    float area;   // m²; 0: a hole in a mask
+    vec3 arriving;  // flux
+    float area;     // m²; 0: a hole in a mask
     vec3 albedo;
     float pad0;
 };
@@ -137,7 +137,9 @@ struct LitPoint {
 struct CellLight {
     vec3 centre;    // metres: where the lights' flux comes from, in the mean
     float radius2;  // m², of a disc as wide as that
-    vec3 direct;    // reflected flux of the lights
+    vec3 arriving;  // flux of the lights
+    float pad2;
+    vec3 direct;    // what it reflects of that
     float pad0;
     vec3 albedo;    // in the mean of its points
     float area;     // m², of its points that are no holes
@@ -178,21 +180,12 @@ struct TraceTriangle {
 };
 
 struct Path {
-    vec3 flux;        // of its light
+    vec3 flux;       // of its light
     uint light;
-    uint index;       // within the light's sequence
-    uint seed;        // of the light's sequence
-    uint first_vpl;   // its first place
-    uint vpl_count;   // bounces that the path may make, at least 1: its places
-    vec2 start;       // on its light, in [0, 1)^2; negative: at its point of the sequence
-    uint kept;        // leading bounces that an earlier frame has recorded
-    uint bounces;     // leading ones that there are; the rest, if any, is still to be traced
-};
-
-// Place of a bounce of a path, and so of a VPL.
-struct VplPlace {
-    float weight;  // share of the light's flux that the path carries into the bounce
-    uint tile;     // of the bounce's record and of its VPL's depth map
+    uint index;      // within the light's sequence
+    uint seed;       // of the light's sequence
+    uint first_vpl;  // of its bounces
+    uint vpl_count;  // bounces that the path may make, at least 1
 };
 
 // A bounce without its flux.
@@ -207,25 +200,6 @@ struct VplRecord {
 
 #define VPL_PLACED 0u
 #define VPL_ESCAPED 1u
-
-// A path whose records are to be tested against the scene as it is now.
-struct CheckedPath {
-    uint light;
-    uint index;
-    uint seed;         // of the light's sequence
-    uint first_tile;   // of its tiles in the list of them
-    uint bounces;      // that have records
-    uint tested;       // leading segments that may have changed
-    uint canonical;    // 1: starts at its point of the sequence, of its light as it is now
-    uint traced_seed;  // of the sequence by which its records were made
-};
-
-struct PathCheck {
-    vec2 start;      // on its light as it is now, in [0, 1]^2
-    vec2 canonical;  // its point of the sequence
-    uint bounces;    // leading ones that stay
-    uint pad0;
-};
 
 struct FluxAccount {
     vec3 emitted;

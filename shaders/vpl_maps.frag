@@ -1,6 +1,7 @@
 // How far a VPL sees in the direction of a texel's centre.
 #include "bindings.glsl"
 #include "bvh.glsl"
+#include "changed_boxes.glsl"
 #include "types.glsl"
 #include "vpl_atlas.glsl"
 
@@ -17,6 +18,7 @@ void main() {
     vec3 tangent, bitangent;
     basis_around(vpl.normal, tangent, bitangent);
     vec3 direction = local.x * tangent + local.y * bitangent + local.z * vpl.normal;
+    if (!may_have_changed(vpl_map_origin(vpl), direction, 1.0 / 0.0)) discard;
     Hit hit = closest_hit(vpl_map_origin(vpl), direction, 0.0, 1.0 / 0.0);
     gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(hit.t);
 }

@@ -1,11 +1,7 @@
-// One point for each map that is due; vpl_maps.geom makes a tile of it.
-#include "bindings.glsl"
-
-layout(std430, binding = BINDING_MAPS_DUE) readonly restrict buffer MapsDue { uint maps_due[]; };
-
-flat out uint due_vpl;
+// One point for each VPL; vpl_maps.geom makes a tile of it.
+flat out uint vpl_id;
 
 void main() {
-    due_vpl = maps_due[gl_VertexID];
+    vpl_id = uint(gl_VertexID);
     gl_Position = vec4(0.0);
 }

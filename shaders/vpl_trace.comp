@@ -1,38 +1,63 @@
 // Traces paths of light from the lights, one segment a dispatch: Keller, "Instant Radiosity" (1997). One invocation a path.
-// Blended surfaces are not among the triangles: light passes through them unchanged. Where a path goes is recorded without
-// its flux, so that a later frame can keep the leading bounces that are still right and give them other flux.
+// Blended surfaces are not among the triangles: light passes through them unchanged.
 #include "bindings.glsl"
+#include "bvh.glsl"
+#include "emission.glsl"
 #include "types.glsl"
-#include "vpl_path.glsl"
 
 layout(local_size_x = 32) in;
 
+layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_PATHS) readonly restrict buffer Paths { Path paths[]; };
-layout(std430, binding = BINDING_VPL_PLACES) readonly restrict buffer Places { VplPlace places[]; };
 layout(std430, binding = BINDING_VPL_RECORDS) restrict buffer Records { VplRecord records[]; };
 
 uniform uint path_count;
 uniform uint bounce;  // at the segment's end, from 1 on
+uniform float ray_offset;  // metres, off the surface
 
-uint tile_of(Path path, uint of_bounce) { return places[path.first_vpl + of_bounce - 1u].tile; }
+struct Ray {
+    vec3 origin;
+    vec3 direction;  // unit
+};
+
+// What a segment that carries `throughput` times its light's flux finds at its end.
+VplRecord follow(Ray ray, vec3 throughput) {
+    Hit hit = closest_hit(ray.origin, ray.direction, 0.0, 1.0 / 0.0);
+    if (hit.triangle == NO_TRIANGLE) return VplRecord(ray.origin, VPL_ESCAPED, ray.direction, 0.0, vec3(0.0), 0.0);
+    TraceTriangle triangle = triangles[hit.triangle];
+    vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
+    bool from_front = dot(front, ray.direction) < 0.0;
+    vec3 normal = from_front ? front : -front;
+    vec3 albedo = from_front || is_double_sided(triangle.material) ? hit_colour(triangle, hit.barycentric).rgb : vec3(0.0);
+    vec3 position = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
+    return VplRecord(position, VPL_PLACED, normal, 0.0, throughput * albedo, 0.0);
+}
+
+// Segment of a path from the light on; `u` in [0, 1]².
+Ray first_segment(Light light, vec2 u) {
+    Ray ray;
+    sample_emission(light, u, ray.origin, ray.direction);
+    return ray;
+}
+
+// Segment of path `index` from its VPL of this bounce on.
+Ray next_segment(VplRecord vpl, uint index, uint bounce, uint seed) {
+    return Ray(vpl.position + ray_offset * vpl.normal, cosine_direction(vpl.normal, sample_2d(index, bounce, seed)));
+}
 
 Ray segment(Path path, VplRecord last) {
     if (bounce > 1u) return next_segment(last, path.index, bounce - 1u, path.seed);
-    vec2 start = path.start.x < 0.0 ? canonical_start(path.index, path.seed) : path.start;
-    return first_segment(lights[path.light], start);
+    return first_segment(lights[path.light], sample_2d(path.index, 0u, path.seed));
 }
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= path_count) return;
     Path path = paths[id];
-    if (bounce <= path.kept || bounce > path.bounces) return;
+    if (bounce > path.vpl_count) return;
+    uint place = path.first_vpl + bounce - 1u;
     VplRecord last = VplRecord(vec3(0.0), VPL_PLACED, vec3(0.0), 0.0, vec3(1.0), 0.0);
-    if (bounce > 1u) last = records[tile_of(path, bounce - 1u)];
-    if (last.state == VPL_ESCAPED) {
-        // Bounces that a path no longer comes to are marked like the last that it came to.
-        records[tile_of(path, bounce)] = last;
-        return;
-    }
-    records[tile_of(path, bounce)] = follow(segment(path, last), last.throughput);
+    if (bounce > 1u) last = records[place - 1u];
+    // Bounces that a path does not come to are marked like the last that it came to.
+    records[place] = last.state == VPL_ESCAPED ? last : follow(segment(path, last), last.throughput);
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 32) in;
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_PATHS) readonly restrict buffer Paths { Path paths[]; };
-layout(std430, binding = BINDING_VPL_PLACES) readonly restrict buffer Places { VplPlace places[]; };
+layout(std430, binding = BINDING_PATH_WEIGHTS) readonly restrict buffer Weights { float weights[]; };
 layout(std430, binding = BINDING_VPL_RECORDS) readonly restrict buffer Records { VplRecord records[]; };
 layout(std430, binding = BINDING_VPLS) writeonly restrict buffer Vpls { Vpl vpls[]; };
 layout(std430, binding = BINDING_FLUX) writeonly restrict buffer Flux { FluxAccount flux[]; };
@@ -23,8 +23,8 @@ float first_window(Light light, VplRecord first) {
 }
 
 // Its edges are left to vpl_edges.comp.
-Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint tile) {
-    return Vpl(position, tile, normal, 0.0, flux, 0u, vec3(0.0), 0u, vec3(0.0), 0.0, position, 0.0);
+Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint map) {
+    return Vpl(position, map, normal, 0.0, flux, 0u, vec3(0.0), 0u, vec3(0.0), 0.0, position, 0.0);
 }
 
 void main() {
@@ -35,21 +35,22 @@ void main() {
 
     for (uint i = 0u; i < path.vpl_count; ++i) {
         uint place = path.first_vpl + i;
-        vpls[place] = make_vpl(vec3(0.0), vec3(0.0), vec3(0.0), places[place].tile);
+        vpls[place] = make_vpl(vec3(0.0), vec3(0.0), vec3(0.0), place);
     }
     FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     vec3 throughput = vec3(1.0);
     float window = 1.0;
     vec3 reflected = vec3(0.0);  // at the bounce before
-    for (uint bounce = 1u; bounce <= path.bounces; ++bounce) {
-        VplPlace place = places[path.first_vpl + bounce - 1u];
-        vec3 carried = path.flux * (place.weight * window) * throughput;
+    for (uint bounce = 1u; bounce <= path.vpl_count; ++bounce) {
+        uint place = path.first_vpl + bounce - 1u;
+        float weight = weights[place];
+        vec3 carried = path.flux * (weight * window) * throughput;
         if (bounce == 1u) {
             account.emitted = carried;
         } else {
             account.roulette -= carried - reflected;
         }
-        VplRecord record = records[place.tile];
+        VplRecord record = records[place];
         if (record.state == VPL_ESCAPED) {
             account.escaped += carried;
             break;
@@ -60,13 +61,13 @@ void main() {
             carried *= window;
         }
         throughput = record.throughput;
-        reflected = path.flux * (place.weight * window) * throughput;
+        reflected = path.flux * (weight * window) * throughput;
         account.absorbed += carried - reflected;
-        vpls[path.first_vpl + bounce - 1u] = make_vpl(record.position, record.normal, reflected, place.tile);
+        vpls[place] = make_vpl(record.position, record.normal, reflected, place);
 
         if (bounce == max_bounces) {
             account.truncated += reflected;
-        } else if (bounce == path.bounces) {
+        } else if (bounce == path.vpl_count) {
             account.roulette += reflected;
         }
     }

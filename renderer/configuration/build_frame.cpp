@@ -52,44 +52,37 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         camera = add_refined_view(graph, frame.request, *frame.refinement);
     }
     const FrameView view = add_view_upload(graph, gpu, camera, size);
-    BufferHandle<gpu::Vpl> mapped;  // VPLs, at least as far as their depth maps are concerned
     const SceneData seen = add_view_cull(graph, gpu, scene, camera);
+    std::optional<MappedVpls> mapped;
     if (configuration.indirect && configuration.vpls.placement == VplPlacement::surfels) {
+        const ValueHandle<SceneMotion> motion = add_scene_motion(graph, scene);
         const Surfels surfels = add_surfels(graph, gpu, scene, frame.refinement, configuration.vpls);
-        const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels);
+        const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels, motion);
         const Lighting lights{.lights = frame.lights, .buffers = buffers, .shadows = shadows};
         frame.vpls =
             add_surfel_light(graph, gpu, scene, surfels, visibility, lights, configuration.vpls.bounces);
-        mapped = surfels.surfels;
+        mapped = MappedVpls{surfels.plan, surfels.surfels, motion, surfels.set};
     } else if (configuration.indirect) {
-        DueVpls due{
-            .paths = add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, configuration.vpls),
-            .records = vpl_records(graph)};
-        if (configuration.vpls.budget > 0) {
-            frame.vpl_clock = graph.import_value<VplClock>("vpl clock");
-            due = add_vpl_refresh(graph, gpu, scene, tracing,
-                                  {due, frame.lights, buffers.lights, *frame.vpl_clock}, configuration.vpls,
-                                  configuration.visibility.method == VplVisibility::maps);
-        }
-        frame.vpls = add_vpl_trace(graph, gpu, tracing, due, buffers.lights);
-        mapped = frame.vpls->vpls;
+        const ValueHandle<VplPlan> plan =
+            add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, configuration.vpls);
+        frame.vpls = add_vpl_trace(graph, gpu, tracing, plan, buffers.lights);
+        mapped = MappedVpls{plan, frame.vpls->vpls, {}, {}};
     }
     std::optional<VplLight> vpl_light;
     if (frame.vpls) {
         vpl_light =
             VplLight{.vpls = *frame.vpls,
-                     .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->paths,
+                     .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
                                                  configuration.visibility, configuration.geometry_bound)};
         if (configuration.visibility.method == VplVisibility::maps) {
-            vpl_light->maps =
-                add_vpl_maps(graph, gpu, tracing, {frame.vpls->paths, mapped}, vpl_light->common);
+            vpl_light->maps = add_vpl_maps(graph, gpu, tracing, *mapped, vpl_light->common);
         } else if (configuration.visibility.method == VplVisibility::rays) {
             vpl_light->rays = tracing;
         }
     }
     const bool shows_indirect = vpl_light && configuration.show != Show::direct;
     frame.interleave = shows_indirect
-                           ? std::max(interleaving(configuration.interleave, configuration.vpls.count),
+                           ? std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
                                       extent.least_interleave)
                            : 1;
 

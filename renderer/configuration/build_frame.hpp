@@ -11,7 +11,7 @@
 #include "renderer/passes/shadow_maps.hpp"
 #include "renderer/passes/view.hpp"
 #include "renderer/passes/vpl_reconstruct.hpp"
-#include "renderer/passes/vpl_refresh.hpp"
+#include "renderer/passes/vpl_trace.hpp"
 
 namespace candela {
 
@@ -23,8 +23,7 @@ struct FrameHandles {
     ValueHandle<LightTable> lights;
     ValueHandle<ShadowPlan> shadows;
     ValueHandle<DrawnShadows> drawn_shadows;
-    std::optional<Vpls> vpls;                        ///< none without indirect light
-    std::optional<ValueHandle<VplClock>> vpl_clock;  ///< imported; none where all VPLs are made anew at once
+    std::optional<Vpls> vpls;                                      ///< none without indirect light
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::optional<ValueHandle<Refinement>> refinement;
     std::uint32_t interleave = 1;           ///< 1: each pixel asks all VPLs as it is shaded

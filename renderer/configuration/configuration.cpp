@@ -56,7 +56,6 @@ void visit(Config& c, Visitor& visitor) {
         visitor.member("count", c.vpls.count, {0, 1 << 20});
         visitor.member("bounces", c.vpls.bounces, {0, 64});
         visitor.member("seed", c.vpls.seed, {0, std::numeric_limits<std::uint32_t>::max()});
-        visitor.member("budget", c.vpls.budget, {0, 1 << 20});
         visitor.member("interleave", c.interleave);
         visitor.member("visibility", c.visibility.method);
         visitor.member("map_resolution", c.visibility.map_resolution, {8, 1024});

@@ -98,7 +98,7 @@ void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, c
         gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(*lighting.indirect));
     } else if (lighting.vpls) {
         bind_vpl_light(gpu, run, program, *lighting.vpls);
-        const std::uint32_t vpls = run.value(lighting.vpls->vpls.paths).vpl_count;
+        const std::uint32_t vpls = run.value(lighting.vpls->vpls.plan).vpl_count;
         const std::uint32_t most = std::min(most_asked(*lighting.vpls), lighting.most_vpls);
         program.set("vpl_stride", lighting.show == Show::direct ? 0U : vpl_stride(vpls, most));
     }

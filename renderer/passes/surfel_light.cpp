@@ -1,6 +1,8 @@
 #include "renderer/passes/surfel_light.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "engine/graph/execute.hpp"
 
@@ -20,6 +22,20 @@ std::uint32_t groups(std::uint32_t count) {
 std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
     return run.value(surfels.plan).vpl_count;
 }
+
+/// Up to which step of the scene's motion, for which set of surfels, and in which buffers visibility is
+/// known.
+struct KnownVisibility {
+    std::uint64_t set = 0;
+    std::uint64_t step = 0;
+    ObjectId form_factors = 0;
+    ObjectId hits = 0;
+    bool operator==(const KnownVisibility&) const = default;
+
+    [[nodiscard]] bool is_of(const KnownVisibility& other) const {
+        return set == other.set && form_factors == other.form_factors && hits == other.hits;
+    }
+};
 
 /// `surfel_count` and what follows from it: shaders/surfel.glsl.
 void set_count(const gl::Program& program, std::uint32_t count) {
@@ -51,6 +67,12 @@ void find_cover(const gl::Functions& gl, const gl::Program& program, std::uint32
     program.use();
     gl.DispatchCompute(std::min(count, most_a_line), (count + most_a_line - 1) / most_a_line, 1);
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void add_up(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(1, 1, 1);
 }
 
 DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Surfels& surfels,
@@ -108,12 +130,15 @@ SurfelColumns surfel_columns(std::uint32_t surfels) {
 }
 
 SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                       const Surfels& surfels) {
+                                       const Surfels& surfels, ValueHandle<SceneMotion> motion) {
     return graph.add("surfel-visibility", [&](Pass& pass) {
         pass.read(surfels.plan);
+        pass.read(surfels.set);
         pass.read(surfels.surfels, Usage::storage);
         pass.read(surfels.points, Usage::storage);
+        pass.read(motion);
         read_tracing(pass, tracing);
+        pass.remembers();
         const gl::Program& factors = gpu.program({"surfel_form_factors.comp"});
         const gl::Program& cover = gpu.program({"surfel_cover.comp"});
         const gl::Program& rows = gpu.program({"surfel_rows.comp"});
@@ -124,24 +149,36 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
                 pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent), Usage::storage)};
         const auto hits =
             pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent), Usage::storage);
+        const auto known = pass.write(graph.value<KnownVisibility>("known visibility"));
         pass.run([=, &gpu, &factors, &cover, &rows](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             run.reserve(out.form_factors,
                         std::max<std::uint64_t>(std::uint64_t{count} * surfel_columns(count).count / 2, 1));
             run.reserve(out.rows, std::max(count, 1U));
             run.reserve(hits, std::max(count * COVER_PARTS, 1U));
+            const KnownVisibility now{.set = run.value(surfels.set),
+                                      .step = run.value(motion).step,
+                                      .form_factors = run.object(out.form_factors),
+                                      .hits = run.object(hits)};
+            const KnownVisibility* const before = run.find(known);
+            std::optional<std::vector<Box>> changed;
+            if (before != nullptr && before->is_of(now)) {
+                changed = changed_boxes(run.value(motion), before->step);
+            }
+            run.set(known, now);
             if (count == 0) {
                 return;
             }
             gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
             gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
-            gpu.bind_storage(BINDING_FORM_FACTORS, run.object(out.form_factors));
-            gpu.bind_storage(BINDING_COVER, run.object(hits));
+            gpu.bind_storage(BINDING_FORM_FACTORS, now.form_factors);
+            gpu.bind_storage(BINDING_COVER, now.hits);
             gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(out.rows));
             const float offset = run.value(tracing.metrics).ray_offset();
             for (const gl::Program* tracer : {&factors, &cover}) {
                 bind_tracing(gpu, run, *tracer, tracing);
                 tracer->set("ray_offset", offset);
+                set_changed_boxes(*tracer, changed, 4.0F * offset);
             }
             find_form_factors(gpu.gl(), factors, count);
             find_cover(gpu.gl(), cover, count);
@@ -165,17 +202,18 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const
         const gl::Program& first = gpu.program({"surfel_bounce.comp"}, {"FIRST"});
         const gl::Program& further = gpu.program({"surfel_bounce.comp"});
         const gl::Program& writer = gpu.program({"surfel_write.comp"});
+        const gl::Program& account = gpu.program({"surfel_account.comp"});
         const auto cells = pass.write(direct.cells, Usage::storage);
         const auto irradiance =
             pass.write(graph.buffer<glm::vec4>("surfel irradiance", 1, Lifetime::persistent), Usage::storage);
         const Vpls out{
-            .paths = surfels.plan,
+            .plan = surfels.plan,
             .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
             .flux =
                 pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage),
             .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
                                  Usage::storage)};
-        pass.run([=, &gpu, &first, &further, &writer](Execution& run) {
+        pass.run([=, &gpu, &first, &further, &writer, &account](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             run.reserve(irradiance, std::max(2 * count, 1U));
             run.reserve(out.vpls, std::max(count, 1U));
@@ -195,6 +233,9 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const
                 program.set("bounce", bounce);
                 dispatch_surfels(gpu.gl(), program, count);
             }
+            gpu.bind_storage(BINDING_FLUX_ACCOUNT, run.object(out.flux));
+            account.set("bounces", bounces);
+            add_up(gpu.gl(), account, count);
             gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
             gpu.bind_storage(BINDING_LIT_POINTS, run.object(*out.points));
             dispatch_surfels(gpu.gl(), writer, count);

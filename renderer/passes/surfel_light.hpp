@@ -4,6 +4,7 @@
 #include "renderer/gpu.hpp"
 #include "renderer/passes/bvh.hpp"
 #include "renderer/passes/lighting.hpp"
+#include "renderer/passes/scene_motion.hpp"
 #include "renderer/passes/surfels.hpp"
 #include "renderer/passes/vpl_trace.hpp"
 
@@ -23,9 +24,9 @@ struct SurfelColumns {
 [[nodiscard]] SurfelColumns surfel_columns(std::uint32_t surfels);
 
 /// Node `surfel-visibility` (compute): form factors between surfels, with a ray for each pair that faces each
-/// other; on geometry.
+/// other. Where things move, only rays that pass there are traced anew.
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                                     const Surfels& surfels);
+                                                     const Surfels& surfels, ValueHandle<SceneMotion> motion);
 
 /// Nodes `surfel-light` (the real lights at the points of the cells) and `surfel-bounce` (what surfels gather
 /// of each other, to `bounces`): the light of surfels, as VPLs.

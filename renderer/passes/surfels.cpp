@@ -1,11 +1,12 @@
 #include "renderer/passes/surfels.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <unordered_map>
@@ -21,6 +22,12 @@ namespace {
 struct Side {
     const gpu::TraceTriangle* triangle;
     glm::vec3 normal;  // unit
+    std::uint32_t item;
+};
+
+/// A point of a cell, and the item that it is on.
+struct PlacedPoint : gpu::CellPoint {
+    std::uint32_t item = 0;
 };
 
 /// All sides that reflect.
@@ -29,18 +36,19 @@ struct Sides {
     std::vector<double> area_before;  // m², of the sides before each one; one more for all of them
 };
 
-Sides sides_of(std::span<const gpu::TraceTriangle> triangles, const std::vector<bool>& double_sided) {
+Sides sides_of(const SurfelGround& ground) {
     Sides all;
     double area = 0.0;
-    for (const gpu::TraceTriangle& triangle : triangles) {
+    for (std::size_t i = 0; i < ground.triangles.size(); ++i) {
+        const gpu::TraceTriangle& triangle = ground.triangles[i];
         const glm::vec3 cross = glm::cross(triangle.edge_ab, triangle.edge_ac);
         const float twice_area = glm::length(cross);
         if (!(twice_area > 0.0F)) {
             continue;
         }
         const glm::vec3 front = cross / twice_area;
-        for (int side = 0; side < (double_sided[triangle.material] ? 2 : 1); ++side) {
-            all.sides.push_back({&triangle, side == 0 ? front : -front});
+        for (int side = 0; side < (ground.double_sided[triangle.material] ? 2 : 1); ++side) {
+            all.sides.push_back({&triangle, side == 0 ? front : -front, ground.item_of[i]});
             all.area_before.push_back(area);
             area += 0.5 * static_cast<double>(twice_area);
         }
@@ -71,8 +79,8 @@ glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
 }
 
 /// `count` points, even in area.
-std::vector<gpu::CellPoint> spread_points(const Sides& all, std::uint32_t count, std::uint32_t seed) {
-    std::vector<gpu::CellPoint> points;
+std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, std::uint32_t seed) {
+    std::vector<PlacedPoint> points;
     const double share = all.area_before.back() / count;
     const double start = hash(seed + 1) * (1.0 / 4294967296.0);
     std::size_t side = 0;
@@ -86,12 +94,13 @@ std::vector<gpu::CellPoint> spread_points(const Sides& all, std::uint32_t count,
         const auto side_seed = static_cast<std::uint32_t>(side) * 0x85ebca6bU + seed;
         const glm::vec2 b = point_in_triangle(index++, side_seed);
         const gpu::TraceTriangle& t = *all.sides[side].triangle;
-        points.push_back({.position = t.a + b.x * t.edge_ab + b.y * t.edge_ac,
-                          .material = t.material,
-                          .normal = all.sides[side].normal,
-                          .area = static_cast<float>(share),
-                          .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
-                          .pad0 = glm::vec2(0.0F)});
+        points.push_back({{.position = t.a + b.x * t.edge_ab + b.y * t.edge_ac,
+                           .material = t.material,
+                           .normal = all.sides[side].normal,
+                           .area = static_cast<float>(share),
+                           .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
+                           .pad0 = glm::vec2(0.0F)},
+                          all.sides[side].item});
     }
     return points;
 }
@@ -101,29 +110,31 @@ class SurfelGrid {
  public:
     explicit SurfelGrid(float cell) : cell_(cell) {}
 
-    void add(const gpu::CellPoint& surfel) {
-        cells_[key(coordinates(surfel.position))].push_back(static_cast<std::uint32_t>(surfels_.size()));
+    void add(const PlacedPoint& surfel) {
+        cells_[key(coordinates(surfel.position), surfel.item)].push_back(
+            static_cast<std::uint32_t>(surfels_.size()));
         surfels_.push_back(surfel);
     }
 
-    [[nodiscard]] const std::vector<gpu::CellPoint>& surfels() const { return surfels_; }
+    [[nodiscard]] const std::vector<PlacedPoint>& surfels() const { return surfels_; }
 
     /// The nearest one within about a cell whose surface is the point's: with a normal at least so like its
     /// own, and a plane no farther off than that share of a cell. -1: none.
-    [[nodiscard]] int nearest_like(const gpu::CellPoint& point, float least_cosine, float off_plane) const {
+    [[nodiscard]] int nearest_like(const PlacedPoint& point, float least_cosine, float off_plane) const {
         const glm::ivec3 centre = coordinates(point.position);
         float best = std::numeric_limits<float>::infinity();
         int found = -1;
         for (int i = 0; i < 27; ++i) {
-            const auto cell = cells_.find(key(centre + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1));
+            const auto cell = cells_.find(key(centre + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1, point.item));
             if (cell == cells_.end()) {
                 continue;
             }
             for (const std::uint32_t candidate : cell->second) {
-                const gpu::CellPoint& surfel = surfels_[candidate];
+                const PlacedPoint& surfel = surfels_[candidate];
                 const glm::vec3 apart = point.position - surfel.position;
                 const float distance2 = glm::dot(apart, apart);
-                if (distance2 < best && glm::dot(point.normal, surfel.normal) >= least_cosine &&
+                if (distance2 < best && surfel.item == point.item &&
+                    glm::dot(point.normal, surfel.normal) >= least_cosine &&
                     std::abs(glm::dot(apart, surfel.normal)) <= off_plane * cell_) {
                     best = distance2;
                     found = static_cast<int>(candidate);
@@ -137,21 +148,22 @@ class SurfelGrid {
     [[nodiscard]] glm::ivec3 coordinates(glm::vec3 position) const {
         return glm::ivec3(glm::floor(position / cell_));
     }
-    static std::uint64_t key(glm::ivec3 at) {
-        const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0x1fffffU; };
-        return part(at.x) | part(at.y) << 21U | part(at.z) << 42U;
+    /// Keys may coincide: what is found is compared.
+    static std::uint64_t key(glm::ivec3 at, std::uint32_t item) {
+        const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0xffffU; };
+        return part(at.x) | part(at.y) << 16U | part(at.z) << 32U | std::uint64_t{item} << 48U;
     }
 
     float cell_;
-    std::vector<gpu::CellPoint> surfels_;
+    std::vector<PlacedPoint> surfels_;
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
 
 /// Which surfel each point belongs to. Points that are like none become surfels.
-std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<gpu::CellPoint>& points) {
+std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<PlacedPoint>& points) {
     std::vector<std::uint32_t> owners;
     owners.reserve(points.size());
-    for (const gpu::CellPoint& point : points) {
+    for (const PlacedPoint& point : points) {
         int owner = grid.nearest_like(point, 0.9F, 0.1F);
         if (owner < 0) {
             owner = grid.nearest_like(point, 0.5F, 0.5F);
@@ -167,14 +179,14 @@ std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<gpu::CellP
 
 /// The point of each cell that is nearest to the middle of it, which spreads the surfels more evenly (Lloyd,
 /// "Least squares quantization in PCM", 1982).
-std::vector<gpu::CellPoint> middles(const std::vector<gpu::CellPoint>& points,
-                                    const std::vector<std::uint32_t>& owners,
-                                    const std::vector<gpu::CellPoint>& surfels) {
+std::vector<PlacedPoint> middles(const std::vector<PlacedPoint>& points,
+                                 const std::vector<std::uint32_t>& owners,
+                                 const std::vector<PlacedPoint>& surfels) {
     std::vector<glm::vec4> sums(surfels.size(), glm::vec4(0.0F));
     for (std::size_t i = 0; i < points.size(); ++i) {
         sums[owners[i]] += glm::vec4(points[i].position, 1.0F);
     }
-    std::vector<gpu::CellPoint> chosen = surfels;
+    std::vector<PlacedPoint> chosen = surfels;
     std::vector<float> best(surfels.size(), std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::vec4& sum = sums[owners[i]];
@@ -187,16 +199,16 @@ std::vector<gpu::CellPoint> middles(const std::vector<gpu::CellPoint>& points,
     return chosen;
 }
 
-SurfelGrid grid_of(const std::vector<gpu::CellPoint>& surfels, float cell) {
+SurfelGrid grid_of(const std::vector<PlacedPoint>& surfels, float cell) {
     SurfelGrid grid(cell);
-    for (const gpu::CellPoint& surfel : surfels) {
+    for (const PlacedPoint& surfel : surfels) {
         grid.add(surfel);
     }
     return grid;
 }
 
 /// Sorts the points by cell. Cells without points are left out.
-SurfelSet collect(const SurfelGrid& grid, const std::vector<gpu::CellPoint>& points,
+SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points,
                   const std::vector<std::uint32_t>& owners) {
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -206,7 +218,8 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<gpu::CellPoint>& poi
     for (const std::uint32_t i : order) {
         if (owners[i] != last) {
             last = owners[i];
-            const gpu::CellPoint& surfel = grid.surfels()[last];
+            const PlacedPoint& surfel = grid.surfels()[last];
+            set.item_of.push_back(surfel.item);
             set.surfels.push_back({.position = surfel.position,
                                    .map = static_cast<std::uint32_t>(set.surfels.size()),
                                    .normal = surfel.normal,
@@ -232,7 +245,7 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<gpu::CellPoint>& poi
 SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t seed) {
     constexpr int rounds = 2;
     const auto spacing = static_cast<float>(std::sqrt(all.area_before.back() / count));
-    const std::vector<gpu::CellPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
+    const std::vector<PlacedPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
     SurfelGrid grid = grid_of(spread_points(all, count, hash(seed ^ 0x5bd1e995U)), spacing);
     std::vector<std::uint32_t> owners = assign(grid, points);
     for (int round = 0; round < rounds; ++round) {
@@ -242,32 +255,125 @@ SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t se
     return collect(grid, points, owners);
 }
 
-VplPaths plan_of(const SurfelSet& set) {
-    VplPaths plan;
-    plan.vpl_count = plan.map_count = static_cast<std::uint32_t>(set.surfels.size());
+VplPlan plan_of(const SurfelSet& set) {
+    VplPlan plan;
+    plan.vpl_count = static_cast<std::uint32_t>(set.surfels.size());
     plan.point_count = static_cast<std::uint32_t>(set.points.size());
-    plan.maps_due.resize(plan.vpl_count);
-    std::iota(plan.maps_due.begin(), plan.maps_due.end(), 0U);
     return plan;
 }
 
-SurfelSet place_in_scene(const SceneLayout& layout, const ScenePlacement& placement,
-                         const VplSettings& settings) {
-    const WorldTriangles world = place_triangles(layout, placement);
-    std::vector<std::uint32_t> order(world.triangles.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::vector<bool> double_sided;
-    for (const auto& material : layout.materials) {
-        double_sided.push_back(material->double_sided);
+/// What surfels are spread by. Items are in spaces of their own, that of their shapes.
+struct SurfelKey {
+    SceneGeometry geometry;
+    std::vector<glm::mat3> shapes;
+    std::uint32_t count = 0;
+    std::uint32_t seed = 0;
+    bool operator==(const SurfelKey&) const = default;
+};
+
+/// Surfels as they were spread last.
+struct SpreadSurfels {
+    SurfelKey key;
+    std::shared_ptr<const SurfelSet> set;
+    std::uint64_t number = 0;
+    bool operator==(const SpreadSurfels&) const = default;
+};
+
+std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
+    std::vector<glm::mat3> shapes;
+    for (const glm::mat4& world : placement.world) {
+        shapes.push_back(shape_of(world));
     }
-    return place_surfels(trace_triangles(layout, world, order), double_sided, settings.count, settings.seed);
+    return shapes;
+}
+
+SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
+    ScenePlacement placement;
+    for (const glm::mat3& shape : shapes) {
+        placement.world.emplace_back(shape);
+    }
+    const WorldTriangles triangles = place_triangles(layout, placement);
+    std::vector<std::uint32_t> order(triangles.triangles.size());
+    std::iota(order.begin(), order.end(), 0U);
+    SurfelGround ground;
+    ground.triangles = trace_triangles(layout, triangles, order);
+    for (const Origin& origin : triangles.origins) {
+        ground.item_of.push_back(layout.drawables[origin.drawable].item);
+    }
+    for (const auto& material : layout.materials) {
+        ground.double_sided.push_back(material->double_sided);
+    }
+    return ground;
+}
+
+SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
+                     const VplSettings& settings) {
+    SurfelKey key{layout.geometry, shapes_of(placement), settings.count, settings.seed};
+    if (last != nullptr && last->key == key) {
+        return *last;
+    }
+    auto set = std::make_shared<const SurfelSet>(
+        place_surfels(ground_of(layout, key.shapes), settings.count, settings.seed));
+    return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
+}
+
+/// From the space of an item's shape to the world: a rotation, a translation, and what the shape was rounded
+/// by.
+glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
+    return world * glm::mat4(glm::inverse(shape));
+}
+
+SurfelSet placed_in_world(const SpreadSurfels& spread, const ScenePlacement& placement) {
+    std::vector<glm::mat4> matrices;
+    std::vector<glm::mat3> normal_matrices;
+    for (std::size_t i = 0; i < placement.world.size(); ++i) {
+        matrices.push_back(world_from_shape(placement.world[i], spread.key.shapes[i]));
+        normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(matrices.back()))));
+    }
+    SurfelSet set = *spread.set;
+    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        gpu::Vpl& surfel = set.surfels[i];
+        const glm::mat4& matrix = matrices[set.item_of[i]];
+        const glm::mat3& normal_matrix = normal_matrices[set.item_of[i]];
+        surfel.position = surfel.map_origin = glm::vec3(matrix * glm::vec4(surfel.position, 1.0F));
+        surfel.normal = glm::normalize(normal_matrix * surfel.normal);
+        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+            gpu::CellPoint& point = set.points[p];
+            point.position = glm::vec3(matrix * glm::vec4(point.position, 1.0F));
+            point.normal = glm::normalize(normal_matrix * point.normal);
+        }
+    }
+    return set;
 }
 
 }  // namespace
 
-SurfelSet place_surfels(std::span<const gpu::TraceTriangle> triangles, const std::vector<bool>& double_sided,
-                        std::uint32_t count, std::uint32_t seed) {
-    const Sides all = sides_of(triangles, double_sided);
+glm::mat3 shape_of(const glm::mat4& world) {
+    const glm::dmat3 m(world);
+    const glm::dmat3 gram = glm::transpose(m) * m;
+    glm::dmat3 u(0.0);  // column by column
+    u[0][0] = std::sqrt(gram[0][0]);
+    u[1][0] = gram[1][0] / u[0][0];
+    u[2][0] = gram[2][0] / u[0][0];
+    u[1][1] = std::sqrt(std::max(gram[1][1] - u[1][0] * u[1][0], 0.0));
+    u[2][1] = (gram[2][1] - u[1][0] * u[2][0]) / u[1][1];
+    u[2][2] = std::sqrt(std::max(gram[2][2] - u[2][0] * u[2][0] - u[2][1] * u[2][1], 0.0));
+    if (glm::determinant(m) < 0.0) {
+        u[0][0] = -u[0][0];
+        u[1][0] = -u[1][0];
+        u[2][0] = -u[2][0];
+    }
+    const double largest = std::max({std::abs(u[0][0]), u[1][1], u[2][2]});
+    const double step = std::exp2(std::floor(std::log2(largest) + 0.3) - 14.0);
+    const glm::dmat3 rounded(step * glm::round(u[0] / step), step * glm::round(u[1] / step),
+                             step * glm::round(u[2] / step));
+    // A flat item has no inverse, and is taken as it is.
+    const bool is_flat = !(std::abs(glm::determinant(rounded)) > 1e-12 * largest * largest * largest);
+    return is_flat ? glm::mat3(world) : glm::mat3(rounded);
+}
+
+SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::uint32_t seed) {
+    const Sides all = sides_of(ground);
     if (all.sides.empty() || count == 0) {
         return {};
     }
@@ -291,18 +397,25 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
         }
         pass.parameter(settings.count);
         pass.parameter(settings.seed);
+        pass.remembers();
+        const auto last = pass.write(graph.value<SpreadSurfels>("spread surfels"));
         const Surfels out{
-            .plan = pass.write(graph.value<VplPaths>("surfel plan")),
+            .plan = pass.write(graph.value<VplPlan>("surfel plan")),
+            .set = pass.write(graph.value<std::uint64_t>("surfel set")),
             .surfels = pass.write(graph.buffer<gpu::Vpl>("surfels", 1, Lifetime::persistent), Usage::copy),
             .points = pass.write(graph.buffer<gpu::CellPoint>("cell points", 1, Lifetime::persistent),
                                  Usage::copy)};
         pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
             VplSettings of_set = settings;
             of_set.seed += refinement ? run.value(*refinement).set : 0;
-            const SurfelSet set = place_in_scene(run.value(layout), run.value(placement), of_set);
+            const SpreadSurfels spread_now =
+                spread(run.find(last), run.value(layout), run.value(placement), of_set);
+            const SurfelSet set = placed_in_world(spread_now, run.value(placement));
             upload<gpu::Vpl>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
             run.set(out.plan, plan_of(set));
+            run.set(out.set, spread_now.number);
+            run.set(last, spread_now);
         });
         return out;
     });

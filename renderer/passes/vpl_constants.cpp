@@ -63,10 +63,10 @@ VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::
 }
 
 VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneMetrics> metrics,
-                            ValueHandle<VplPaths> paths, const VplVisibilitySettings& settings, float bound) {
+                            ValueHandle<VplPlan> plan, const VplVisibilitySettings& settings, float bound) {
     return graph.add("vpl-constants", [&](Pass& pass) {
         pass.read(metrics);
-        pass.read(paths);
+        pass.read(plan);
         pass.parameter(settings);
         pass.parameter(bound);
         const VplCommon out{
@@ -75,9 +75,9 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
                                     Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const SceneMetrics& scene = run.value(metrics);
-            const VplPaths& plan = run.value(paths);
-            const VplAtlas atlas = atlas_of_scene(settings, plan.map_count, scene, gpu.device().limits());
-            const gpu::VplConstants content = constants_of(plan.vpl_count, scene, atlas, bound);
+            const std::uint32_t count = run.value(plan).vpl_count;
+            const VplAtlas atlas = atlas_of_scene(settings, count, scene, gpu.device().limits());
+            const gpu::VplConstants content = constants_of(count, scene, atlas, bound);
             upload<gpu::VplConstants>(gpu, run, out.constants, {&content, 1});
             run.set(out.atlas, atlas);
         });

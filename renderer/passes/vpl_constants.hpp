@@ -51,7 +51,7 @@ struct VplCommon {
 
 /// Node `vpl-constants`. `bound`: see `vpl_radius2`.
 [[nodiscard]] VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu,
-                                          ValueHandle<SceneMetrics> metrics, ValueHandle<VplPaths> paths,
+                                          ValueHandle<SceneMetrics> metrics, ValueHandle<VplPlan> plan,
                                           const VplVisibilitySettings& settings, float bound);
 
 /// For a pass whose shader includes vpl_constants.glsl: declares what that reads, and binds it when the pass

@@ -12,9 +12,11 @@ namespace {
 
 // VPLs that each class of pixels asks at least under Interleave::automatic. Pixels at edges, some of whose
 // classes have no neighbour on the same surface, would be noisy with fewer.
-constexpr std::uint32_t least_share = 16;
+constexpr std::uint32_t least_share = 8;
+// Times n, pixels of a picture's height: across n pixels the light near an edge should hardly change.
+constexpr std::uint32_t least_rows = 60;
 
-BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPaths> paths) {
+BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> paths) {
     return graph.add("vpl-deal", [&](Pass& pass) {
         pass.read(paths);
         const auto order =
@@ -50,12 +52,12 @@ void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::u
 
 }  // namespace
 
-std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count) {
+std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size) {
     if (interleave != Interleave::automatic) {
         return 1U << (static_cast<std::uint32_t>(interleave) - 1U);
     }
     std::uint32_t n = 8;
-    while (n > 1 && vpl_count < least_share * n * n) {
+    while (n > 1 && (vpl_count < least_share * n * n || size.y < least_rows * n)) {
         n /= 2;
     }
     return n;
@@ -77,21 +79,21 @@ std::vector<std::uint32_t> deal_surfels(std::uint32_t count) {
 
 }  // namespace
 
-std::vector<std::uint32_t> deal_vpls(const VplPaths& paths) {
-    if (paths.paths.empty()) {
-        return deal_surfels(paths.vpl_count);
+std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
+    if (plan.paths.empty()) {
+        return deal_surfels(plan.vpl_count);
     }
     using Group = std::pair<std::uint32_t, std::uint32_t>;  // light and bounce
     std::map<Group, std::uint32_t> sizes;
-    for (const gpu::Path& path : paths.paths) {
+    for (const gpu::Path& path : plan.paths) {
         for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
             ++sizes[{path.light, bounce}];
         }
     }
     std::vector<std::pair<double, std::uint32_t>> dealt;  // place within its group, from 0 to 1, and VPL
-    dealt.reserve(paths.vpl_count);
+    dealt.reserve(plan.vpl_count);
     std::map<Group, std::uint32_t> seen;
-    for (const gpu::Path& path : paths.paths) {
+    for (const gpu::Path& path : plan.paths) {
         for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
             const Group group{path.light, bounce};
             dealt.emplace_back((seen[group]++ + 0.5) / sizes[group], path.first_vpl + bounce);
@@ -106,7 +108,7 @@ std::vector<std::uint32_t> deal_vpls(const VplPaths& paths) {
 GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                             const VplLight& light, const FrameView& view, std::uint32_t interleave,
                             glm::uvec2 size) {
-    const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.paths);
+    const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.plan);
     return graph.add("vpl-gather", [&](Pass& pass) {
         pass.read(surfaces.normal, Usage::sampled);
         pass.read(surfaces.depth, Usage::sampled);
@@ -129,7 +131,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& 
             bind_view(gpu, run, view);
             bind_vpl_light(gpu, run, program, light);
             program.set("interleave", interleave);
-            dispatch_gather(gl, program, size, interleave, run.value(light.vpls.paths).vpl_count,
+            dispatch_gather(gl, program, size, interleave, run.value(light.vpls.plan).vpl_count,
                             most_asked(light));
         });
         return out;

@@ -16,12 +16,13 @@ namespace candela {
 /// on the command line and in the panel: auto, 1, 2, 4, 8.
 enum class Interleave : std::uint8_t { automatic, one, two, four, eight };
 
-/// The n that is meant for so many VPLs; `automatic` is the largest that leaves each class sixteen of them.
-[[nodiscard]] std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count);
+/// The n that is meant for so many VPLs and a picture of so many pixels; `automatic` is the largest that
+/// leaves each class eight VPLs, and of which the picture's height has sixty.
+[[nodiscard]] std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size);
 
 /// The order in which VPLs are dealt: every stretch of it holds as many of each light and bounce as is in
 /// proportion, and of these ones that follow each other in the light's sequence, which is spread evenly.
-[[nodiscard]] std::vector<std::uint32_t> deal_vpls(const VplPaths& paths);
+[[nodiscard]] std::vector<std::uint32_t> deal_vpls(const VplPlan& paths);
 
 struct GatheredVpls {
     /// rgba32f: π times the irradiance, in lux or W/m² as the lights have it, that all VPLs would give if

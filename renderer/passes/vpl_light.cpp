@@ -26,7 +26,7 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
 }
 
 void read_vpl_light(Pass& pass, const VplLight& light) {
-    pass.read(light.vpls.paths);
+    pass.read(light.vpls.plan);
     pass.read(light.vpls.vpls, Usage::storage);
     read_vpl_constants(pass, light.common);
     if (light.vpls.points) {

@@ -80,7 +80,6 @@ std::vector<gpu::Path> make_paths(const LightTable& lights, double albedo, std::
                              .seed = hashed(settings.seed, entry.entity.index),
                              .first_vpl = first_vpl,
                              .vpl_count = bounces_of(position, albedo, settings.bounces)});
-            paths.back().bounces = paths.back().vpl_count;
             first_vpl += paths.back().vpl_count;
         }
     }
@@ -91,14 +90,14 @@ std::uint32_t vpls_of(const std::vector<gpu::Path>& paths) {
     return paths.empty() ? 0 : paths.back().first_vpl + paths.back().vpl_count;
 }
 
-/// Share of its light's flux that each path starts with. A light whose share is below one path stands for its
-/// like.
+/// Share of its light's flux that each path starts with. A light whose share is below one path carries the
+/// flux of others like it.
 double start_weight(const Share& share) {
     return 1.0 / (share.expected >= 1.0 ? share.paths : share.expected);
 }
 
 /// Paths that make more than i bounces, for each i, up to and with none.
-std::vector<std::uint32_t> count_reach(const VplPaths& plan) {
+std::vector<std::uint32_t> count_reach(const VplPlan& plan) {
     std::vector<std::uint32_t> reach(plan.max_bounces + 1, 0);
     for (const gpu::Path& path : plan.paths) {
         for (std::uint32_t i = 0; i < path.vpl_count; ++i) {
@@ -109,26 +108,26 @@ std::vector<std::uint32_t> count_reach(const VplPaths& plan) {
 }
 
 /// Those paths that go on from a bounce carry what those that do not would have carried on.
-std::vector<gpu::VplPlace> make_places(const VplPaths& plan, const std::vector<Share>& shares) {
+std::vector<float> make_weights(const VplPlan& plan, const std::vector<Share>& shares) {
     const std::vector<std::uint32_t> reach = count_reach(plan);
-    std::vector<gpu::VplPlace> places;
-    places.reserve(plan.vpl_count);
+    std::vector<float> weights;
+    weights.reserve(plan.vpl_count);
     auto share = shares.begin();
     for (const gpu::Path& path : plan.paths) {
         share += path.light != share->light ? 1 : 0;
         double weight = start_weight(*share);
         for (std::uint32_t i = 0; i < path.vpl_count; ++i) {
-            places.push_back({static_cast<float>(weight), static_cast<std::uint32_t>(places.size())});
+            weights.push_back(static_cast<float>(weight));
             weight *= static_cast<double>(reach[i]) / std::max(reach[i + 1], 1U);
         }
     }
-    return places;
+    return weights;
 }
 
 }  // namespace
 
-VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
-    VplPaths plan;
+VplPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
+    VplPlan plan;
     if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) {
         return plan;
     }
@@ -148,24 +147,19 @@ VplPaths plan_paths(const LightTable& lights, float mean_albedo, const VplSettin
         plan.paths = make_paths(lights, albedo, count, settings);
     }
     // A single path may be too long.
-    plan.paths.back().bounces = plan.paths.back().vpl_count =
-        std::min(plan.paths.back().vpl_count, settings.count);
+    plan.paths.back().vpl_count = std::min(plan.paths.back().vpl_count, settings.count);
     plan.vpl_count = vpls_of(plan.paths);
     for (const gpu::Path& path : plan.paths) {
         plan.max_bounces = std::max(plan.max_bounces, path.vpl_count);
     }
-    plan.seed = settings.seed;
-    plan.places = make_places(plan, share_paths(lights, count));
-    plan.map_count = plan.vpl_count;
-    plan.maps_due.resize(plan.vpl_count);
-    std::iota(plan.maps_due.begin(), plan.maps_due.end(), 0U);
+    plan.weights = make_weights(plan, share_paths(lights, count));
     return plan;
 }
 
-ValueHandle<VplPaths> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
-                                    ValueHandle<LightTable> lights,
-                                    std::optional<ValueHandle<Refinement>> refinement,
-                                    const VplSettings& settings) {
+ValueHandle<VplPlan> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+                                   ValueHandle<LightTable> lights,
+                                   std::optional<ValueHandle<Refinement>> refinement,
+                                   const VplSettings& settings) {
     return graph.add("vpl-paths", [&](Pass& pass) {
         pass.read(lights);
         pass.read(metrics);
@@ -173,7 +167,7 @@ ValueHandle<VplPaths> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics>
             pass.read(*refinement);
         }
         pass.parameter(settings);
-        const auto paths = pass.write(graph.value<VplPaths>("vpl paths"));
+        const auto paths = pass.write(graph.value<VplPlan>("vpl paths"));
         pass.run([=](Execution& run) {
             VplSettings of_set = settings;
             of_set.seed += refinement ? run.value(*refinement).set : 0;

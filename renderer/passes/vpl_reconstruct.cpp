@@ -135,7 +135,7 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
             gpu.bind_storage(BINDING_LACKING, run.object(found.lacking));
             bind_vpl_light(gpu, run, program, light);
             gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(found.lacking));
-            dispatch_fill(gpu.gl(), program, run.value(light.vpls.paths).vpl_count, most_asked(light));
+            dispatch_fill(gpu.gl(), program, run.value(light.vpls.plan).vpl_count, most_asked(light));
         });
         return out;
     });

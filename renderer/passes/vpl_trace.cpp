@@ -12,10 +12,11 @@ namespace {
 constexpr std::uint32_t paths_a_group = 32;  // as in shaders/vpl_trace.comp and vpl_write.comp
 constexpr std::uint32_t vpls_a_group = 16;   // as in shaders/vpl_edges.comp
 
-/// What the shader is told of the paths.
+/// Paths on their way.
 struct PathBuffers {
     BufferHandle<gpu::Path> paths;
-    BufferHandle<gpu::VplPlace> places;
+    BufferHandle<float> weights;
+    BufferHandle<gpu::VplRecord> records;  ///< bounces as they were traced
 };
 
 /// Four times the mean distance between VPLs: farther off hardly any sinks, as shaders/vpl_light.glsl has it.
@@ -30,7 +31,7 @@ std::uint32_t groups(std::uint32_t count, std::uint32_t a_group) {
 /// Segment by segment. A longer loop would reach the bound that software drivers set to all loops of an
 /// invocation together, and end there without a word.
 void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
-                    const VplPaths& plan) {
+                    const VplPlan& plan) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
     bind_tracing(gpu, run, program, tracing);
     program.set("path_count", path_count);
@@ -43,7 +44,7 @@ void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, 
     }
 }
 
-void write_vpls(const Gpu& gpu, const gl::Program& program, const VplPaths& plan) {
+void write_vpls(const Gpu& gpu, const gl::Program& program, const VplPlan& plan) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
     program.set("path_count", path_count);
     program.set("max_bounces", plan.max_bounces);
@@ -53,7 +54,7 @@ void write_vpls(const Gpu& gpu, const gl::Program& program, const VplPaths& plan
 }
 
 void find_edges(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
-                const VplPaths& plan) {
+                const VplPlan& plan) {
     bind_tracing(gpu, run, program, tracing);
     program.set("vpl_count", plan.vpl_count);
     program.set("edge_reach", edge_reach(run.value(tracing.metrics).area, plan.vpl_count));
@@ -63,14 +64,10 @@ void find_edges(const Gpu& gpu, Execution& run, const gl::Program& program, cons
 
 }  // namespace
 
-BufferHandle<gpu::VplRecord> vpl_records(FrameGraph& graph) {
-    return graph.buffer<gpu::VplRecord>("vpl records", 1, Lifetime::persistent);
-}
-
-Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const DueVpls& due,
+Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHandle<VplPlan> plan_handle,
                    BufferHandle<gpu::Light> lights) {
     return graph.add("vpl-trace", [&](Pass& pass) {
-        pass.read(due.paths);
+        pass.read(plan_handle);
         pass.read(lights, Usage::storage);
         read_tracing(pass, tracing);
         const gl::Program& tracer = gpu.program({"vpl_trace.comp"});
@@ -78,33 +75,30 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Du
         const gl::Program& edges = gpu.program({"vpl_edges.comp"});
         const PathBuffers buffers{
             .paths = pass.write(graph.buffer<gpu::Path>("paths", 1, Lifetime::persistent), Usage::copy),
-            .places =
-                pass.write(graph.buffer<gpu::VplPlace>("vpl places", 1, Lifetime::persistent), Usage::copy)};
-        const bool first_writer = due.records.version == 0;
-        const BufferHandle<gpu::VplRecord> traced = pass.write(due.records, Usage::storage);
+            .weights = pass.write(graph.buffer<float>("path weights", 1, Lifetime::persistent), Usage::copy),
+            .records = pass.write(graph.buffer<gpu::VplRecord>("vpl records", 1, Lifetime::persistent),
+                                  Usage::storage)};
         const Vpls out{
-            .paths = due.paths,
+            .plan = plan_handle,
             .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
             .flux =
                 pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage)};
         pass.run([=, &gpu, &tracer, &writer, &edges](Execution& run) {
-            const VplPaths& plan = run.value(out.paths);
+            const VplPlan& plan = run.value(out.plan);
             run.reserve(out.vpls, std::max(plan.vpl_count, 1U));
             run.reserve(out.flux, std::max<std::size_t>(plan.paths.size(), 1));
-            if (first_writer) {
-                run.reserve(traced, std::max(plan.map_count, 1U));
-            }
+            run.reserve(buffers.records, std::max(plan.vpl_count, 1U));
             upload<gpu::Path>(gpu, run, buffers.paths, plan.paths);
-            upload<gpu::VplPlace>(gpu, run, buffers.places, plan.places);
-            gpu.bind_storage(BINDING_LIGHTS, run.object(lights));
-            gpu.bind_storage(BINDING_PATHS, run.object(buffers.paths));
-            gpu.bind_storage(BINDING_VPL_PLACES, run.object(buffers.places));
-            gpu.bind_storage(BINDING_VPL_RECORDS, run.object(traced));
-            gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
-            gpu.bind_storage(BINDING_FLUX, run.object(out.flux));
+            upload<float>(gpu, run, buffers.weights, plan.weights);
             if (plan.paths.empty()) {
                 return;
             }
+            gpu.bind_storage(BINDING_LIGHTS, run.object(lights));
+            gpu.bind_storage(BINDING_PATHS, run.object(buffers.paths));
+            gpu.bind_storage(BINDING_PATH_WEIGHTS, run.object(buffers.weights));
+            gpu.bind_storage(BINDING_VPL_RECORDS, run.object(buffers.records));
+            gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
+            gpu.bind_storage(BINDING_FLUX, run.object(out.flux));
             trace_segments(gpu, run, tracer, tracing, plan);
             write_vpls(gpu, writer, plan);
             find_edges(gpu, run, edges, tracing, plan);

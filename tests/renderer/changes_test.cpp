@@ -46,7 +46,6 @@ class Changes : public RenderFixture {
 TEST_SUITE("changes") {
     TEST_CASE_FIXTURE(Changes, "every change shows in the same frame, as in a renderer that starts with it") {
         Configuration unlimited = linear_configuration();
-        unlimited.vpls.budget = 0;
         configure(unlimited);
         Scene scene = cornell_box();
         add(scene.world, looking({0.5F, 1.5F, 1.0F}, {0, 0, 0}), SpotLight{.intensity = 3.0F});
@@ -132,13 +131,13 @@ TEST_SUITE("changes") {
                 {.entity = {i, 1}, .light = {}, .flux = glm::vec3(1.0F + static_cast<float>(i))});
         }
         const VplSettings settings{.count = 1000, .bounces = 4};
-        const VplPaths before = plan_paths(lights, 0.6F, settings);
+        const VplPlan before = plan_paths(lights, 0.6F, settings);
         lights.entries[2].light.position = {1, 2, 3};
         CHECK(plan_paths(lights, 0.6F, settings) == before);
 
         // A light 1 % brighter takes a path or two from the others; the points of their sequences stay.
         lights.entries[2].flux *= 1.01F;
-        const auto points_of = [](const VplPaths& plan) {
+        const auto points_of = [](const VplPlan& plan) {
             std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> points;
             for (const gpu::Path& path : plan.paths) points.insert({path.light, path.index, path.seed});
             return points;

@@ -22,7 +22,6 @@ class FrameBudgetTests : public PathFixture {
     /// A budget that no frame keeps, or one that every frame does.
     void start(float budget_ms) {
         Configuration configuration = few_vpls();
-        configuration.vpls.budget = 0;
         configuration.frame_budget_ms = budget_ms;
         configure(configuration);
     }

@@ -85,7 +85,6 @@ TEST_SUITE("lifetime") {
     TEST_CASE_FIXTURE(RenderFixture, "meshes, images and lights that go free what they took") {
         Scene scene = cornell_box();
         Configuration unlimited = linear_configuration();
-        unlimited.vpls.budget = 0;
         configure(unlimited);
         const Picture before = render(scene, size);
         const auto come_and_go = [&] {

@@ -17,7 +17,6 @@ constexpr glm::uvec2 size{48, 36};
 Configuration refining(std::uint32_t frames, ShadingPath path = ShadingPath::deferred) {
     Configuration configuration = linear_configuration(path);
     configuration.vpls.count = 32;
-    configuration.vpls.budget = 0;
     configuration.refinement = {.enabled = true, .frames = frames};
     return configuration;
 }
@@ -260,23 +259,5 @@ TEST_SUITE("refinement") {
         const RenderTarget target(device, size);
         renderer.render(scene.world, scene.camera, target.target(), {0.25F, 0.0F});
         CHECK(renderer.report().refined == 1);
-    }
-
-    TEST_CASE_FIXTURE(RefinementTests, "with a budget sets are made whole, and their debt is paid before") {
-        Configuration configuration = refining(32);
-        configuration.vpls.budget = 4;
-        configure(configuration);
-        const Picture first = render(scene, size);
-        CHECK(first == fresh_picture(configuration));
-        move(scene.light);
-        bool in_debt = false;
-        for (int i = 0; i < 64; ++i) {
-            static_cast<void>(render(scene, size));
-            const Report report = renderer.report();
-            in_debt = report.vpls->debt > 0 || report.vpls->stale > 0;
-            CHECK((!in_debt || report.refined == 1));
-        }
-        CHECK_FALSE(in_debt);
-        CHECK(renderer.report().refined == 32);
     }
 }

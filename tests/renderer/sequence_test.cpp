@@ -16,7 +16,7 @@ constexpr int steps = 40;
 /// Few and coarse, so that a fresh renderer a step takes no time; all that is due is made at once.
 Configuration unlimited() {
     Configuration configuration = linear_configuration();
-    configuration.vpls = {.count = 8, .budget = 0};
+    configuration.vpls = {.count = 8};
     configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
     configuration.shadows.cube_resolution = configuration.shadows.map_resolution = 64;
     return configuration;

@@ -21,7 +21,7 @@ constexpr std::array interleaved{Interleave::two, Interleave::four, Interleave::
 Configuration indirect_only(Interleave interleave, std::uint32_t vpls) {
     Configuration configuration = linear_configuration();
     configuration.show = Show::indirect;
-    configuration.vpls = {.count = vpls, .budget = 0};
+    configuration.vpls = {.placement = VplPlacement::paths, .count = vpls};
     configuration.interleave = interleave;
     return configuration;
 }
@@ -40,7 +40,7 @@ class VplGatherTests : public PathFixture {
 };
 
 /// Three lights whose paths make up to four bounces.
-VplPaths three_lights() {
+VplPlan three_lights() {
     LightTable lights;
     for (std::uint32_t i = 0; i < 3; ++i) {
         const auto flux = static_cast<float>(1U << (2 * i));
@@ -52,19 +52,24 @@ VplPaths three_lights() {
 }  // namespace
 
 TEST_SUITE("interleaved gathering") {
-    TEST_CASE("by itself it leaves every class sixteen VPLs, and asks all where they are few") {
+    TEST_CASE("by itself it leaves every class eight VPLs, and less where they or the pixels are few") {
         for (std::uint32_t count = 0; count < 5000; ++count) {
-            const std::uint32_t n = interleaving(Interleave::automatic, count);
+            const std::uint32_t n = interleaving(Interleave::automatic, count, {512, 512});
             CHECK((n == 1 || n == 2 || n == 4 || n == 8));
-            CHECK((n == 1 || count >= 16 * n * n));
-            CHECK((n == 8 || count < 16 * 4 * n * n));
+            CHECK((n == 1 || count >= 8 * n * n));
+            CHECK((n == 8 || count < 8 * 4 * n * n));
         }
-        CHECK(interleaving(Interleave::one, 4096) == 1);
-        CHECK(interleaving(Interleave::eight, 1) == 8);
+        for (std::uint32_t rows = 1; rows < 1000; ++rows) {
+            const std::uint32_t n = interleaving(Interleave::automatic, 1U << 20U, {4000, rows});
+            CHECK((n == 1 || rows >= 60 * n));
+            CHECK((n == 8 || rows < 60 * 2 * n));
+        }
+        CHECK(interleaving(Interleave::one, 4096, {512, 512}) == 1);
+        CHECK(interleaving(Interleave::eight, 1, {1, 1}) == 8);
     }
 
     TEST_CASE("each share of the VPLs has its part of every light and bounce") {
-        const VplPaths paths = three_lights();
+        const VplPlan paths = three_lights();
         std::vector<std::uint32_t> order = deal_vpls(paths);
         REQUIRE(order.size() == paths.vpl_count);
 

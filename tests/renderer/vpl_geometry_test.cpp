@@ -57,7 +57,7 @@ class VplGeometry : public RenderFixture {
     std::vector<double> rows(const Scene& scene) {
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
-        configuration.vpls = {.count = 4096, .bounces = 1, .seed = 0, .budget = 0};
+        configuration.vpls = {.placement = VplPlacement::paths, .count = 4096, .bounces = 1, .seed = 0};
         configure(configuration);
         renderer.invalidate();  // the scenes of a loop lie at one address
         const Picture picture = render(scene, size);

@@ -23,7 +23,7 @@ Configuration indirect_only(VplVisibility method, std::uint32_t resolution = 32)
     Configuration configuration = linear_configuration();
     configuration.show = Show::indirect;
     configuration.shadows.enabled = false;
-    configuration.vpls.budget = 0;
+    configuration.vpls.placement = VplPlacement::paths;
     configuration.vpls.bounces = 1;
     configuration.visibility = {method, resolution};
     return configuration;

@@ -39,14 +39,14 @@ TEST_SUITE("choosing a configuration") {
         Options options;
         options.config = folder / "a.json";
         std::ofstream(*options.config) << R"({"path": "deferred",
-            "vpls": {"count": 3, "seed": 4, "visibility": "rays", "budget": 5}})";
+            "vpls": {"count": 3, "seed": 4, "visibility": "rays", "placement": "surfels"}})";
         options.vpl_visibility = VplVisibility::none;
         options.seed = 9;
         const Configuration configuration = choose_configuration(options, false);
         CHECK(configuration.visibility.method == VplVisibility::none);
         CHECK(configuration.vpls.seed == 9);
         CHECK(configuration.vpls.count == 3);
-        CHECK(configuration.vpls.budget == 5);
+        CHECK(configuration.vpls.placement == VplPlacement::surfels);
         CHECK(configuration.path == ShadingPath::deferred);
     }
 

@@ -178,7 +178,7 @@ TEST_SUITE("options") {
 
     TEST_CASE("flags that do not exist are refused and not in the help") {
         const std::string help = std::get<EarlyExit>(parse({"--help"})).text;
-        for (const char* flag : {"--fullscreen", "--budget", "-x"}) {
+        for (const char* flag : {"--fullscreen", "-x"}) {
             check_refused({flag, "x"}, flag, "");
             CHECK(help.find(flag) == std::string::npos);
         }

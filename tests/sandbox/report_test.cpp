@@ -27,8 +27,7 @@ RunReport some_run() {
                           .passes = {{"gbuffer", true, 0.5, 1.0}, {"vpl-trace", false, 0.0, 0.0}}});
     run.state.gl_renderer = "a driver";
     run.state.triangles = 36;
-    run.state.vpls =
-        VplReport{.requested = 256, .alive = 251, .paths = 120, .debt = 13, .stale = 17, .flux = balanced()};
+    run.state.vpls = VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced()};
     run.state.lights = {
         .count = 300, .with_shadow = 2, .without_shadow = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
     run.state.memory = {
@@ -52,8 +51,6 @@ TEST_SUITE("report") {
         CHECK(json["frames"][0]["passes"][0]["gpu_ms"] == 1.0);
         CHECK(json["frames"][0]["passes"][1]["ran"] == false);
         CHECK(json["vpls"]["alive"] == 251);
-        CHECK(json["vpls"]["debt"] == 13);
-        CHECK(json["vpls"]["stale"] == 17);
         CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
         CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
         CHECK(json["lights"]["without_shadow"] == 1);

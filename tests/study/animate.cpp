@@ -119,7 +119,6 @@ double play_frame(Stage& stage, Take& take) {
 
 Json frame_line(const Point& point, int frame, double ms, const Report& report, const Take& take,
                 const Truth& truth) {
-    const VplReport vpls = report.vpls.value_or(VplReport{});
     const auto at = static_cast<std::size_t>(frame);
     const Mask& hit = truth.hits[at];
     return {{"id", point.id},
@@ -129,10 +128,6 @@ Json frame_line(const Point& point, int frame, double ms, const Report& report, 
              {{"indirect", to_json(measure(take.indirect[at], truth.indirect[at], hit))},
               {"total", to_json(measure(take.total[at], truth.total[at], hit))}}},
             {"full_ms", ms},
-            {"traced", vpls.traced},
-            {"maps_drawn", vpls.maps_drawn},
-            {"debt", vpls.debt},
-            {"stale", vpls.stale},
             {"refined", report.refined}};
 }
 

@@ -68,7 +68,6 @@ int gather(const GatherStudy& study) {
             Configuration configuration;
             configuration.show = Show::indirect;
             configuration.vpls.count = vpls;
-            configuration.vpls.budget = 0;
             configuration.interleave = candidate.interleave;
             candidate.bench.configure(configuration);
             candidate.frames.clear();

@@ -11,8 +11,6 @@
 namespace candela::study {
 namespace {
 
-constexpr std::uint32_t budget = 8;
-
 /// Milliseconds, and how many passes took them.
 struct Share {
     double ms = 0.0;
@@ -34,7 +32,7 @@ Share share_of(Renderer& renderer, Wanted wanted) {
 }
 
 bool is_of_vpls(std::string_view pass) {
-    return pass.starts_with("vpl-");
+    return pass.starts_with("vpl-") || pass.starts_with("surfel");
 }
 
 /// The frame's last passes, which every deferred frame has to run.
@@ -42,11 +40,11 @@ bool is_before_shading(std::string_view pass) {
     return pass != "deferred" && pass != "transparent" && pass != "tone-map";
 }
 
-Configuration configuration_of(std::uint32_t vpls, std::uint32_t vpl_budget) {
+Configuration configuration_of(std::uint32_t vpls, VplPlacement placement) {
     Configuration configuration;
     configuration.path = ShadingPath::deferred;
     configuration.vpls.count = vpls;
-    configuration.vpls.budget = vpl_budget;
+    configuration.vpls.placement = placement;
     configuration.interleave = Interleave::one;
     configuration.visibility.method = VplVisibility::maps;
     configuration.refinement.enabled = false;
@@ -57,22 +55,21 @@ struct Figures {
     std::vector<double> still;   ///< a still frame, over what a full one spends before shading
     std::vector<double> camera;  ///< ms of the VPLs' passes after a move of the camera
     int camera_passes = 0;       ///< the most of them that ran
-    std::vector<double>
-        light;  ///< VPLs' passes after a move of the light: incremental over full regeneration
+    std::vector<double> light;   ///< VPLs' passes after a move of the light: surfels over all of them anew
 };
 
-/// `full` makes all VPLs anew whenever the light moves, `incremental` a few of them.
-void play_round(Bench& full, Bench& incremental, int round, Figures& figures) {
-    incremental.frame({});
-    const Share moved = share_of(incremental.renderer(), is_of_vpls);
-    full.frame({});
-    const Share regenerated = share_of(full.renderer(), is_of_vpls);
-    const double still_ms = full.frame({});
-    full.frame({0.01F * static_cast<float>(round + 1), 0.0F});
-    const Share camera = share_of(full.renderer(), is_of_vpls);
-    full.renderer().invalidate();
-    full.frame({});
-    const Share before_shading = share_of(full.renderer(), is_before_shading);
+void play_round(Bench& bench, int round, Figures& figures) {
+    bench.frame({});
+    const Share moved = share_of(bench.renderer(), is_of_vpls);
+    const double still_ms = bench.frame({});
+    bench.frame({0.01F * static_cast<float>(round + 1), 0.0F});
+    const Share camera = share_of(bench.renderer(), is_of_vpls);
+    bench.renderer().invalidate();
+    bench.frame({});
+    const Share anew = share_of(bench.renderer(), is_of_vpls);
+    bench.renderer().invalidate();
+    bench.frame({});
+    const Share before_shading = share_of(bench.renderer(), is_before_shading);
     // The first round compiles shaders and uploads the scene; it does not count.
     if (round == 0) {
         return;
@@ -80,20 +77,18 @@ void play_round(Bench& full, Bench& incremental, int round, Figures& figures) {
     figures.still.push_back(still_ms / before_shading.ms);
     figures.camera.push_back(camera.ms);
     figures.camera_passes = std::max(figures.camera_passes, camera.passes);
-    figures.light.push_back(moved.ms / regenerated.ms);
+    figures.light.push_back(moved.ms / anew.ms);
 }
 
 Figures play(const gl::GetProc& get_proc, const sandbox::Script& script, const MovesStudy& study) {
     World world = sandbox::load_scene(sandbox::scene_of(script).value()).world;
     const sandbox::Animation animation(script, world);
-    Bench full(get_proc, world, study.size);
-    Bench incremental(get_proc, world, study.size);
-    full.configure(configuration_of(study.vpls, 0));
-    incremental.configure(configuration_of(study.vpls, budget));
+    Bench bench(get_proc, world, study.size);
+    bench.configure(configuration_of(study.vpls, VplPlacement::surfels));
     Figures figures;
     for (int round = 0; round <= study.rounds; ++round) {
         animation.apply(world, round);
-        play_round(full, incremental, round, figures);
+        play_round(bench, round, figures);
     }
     return figures;
 }
@@ -111,8 +106,7 @@ int moves(const MovesStudy& study) {
         fmt::print("  still frame / a full one's time before shading: {:.3f}\n", median(figures.still));
         fmt::print("  camera moved: {} passes of VPLs ran, {:.2f} ms\n", figures.camera_passes,
                    median(figures.camera));
-        fmt::print("  light moved, VPLs' passes: budget {} / full regeneration: {:.3f}\n", budget,
-                   median(figures.light));
+        fmt::print("  light moved, VPLs' passes / all made anew: {:.3f}\n", median(figures.light));
     }
     return 0;
 }

@@ -1,0 +1,105 @@
+#include "renderer/passes/scene_motion.hpp"
+
+#include <glm/vec4.hpp>
+#include <utility>
+
+#include "engine/graph/execute.hpp"
+#include "shaders/bindings.glsl"
+
+namespace candela {
+namespace {
+
+/// Box around what of a mesh stops light.
+Box box_around(const Mesh& mesh, const glm::mat4& world) {
+    Box box;
+    for (const Primitive& primitive : mesh.primitives) {
+        if (primitive.material->alpha_mode == AlphaMode::blend) {
+            continue;
+        }
+        for (const Vertex& vertex : primitive.vertices) {
+            box.grow(glm::vec3(world * glm::vec4(vertex.position, 1.0F)));
+        }
+    }
+    return box;
+}
+
+std::vector<Box> moved_boxes(const SceneGeometry& geometry, const ScenePlacement& before,
+                             const ScenePlacement& now) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < geometry.items.size(); ++i) {
+        if (before.world[i] == now.world[i]) {
+            continue;
+        }
+        for (const glm::mat4& world : {before.world[i], now.world[i]}) {
+            const Box box = box_around(*geometry.items[i].mesh, world);
+            if (box != Box{}) {
+                boxes.push_back(box);
+            }
+        }
+    }
+    return boxes;
+}
+
+/// One box around all where they are too many.
+std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
+    if (boxes.size() <= most) {
+        return boxes;
+    }
+    Box all;
+    for (const Box& box : boxes) {
+        all.grow(box);
+    }
+    return {all};
+}
+
+}  // namespace
+
+ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene) {
+    return graph.add("scene-motion", [&](Pass& pass) {
+        pass.remembers();
+        pass.read(scene.layout);
+        pass.read(scene.placement);
+        const auto motion = pass.write(graph.value<SceneMotion>("scene motion"));
+        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
+            const SceneMotion* const last = run.find(motion);
+            SceneMotion now;
+            now.geometry = run.value(layout).geometry;
+            now.placement = run.value(placement);
+            if (last != nullptr) {
+                now.step = last->step + 1;
+                now.everything = last->geometry != now.geometry;
+            }
+            if (!now.everything) {
+                now.boxes = moved_boxes(now.geometry, last->placement, now.placement);
+            }
+            run.set(motion, std::move(now));
+        });
+        return motion;
+    });
+}
+
+std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::uint64_t done) {
+    if (motion.step == done) {
+        return std::vector<Box>{};
+    }
+    if (motion.everything || motion.step != done + 1) {
+        return std::nullopt;
+    }
+    return at_most(motion.boxes, MOST_CHANGED_BOXES);
+}
+
+void set_changed_boxes(const gl::Program& program, const std::optional<std::vector<Box>>& boxes,
+                       float slack) {
+    std::vector<glm::vec4> corners;
+    for (const Box& box : boxes.value_or(std::vector<Box>{})) {
+        corners.emplace_back(box.lower - slack, 0.0F);
+        corners.emplace_back(box.upper + slack, 0.0F);
+    }
+    program.set("everything_changed", !boxes.has_value());
+    program.set("changed_box_count", static_cast<std::uint32_t>(corners.size() / 2));
+    if (!corners.empty()) {
+        program.set("changed_boxes", std::span<const glm::vec4>(corners));
+    }
+}
+
+}  // namespace candela

@@ -1,0 +1,46 @@
+// Where the light went that the lights send to the surfaces. One work group adds up all cells.
+#include "surfel.glsl"
+
+layout(local_size_x = SURFEL_GROUP) in;
+
+layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // scale, open share
+layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
+layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 irradiance[]; };
+layout(std430, binding = BINDING_FLUX_ACCOUNT) writeonly restrict buffer Flux { FluxAccount flux[]; };
+
+uniform uint bounces;
+
+shared vec3 emitted[SURFEL_GROUP];
+shared vec3 absorbed[SURFEL_GROUP];
+shared vec3 escaped[SURFEL_GROUP];
+shared vec3 truncated[SURFEL_GROUP];
+
+// What a cell reflects of the last bounce, which nobody gathers.
+vec3 left_over(uint id, CellLight cell) {
+    if (bounces < 2u) return cell.direct;
+    return cell.area * cell.albedo * irradiance[((bounces + 1u) % 2u) * surfel_count + id].rgb;
+}
+
+void main() {
+    uint lane = gl_LocalInvocationID.x;
+    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = vec3(0.0);
+    for (uint id = lane; id < surfel_count; id += SURFEL_GROUP) {
+        CellLight cell = cells[id];
+        vec3 left = left_over(id, cell);
+        vec3 indirect = cell.area * cell.indirect;
+        emitted[lane] += cell.arriving;
+        absorbed[lane] += cell.arriving - cell.direct + (1.0 - cell.albedo) * indirect;
+        escaped[lane] += rows[id].y * (cell.direct + cell.albedo * indirect - left);
+        truncated[lane] += left;
+    }
+    barrier();
+    if (lane > 0u) return;
+    FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    for (uint i = 0u; i < SURFEL_GROUP; ++i) {
+        account.emitted += emitted[i];
+        account.absorbed += absorbed[i];
+        account.escaped += escaped[i];
+        account.truncated += truncated[i];
+    }
+    flux[0] = account;
+}
