@@ -39,7 +39,7 @@ struct EnergyError : std::runtime_error {
 };
 
 /// Throws EnergyError, which names the scene, where more than a hundredth of the emitted flux is unaccounted
-/// for; of surfels, a tenth.
+/// for; of surfels, only where it is not finite.
 void check_energy(const std::string& scene, const Report& state);
 
 /// An item of the account, for tables.

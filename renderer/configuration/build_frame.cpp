@@ -58,9 +58,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         const ValueHandle<SceneMotion> motion = add_scene_motion(graph, scene);
         const Surfels surfels = add_surfels(graph, gpu, scene, frame.refinement, configuration.vpls);
         const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels, motion);
-        const Lighting lights{.lights = frame.lights, .buffers = buffers, .shadows = shadows};
-        frame.vpls =
-            add_surfel_light(graph, gpu, scene, surfels, visibility, lights, configuration.vpls.bounces);
+        frame.vpls = add_surfel_light(graph, gpu, tracing, surfels, visibility,
+                                      {frame.lights, buffers.lights}, configuration.vpls.bounces);
         mapped = MappedVpls{surfels.plan, surfels.surfels, motion, surfels.set};
     } else if (configuration.indirect) {
         const ValueHandle<VplPlan> plan =
@@ -81,10 +80,11 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         }
     }
     const bool shows_indirect = vpl_light && configuration.show != Show::direct;
-    frame.interleave = shows_indirect
-                           ? std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
-                                      extent.least_interleave)
-                           : 1;
+    frame.interleave =
+        shows_indirect
+            ? std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
+                       extent.least_interleave)
+            : 1;
 
     // Without interleaving, too, VPLs are gathered where they are too many for the shading path.
     const bool gathers =

@@ -75,16 +75,33 @@ void add_up(const gl::Functions& gl, const gl::Program& program, std::uint32_t c
     gl.DispatchCompute(1, 1, 1);
 }
 
-DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Surfels& surfels,
-                             const Lighting& lights) {
+/// A shadow ray walks through a tree, and software drivers end all loops of an invocation together after
+/// 65,535 turns.
+constexpr std::uint32_t most_shadow_rays = 64;
+
+void light_points(const gl::Functions& gl, const gl::Program& program, std::uint32_t points,
+                  std::uint32_t lights) {
+    program.set("point_count", points);
+    program.set("light_count", lights);
+    program.set("lights_now", most_shadow_rays);
+    program.use();
+    for (std::uint32_t lit = 0; lit == 0 || lit < lights; lit += most_shadow_rays) {
+        program.set("lights_before", lit);
+        gl.DispatchCompute(groups(points), 1, 1);
+        gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+}
+
+DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
+                             const SurfelLights& lights) {
     return graph.add("surfel-light", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, Usage::storage);
         pass.read(surfels.points, Usage::storage);
-        pass.read(scene.materials, Usage::storage);
-        pass.read(scene.texels, Usage::storage);
-        read_lighting(pass, lights);
-        const gl::Program& lighter = gpu.program({"surfel_light.comp"}, lighting_variant(lights));
+        pass.read(lights.table);
+        pass.read(lights.buffer, Usage::storage);
+        read_tracing(pass, tracing);
+        const gl::Program& lighter = gpu.program({"surfel_light.comp"});
         const gl::Program& adder = gpu.program({"surfel_cells.comp"});
         const DirectLight out{
             .points =
@@ -92,31 +109,25 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene
                            Usage::storage),
             .cells = pass.write(graph.buffer<gpu::CellLight>("directly lit cells", 1, Lifetime::persistent),
                                 Usage::storage)};
-        pass.run(
-            [=, &gpu, &lighter, &adder, materials = scene.materials, texels = scene.texels](Execution& run) {
-                const std::uint32_t count = count_of(run, surfels);
-                const std::uint32_t points = run.value(surfels.plan).point_count;
-                run.reserve(out.points, std::max(points, 1U));
-                run.reserve(out.cells, std::max(count, 1U));
-                if (count == 0) {
-                    return;
-                }
-                gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
-                gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
-                gpu.bind_storage(BINDING_MATERIALS, run.object(materials));
-                gpu.bind_storage(BINDING_TEXELS, run.object(texels));
-                gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(out.points));
-                gpu.bind_storage(BINDING_CELL_LIGHT, run.object(out.cells));
-                bind_lighting(gpu, run, lighter, lights);
-                lighter.set("point_count", points);
-                lighter.use();
-                for (std::uint32_t part = 0; part < lighting_parts(run, lights); ++part) {
-                    begin_lighting_part(lighter, part);
-                    gpu.gl().DispatchCompute(groups(points), 1, 1);
-                    gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-                }
-                dispatch_surfels(gpu.gl(), adder, count);
-            });
+        pass.run([=, &gpu, &lighter, &adder](Execution& run) {
+            const std::uint32_t count = count_of(run, surfels);
+            const std::uint32_t points = run.value(surfels.plan).point_count;
+            run.reserve(out.points, std::max(points, 1U));
+            run.reserve(out.cells, std::max(count, 1U));
+            if (count == 0) {
+                return;
+            }
+            gpu.bind_storage(BINDING_LIGHTS, run.object(lights.buffer));
+            gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
+            gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
+            gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(out.points));
+            gpu.bind_storage(BINDING_CELL_LIGHT, run.object(out.cells));
+            bind_tracing(gpu, run, lighter, tracing);
+            lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
+            const auto light_count = static_cast<std::uint32_t>(run.value(lights.table).entries.size());
+            light_points(gpu.gl(), lighter, points, light_count);
+            dispatch_surfels(gpu.gl(), adder, count);
+        });
         return out;
     });
 }
@@ -188,9 +199,9 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
     });
 }
 
-Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Surfels& surfels,
-                      const SurfelVisibility& visibility, const Lighting& lights, std::uint32_t bounces) {
-    const DirectLight direct = add_direct_light(graph, gpu, scene, surfels, lights);
+Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
+                      const SurfelVisibility& visibility, const SurfelLights& lights, std::uint32_t bounces) {
+    const DirectLight direct = add_direct_light(graph, gpu, tracing, surfels, lights);
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, Usage::storage);

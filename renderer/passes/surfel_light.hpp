@@ -3,7 +3,7 @@
 #include "engine/graph/frame_graph.hpp"
 #include "renderer/gpu.hpp"
 #include "renderer/passes/bvh.hpp"
-#include "renderer/passes/lighting.hpp"
+#include "renderer/passes/lights.hpp"
 #include "renderer/passes/scene_motion.hpp"
 #include "renderer/passes/surfels.hpp"
 #include "renderer/passes/vpl_trace.hpp"
@@ -28,10 +28,16 @@ struct SurfelColumns {
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                                      const Surfels& surfels, ValueHandle<SceneMotion> motion);
 
-/// Nodes `surfel-light` (the real lights at the points of the cells) and `surfel-bounce` (what surfels gather
-/// of each other, to `bounces`): the light of surfels, as VPLs.
-[[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+/// The real lights.
+struct SurfelLights {
+    ValueHandle<LightTable> table;
+    BufferHandle<gpu::Light> buffer;
+};
+
+/// Nodes `surfel-light` (the real lights at the points of the cells, with a shadow ray each) and
+/// `surfel-bounce` (what surfels gather of each other, to `bounces`): the light of surfels, as VPLs.
+[[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const Surfels& surfels, const SurfelVisibility& visibility,
-                                    const Lighting& lights, std::uint32_t bounces);
+                                    const SurfelLights& lights, std::uint32_t bounces);
 
 }  // namespace candela

@@ -397,6 +397,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
         }
         pass.parameter(settings.count);
         pass.parameter(settings.seed);
+        pass.parameter(settings.bounces > 0);
         pass.remembers();
         const auto last = pass.write(graph.value<SpreadSurfels>("spread surfels"));
         const Surfels out{
@@ -408,6 +409,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
         pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
             VplSettings of_set = settings;
             of_set.seed += refinement ? run.value(*refinement).set : 0;
+            of_set.count = of_set.bounces > 0 ? of_set.count : 0;
             const SpreadSurfels spread_now =
                 spread(run.find(last), run.value(layout), run.value(placement), of_set);
             const SurfelSet set = placed_in_world(spread_now, run.value(placement));

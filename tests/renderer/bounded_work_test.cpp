@@ -58,6 +58,7 @@ TEST_SUITE("bounded work") {
         const Scene scene = patch_of_wall();
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
+        configuration.vpls.placement = VplPlacement::paths;
         SUBCASE("beyond the bound by themselves") {
             configuration.vpls.count = 100'000;
         }
@@ -138,7 +139,7 @@ TEST_SUITE("bounded work") {
         Scene scene = furnace_box(0.5F);
         add(scene.world, at({0, 0, 0}), MeshInstance{soup(3000, 1, 1.5F)});
         Configuration configuration = linear_configuration();
-        configuration.vpls = {.count = 512, .bounces = 8};
+        configuration.vpls = {.placement = VplPlacement::paths, .count = 512, .bounces = 8};
         static_cast<void>(picture(scene, configuration));
         const EnergyAccount flux = renderer.report().vpls->flux;
         const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;

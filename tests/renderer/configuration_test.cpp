@@ -155,7 +155,8 @@ TEST_SUITE("configuration") {
         const std::string scene =
             "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
             "view view-upload view-cull ";
-        const std::string vpls = "vpl-paths vpl-refresh vpl-trace vpl-constants ";
+        const std::string vpls =
+            "scene-motion surfels surfel-visibility surfel-light surfel-bounce vpl-constants ";
         CHECK(passes_of(ShadingPath::deferred, true) ==
               scene + vpls + "gbuffer deferred transparent tone-map");
         CHECK(passes_of(ShadingPath::forward, true) == scene + vpls + "forward transparent tone-map");
@@ -179,9 +180,9 @@ TEST_SUITE("configuration") {
         };
         // The first of each is about the frame before, whose VPLs and radiance are overwritten.
         CHECK(barriers_of(ShadingPath::deferred) ==
-              "vpl-trace: storage\ndeferred: image access + storage\ntransparent: framebuffer\n"
+              "surfel-bounce: storage\ndeferred: image access + storage\ntransparent: framebuffer\n"
               "tone-map: texture fetch\n");
-        CHECK(barriers_of(ShadingPath::forward) == "vpl-trace: storage\nforward: storage\n");
+        CHECK(barriers_of(ShadingPath::forward) == "surfel-bounce: storage\nforward: storage\n");
     }
 
     TEST_CASE_FIXTURE(RenderFixture, "the graph is described for Graphviz and as JSON, too") {

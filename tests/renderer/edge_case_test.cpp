@@ -117,11 +117,13 @@ TEST_SUITE("edge cases") {
 
     TEST_CASE_FIXTURE(EdgeCases, "a light exactly on a surface, an edge and a corner") {
         Scene scene = furnace_box(0.5F);
+        Configuration configuration = linear_configuration();
+        configuration.vpls.placement = VplPlacement::paths;
         for (const glm::vec3 position :
              {glm::vec3(1, 0.2F, 0.1F), glm::vec3(1, 1, 0.1F), glm::vec3(1, 1, 1), glm::vec3(0, 0, 0.9F)}) {
             CAPTURE(position.x);
             scene.world.set(scene.light, at(position));
-            const Picture picture = render_both(scene);
+            const Picture picture = render_both(scene, configuration);
             CHECK(mean(picture) > 1e-3);
             // All the light is accounted for, wherever it went.
             const EnergyAccount flux = renderer.report().vpls->flux;

@@ -29,6 +29,7 @@ class Energy : public RenderFixture {
     VplReport trace(const Scene& scene, const VplSettings& settings) {
         Configuration configuration = linear_configuration();
         configuration.vpls = settings;
+        configuration.vpls.placement = VplPlacement::paths;
         configure(configuration);
         renderer.invalidate();
         static_cast<void>(render(scene, size));

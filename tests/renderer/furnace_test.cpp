@@ -33,6 +33,7 @@ Scene furnace_sphere(float albedo) {
 /// Enough bounces that what is left after them is far below the tolerances: ρ⁶⁴ = 6·10⁻⁷ at 0.8.
 Configuration furnace_configuration(std::uint32_t vpls) {
     Configuration configuration = linear_configuration();
+    configuration.vpls.placement = VplPlacement::paths;
     configuration.vpls.count = vpls;
     configuration.vpls.bounces = 64;
     return configuration;

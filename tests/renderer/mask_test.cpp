@@ -133,6 +133,7 @@ class Masks : public RenderFixture {
     EnergyAccount trace(const Scene& scene, const VplSettings& settings) {
         Configuration configuration = linear_configuration();
         configuration.vpls = settings;
+        configuration.vpls.placement = VplPlacement::paths;
         configure(configuration);
         renderer.invalidate();
         static_cast<void>(render(scene, {4, 4}));

@@ -213,7 +213,7 @@ TEST_SUITE("refinement") {
             CAPTURE(pass);
             CHECK_FALSE(ran(pass));
         }
-        CHECK(ran("vpl-trace"));
+        CHECK(ran("surfel-light"));
     }
 
     TEST_CASE_FIXTURE(

@@ -84,7 +84,7 @@ TEST_SUITE("switching") {
                 configure(by_path(path));
                 CHECK(render(scene, size) == pictures[path]);
                 for (const char* pass : {"scene-gather", "scene-upload", "instance-upload", "bvh", "lights",
-                                         "shadow-maps", "light-upload", "vpl-paths", "vpl-trace", "view"}) {
+                                         "shadow-maps", "light-upload", "surfels", "surfel-light", "view"}) {
                     CAPTURE(pass);
                     CHECK((!ran(pass) || (round == 0 && path == ShadingPath::forward)));
                 }

@@ -116,6 +116,7 @@ TEST_SUITE("geometry term") {
         const Scene scene = shipped_scene("furnace");
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
+        configuration.vpls.placement = VplPlacement::paths;
         configuration.vpls.count =
             256;  // of more, the discs are so small that a corner's pixel lies deep within them
         const auto picture = [&](VplVisibility method) {
