@@ -114,7 +114,8 @@ struct CellPoint {
     glm::vec3 normal;
     float area;
     glm::vec2 uv;
-    glm::vec2 pad0;
+    std::uint32_t surfel;
+    std::uint32_t pad0;
 };
 
 struct DirectPoint {

@@ -11,6 +11,8 @@ layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
 
+layout(std430, binding = BINDING_SEEN_POINTS) readonly restrict buffer Seen { uint seen[]; };
+
 uniform uint point_count;
 uniform uint light_count;
 uniform uint lights_before;  // in the dispatches before this one
@@ -36,7 +38,7 @@ void main() {
     CellPoint point = cell_points[id];
     Material material = materials[point.material];
     vec4 colour = colour_at(material, point.uv);
-    float area = colour.a < material.alpha_cutoff ? 0.0 : point.area;
+    float area = seen[id] == 0u || colour.a < material.alpha_cutoff ? 0.0 : point.area;
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, lights_before + lights_now);
     for (uint i = lights_before; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);

@@ -112,13 +112,14 @@ struct CellPoint {
     vec3 normal;    // unit
     float area;     // m²
     vec2 uv;
-    vec2 pad0;
+    uint surfel;    // whose cell it is of
+    uint pad0;
 };
 
 // What a point of a cell has of the lights.
 struct DirectPoint {
     vec3 arriving;  // flux
-    float area;     // m²; 0: a hole in a mask
+    float area;     // m²; 0: a hole in a mask, or what the surfel does not see
     vec3 albedo;
     float pad0;
 };

@@ -30,10 +30,12 @@ struct KnownVisibility {
     std::uint64_t step = 0;
     ObjectId form_factors = 0;
     ObjectId hits = 0;
+    ObjectId seen = 0;
     bool operator==(const KnownVisibility&) const = default;
 
     [[nodiscard]] bool is_of(const KnownVisibility& other) const {
-        return set == other.set && form_factors == other.form_factors && hits == other.hits;
+        return set == other.set && form_factors == other.form_factors && hits == other.hits &&
+               seen == other.seen;
     }
 };
 
@@ -93,11 +95,12 @@ void light_points(const gl::Functions& gl, const gl::Program& program, std::uint
 }
 
 DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
-                             const SurfelLights& lights) {
+                             const SurfelVisibility& visibility, const SurfelLights& lights) {
     return graph.add("surfel-light", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, Usage::storage);
         pass.read(surfels.points, Usage::storage);
+        pass.read(visibility.seen_points, Usage::storage);
         pass.read(lights.table);
         pass.read(lights.buffer, Usage::storage);
         read_tracing(pass, tracing);
@@ -120,6 +123,7 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             gpu.bind_storage(BINDING_LIGHTS, run.object(lights.buffer));
             gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
             gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
+            gpu.bind_storage(BINDING_SEEN_POINTS, run.object(visibility.seen_points));
             gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(out.points));
             gpu.bind_storage(BINDING_CELL_LIGHT, run.object(out.cells));
             bind_tracing(gpu, run, lighter, tracing);
@@ -153,24 +157,30 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         const gl::Program& factors = gpu.program({"surfel_form_factors.comp"});
         const gl::Program& cover = gpu.program({"surfel_cover.comp"});
         const gl::Program& rows = gpu.program({"surfel_rows.comp"});
+        const gl::Program& seer = gpu.program({"surfel_points.comp"});
         const SurfelVisibility out{
             .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
                                        Usage::storage),
             .rows =
-                pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent), Usage::storage)};
+                pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent), Usage::storage),
+            .seen_points = pass.write(graph.buffer<std::uint32_t>("seen points", 1, Lifetime::persistent),
+                                      Usage::storage)};
         const auto hits =
             pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent), Usage::storage);
         const auto known = pass.write(graph.value<KnownVisibility>("known visibility"));
-        pass.run([=, &gpu, &factors, &cover, &rows](Execution& run) {
+        pass.run([=, &gpu, &factors, &cover, &rows, &seer](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             run.reserve(out.form_factors,
                         std::max<std::uint64_t>(std::uint64_t{count} * surfel_columns(count).count / 2, 1));
             run.reserve(out.rows, std::max(count, 1U));
+            const std::uint32_t points = run.value(surfels.plan).point_count;
             run.reserve(hits, std::max(count * COVER_PARTS, 1U));
+            run.reserve(out.seen_points, std::max(points, 1U));
             const KnownVisibility now{.set = run.value(surfels.set),
                                       .step = run.value(motion).step,
                                       .form_factors = run.object(out.form_factors),
-                                      .hits = run.object(hits)};
+                                      .hits = run.object(hits),
+                                      .seen = run.object(out.seen_points)};
             const KnownVisibility* const before = run.find(known);
             std::optional<std::vector<Box>> changed;
             if (before != nullptr && before->is_of(now)) {
@@ -186,7 +196,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             gpu.bind_storage(BINDING_COVER, now.hits);
             gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(out.rows));
             const float offset = run.value(tracing.metrics).ray_offset();
-            for (const gl::Program* tracer : {&factors, &cover}) {
+            for (const gl::Program* tracer : {&factors, &cover, &seer}) {
                 bind_tracing(gpu, run, *tracer, tracing);
                 tracer->set("ray_offset", offset);
                 set_changed_boxes(*tracer, changed, 4.0F * offset);
@@ -194,6 +204,10 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             find_form_factors(gpu.gl(), factors, count);
             find_cover(gpu.gl(), cover, count);
             dispatch_surfels(gpu.gl(), rows, count);
+            gpu.bind_storage(BINDING_SEEN_POINTS, now.seen);
+            seer.set("point_count", points);
+            seer.use();
+            gpu.gl().DispatchCompute(groups(points), 1, 1);
         });
         return out;
     });
@@ -201,7 +215,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
 
 Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
                       const SurfelVisibility& visibility, const SurfelLights& lights, std::uint32_t bounces) {
-    const DirectLight direct = add_direct_light(graph, gpu, tracing, surfels, lights);
+    const DirectLight direct = add_direct_light(graph, gpu, tracing, surfels, visibility, lights);
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, Usage::storage);

@@ -14,6 +14,7 @@ namespace candela {
 struct SurfelVisibility {
     BufferHandle<std::uint32_t> form_factors;  ///< half floats, two a word: `surfel_columns` a row
     BufferHandle<glm::vec2> rows;  ///< by surfel: scale of its row, share of its hemisphere that is open
+    BufferHandle<std::uint32_t> seen_points;  ///< by point of a cell: 1 where its surfel sees it
 };
 
 /// How many others a surfel gathers from: where they are many, every n-th stands for all.

@@ -99,7 +99,8 @@ std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, st
                            .normal = all.sides[side].normal,
                            .area = static_cast<float>(share),
                            .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
-                           .pad0 = glm::vec2(0.0F)},
+                           .surfel = 0,
+                           .pad0 = 0},
                           all.sides[side].item});
     }
     return points;
@@ -238,6 +239,7 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points
         surfel.area += points[i].area;
         surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
         set.points.push_back(points[i]);
+        set.points.back().surfel = static_cast<std::uint32_t>(set.surfels.size() - 1);
     }
     return set;
 }

@@ -96,18 +96,18 @@ def excess_frames(row: Row, against: Row) -> int:
 
 
 def flicker_table(played: Sequence[Row]) -> list[Row]:
-    """By script, how much the indirect light flickers, and how much less the incremental VPLs do."""
+    """By script, how much the indirect light flickers, and how much less that of surfels does."""
     table = []
     for script in dict.fromkeys(row["scene"] for row in played if row["suite"] != "refinement"):
         found = {row["id"]: row for row in select(played, scene=script)}
-        if not {"fresh", "fixed", "incremental"} <= found.keys():
+        if not {"fresh", "fixed", "surfels"} <= found.keys():
             continue
         flicker = {name: row["indirect_flicker"] for name, row in found.items()}
         line = {"script": script, "noise": found["fixed"]["flicker_noise"], **flicker}
         for name in ("fresh", "fixed"):
-            line[f"incremental_to_{name}"] = flicker["incremental"] / max(flicker[name], 1e-30)
-        line["excess_frames"] = excess_frames(found["incremental"], found["fixed"])
-        table.append({**line, "most_debt": max(found["incremental"]["debt"])})
+            line[f"surfels_to_{name}"] = flicker["surfels"] / max(flicker[name], 1e-30)
+        line["excess_frames"] = excess_frames(found["surfels"], found["fixed"])
+        table.append(line)
     return table
 
 

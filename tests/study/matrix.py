@@ -24,9 +24,10 @@ UNBOUNDED = "infinity"
 LEVERS: dict[str, Config] = {
     "none": {
         "shadows": {"cube_resolution": 512, "map_resolution": 1024},
-        "vpls": {"visibility": "none", "budget": 0, "interleave": 1},
+        "vpls": {"placement": "paths", "visibility": "none", "interleave": 1},
         "refinement": {"enabled": False},
     },
+    "surfels": {"vpls": {"placement": "surfels"}},
     "interleave-2": {"vpls": {"interleave": 2}},
     "interleave-4": {"vpls": {"interleave": 4}},
     "interleave-8": {"vpls": {"interleave": 8}},

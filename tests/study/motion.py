@@ -9,7 +9,6 @@ from matrix import Config, Reference
 
 SCRIPTS = {"orbit-light": 60, "flicker-walk": 60, "door-opens": 60, "teleport": 60, "toggle": 60}  # frames
 VPLS = 256
-BUDGET = 8
 STILL_FRAMES = 64  # that refinement takes the mean of
 
 
@@ -38,18 +37,18 @@ class Motion:
         return f"{self.suite}/{self.script}/{self.size[0]}x{self.size[1]}"
 
 
-def config(vpls: int, budget: int, refined: bool = False) -> Config:
-    """The default of the matrix, with so many VPLs that may be made in a frame."""
+def config(vpls: int, placement: str = "paths", refined: bool = False) -> Config:
+    """The default of the matrix, with VPLs that are placed so."""
     base = matrix.point(vpls).config
-    return matrix.merged(base, {"vpls": {"budget": budget}, "refinement": {"enabled": refined}})
+    return matrix.merged(base, {"vpls": {"placement": placement}, "refinement": {"enabled": refined}})
 
 
 def takes() -> tuple[Take, ...]:
-    """All VPLs made anew with each move, from other samples or from the same ones, and a few of them a frame."""
+    """Paths traced anew with each move, from other samples or from the same ones, and surfels, which stay."""
     return (
-        Take("fresh", config(VPLS, 0), fresh_seeds=True),
-        Take("fixed", config(VPLS, 0)),
-        Take("incremental", config(VPLS, BUDGET)),
+        Take("fresh", config(VPLS), fresh_seeds=True),
+        Take("fixed", config(VPLS)),
+        Take("surfels", config(VPLS, "surfels")),
     )
 
 
@@ -57,7 +56,7 @@ def motions() -> list[Motion]:
     """References of as many bounces as the VPLs have: what is left is noise."""
     reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)
     moving = [Motion("motion", script, matrix.SMALL, reference, frames, takes()) for script, frames in SCRIPTS.items()]
-    refined = tuple(Take(f"refined-{vpls}", config(vpls, 0, refined=True)) for vpls in (64, 256))
+    refined = tuple(Take(f"refined-{vpls}", config(vpls, refined=True)) for vpls in (64, 256))
     exact = Reference(samples=2048, bounces=matrix.DEFAULT_BOUNCES)
     still = [
         Motion("refinement", f"still-{scene}", matrix.SMALL, exact, STILL_FRAMES, refined) for scene in matrix.HIDDEN

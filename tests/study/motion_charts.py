@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 import charts
 from analysis import Row, select
 from charts import BLUE, GREEN, ORANGE, RED, Made
-from motion import BUDGET, VPLS
+from motion import VPLS
 
 STYLES = {
     "fresh": (ORANGE, f"all {VPLS} VPLs made anew, fresh samples"),
     "fixed": (BLUE, f"all {VPLS} VPLs made anew, fixed samples"),
-    "incremental": (RED, f"incremental, {BUDGET} VPLs and maps a frame"),
+    "surfels": (RED, f"{VPLS} surfels"),
 }
 REFINED = {"refined-64": (GREEN, "o", "sets of 64 VPLs"), "refined-256": (BLUE, "s", "sets of 256 VPLs")}
 

@@ -170,14 +170,12 @@ def visibility_strip(out: pathlib.Path, scene: str, rows: Sequence[Row]) -> str:
 def flicker(table_rows: Sequence[Row]) -> str:
     if not table_rows:
         return ""
-    columns = {"script": "", "fresh": "fresh samples", "fixed": "fixed samples", "incremental": "incremental",
-               "incremental_to_fresh": "incremental / fresh", "incremental_to_fixed": "incremental / fixed",
-               "noise": "the reference's own", "excess_frames": "frames above 1.2 × the error of fixed samples",
-               "most_debt": "largest debt"}
+    columns = {"script": "", "fresh": "fresh samples", "fixed": "fixed samples", "surfels": "surfels",
+               "surfels_to_fresh": "surfels / fresh", "surfels_to_fixed": "surfels / fixed",
+               "noise": "the reference's own", "excess_frames": "frames above 1.2 × the error of fixed samples"}
     note = (
         "Flicker of the indirect light: relMSE between its changes from frame to frame and those of the reference. "
-        "Where a light jumps and then stands still, as in teleport and toggle, VPLs made anew are done at once, and "
-        "incremental ones spread the change over the frames that follow."
+        "Samples, fresh or fixed, are of paths that are traced anew where something moves; surfels stay where they are."
     )
     return element("h2", "Flicker") + element("p", note) + table(columns, table_rows)
 

@@ -42,11 +42,10 @@ def time_units(group: Group, one: Point) -> float:
 
 
 def motion_units(motion: Motion, take: Take) -> float:
-    """As if all maps were drawn in every frame, unless few may be."""
+    """As if all maps were drawn in every frame."""
     vpls = take.config["vpls"]
-    drawn = min(vpls["budget"] or vpls["count"], vpls["count"])
     shading = motion.size[0] * motion.size[1] * vpls["count"] * SECONDS_PER_EVALUATION["maps"]
-    drawing = drawn * vpls["map_resolution"] ** 2 * SECONDS_PER_TEXEL
+    drawing = vpls["count"] * vpls["map_resolution"] ** 2 * SECONDS_PER_TEXEL
     return motion.frames * (2 * FRAME_OVERHEAD + shading + drawing)
 
 

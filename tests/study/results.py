@@ -89,7 +89,7 @@ def tracer_rows(study: Study, groups: list[Group]) -> list[Row]:
     return rows
 
 
-FRAME_FIGURES = ("full_ms", "traced", "maps_drawn", "debt", "stale", "refined")
+FRAME_FIGURES = ("full_ms", "refined")
 
 
 def motion_row(motion: Motion, take: Take, record: journal.Record | None) -> Row:
@@ -151,11 +151,9 @@ def app_default() -> dict[str, Any]:
 
 
 def is_app_default(best: Row, default: dict[str, Any], points: tuple[Point, ...]) -> bool:
-    """Whether the chosen point sets nothing but what the app does anyway, but for what makes no difference to a still
-    picture: how many VPLs may be made anew in a frame."""
+    """Whether the chosen point sets nothing but what the app does anyway."""
     config = next(one.config for one in points if one.id == best["id"])
-    aside = {"vpls": {"budget": default["vpls"]["budget"]}}
-    return same(matrix.merged(matrix.merged(default, config), aside), default)
+    return same(matrix.merged(default, config), default)
 
 
 def same(a: Any, b: Any) -> bool:

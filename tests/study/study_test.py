@@ -173,7 +173,7 @@ class Matrix(unittest.TestCase):
     def test_the_yardstick_has_every_lever_off(self) -> None:
         config = matrix.blind(256, bound=matrix.UNBOUNDED).config
         self.assertEqual(config["vpls"]["visibility"], "none")
-        self.assertEqual(config["vpls"]["budget"], 0)
+        self.assertEqual(config["vpls"]["placement"], "paths")
         self.assertFalse(config["refinement"]["enabled"])
 
     def test_shadow_levers_leave_no_light_without_a_map(self) -> None:
@@ -199,7 +199,7 @@ class Matrix(unittest.TestCase):
 
 
 def take_row(name: str, errors: list[float], flicker: float) -> dict[str, object]:
-    base = {"suite": "motion", "scene": "walk", "id": name, "failed": "", "flicker_noise": 0.001, "debt": [0, 3, 1]}
+    base = {"suite": "motion", "scene": "walk", "id": name, "failed": "", "flicker_noise": 0.001}
     return {**base, "indirect_rel_mse": errors, "indirect_flicker": flicker}
 
 
@@ -208,19 +208,19 @@ class Motions(unittest.TestCase):
         return [
             take_row("fresh", [0.1, 0.1, 0.1], 4.0),
             take_row("fixed", [0.1, 0.1, 0.1], 0.5),
-            take_row("incremental", [0.1, 0.13, 0.11], 0.125),
+            take_row("surfels", [0.1, 0.13, 0.11], 0.125),
         ]
 
     def test_the_table_has_ratios_and_frames_that_are_worse(self) -> None:
         (line,) = analysis.flicker_table(self.rows())
-        self.assertAlmostEqual(line["incremental_to_fresh"], 0.125 / 4.0)
-        self.assertAlmostEqual(line["incremental_to_fixed"], 0.25)
-        self.assertEqual((line["excess_frames"], line["most_debt"]), (1, 3))
+        self.assertAlmostEqual(line["surfels_to_fresh"], 0.125 / 4.0)
+        self.assertAlmostEqual(line["surfels_to_fixed"], 0.25)
+        self.assertEqual(line["excess_frames"], 1)
 
     def test_a_script_that_lacks_a_take_is_left_out(self) -> None:
         self.assertEqual(analysis.flicker_table(self.rows()[:2]), [])
 
-    def test_incremental_vpls_that_flicker_are_noticed(self) -> None:
+    def test_surfels_that_flicker_are_noticed(self) -> None:
         self.assertTrue(all(holds for _, holds, _ in checks.flicker_falls(self.rows())))
         rows = self.rows()
         rows[2]["indirect_flicker"] = 0.6
@@ -236,10 +236,10 @@ class Motions(unittest.TestCase):
         own_words = {"kind": "failed", "message": "its own words"}
         self.assertEqual(measuring.told([frame, own_words], "")["message"], "its own words")
 
-    def test_takes_differ_in_nothing_but_budget_and_seeds(self) -> None:
-        fresh, fixed, incremental = motion.takes()
+    def test_takes_differ_in_nothing_but_placement_and_seeds(self) -> None:
+        fresh, fixed, surfels = motion.takes()
         self.assertEqual(fresh.config, fixed.config)
-        self.assertEqual(matrix.merged(incremental.config, {"vpls": {"budget": 0}}), fixed.config)
+        self.assertEqual(matrix.merged(surfels.config, {"vpls": {"placement": "paths"}}), fixed.config)
 
     def test_keys_tell_takes_and_scripts_apart(self) -> None:
         walk = motion.quick_motions()[0]
