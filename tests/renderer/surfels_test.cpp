@@ -1,0 +1,279 @@
+// Where surfels are, what light they send on, and that they follow what moves.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <random>
+#include <set>
+
+#include "renderer/passes/surfels.hpp"
+#include "tests/renderer/scene_builder.hpp"
+#include "tests/seed.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr double pi = glm::pi<double>();
+
+/// A parallelogram of two triangles.
+void add_parallelogram(SurfelGround& ground, std::uint32_t item, glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
+    const auto add_triangle = [&](glm::vec3 a, glm::vec3 ab, glm::vec3 ac) {
+        gpu::TraceTriangle triangle{};
+        triangle.a = a;
+        triangle.edge_ab = ab;
+        triangle.edge_ac = ac;
+        ground.triangles.push_back(triangle);
+        ground.item_of.push_back(item);
+    };
+    add_triangle(corner, u, v);
+    add_triangle(corner + u + v, -u, -v);
+}
+
+/// The six sides of a cube of 2 m, each of its own normal.
+SurfelGround cube() {
+    SurfelGround ground{.triangles = {}, .item_of = {}, .double_sided = {false}};
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F}) {
+            glm::vec3 normal(0.0F), u(0.0F);
+            normal[axis] = side;
+            u[(axis + 1) % 3] = 2.0F;
+            const glm::vec3 v = glm::cross(normal, u);
+            add_parallelogram(ground, 0, normal - 0.5F * (u + v), u, v);
+        }
+    }
+    return ground;
+}
+
+double total_area(const SurfelSet& set) {
+    double area = 0.0;
+    for (const gpu::Vpl& surfel : set.surfels) area += static_cast<double>(surfel.area);
+    return area;
+}
+
+class SurfelTests : public RenderFixture {
+ protected:
+    static Configuration surfels(std::uint32_t count, std::uint32_t bounces = 8) {
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::indirect;
+        configuration.vpls = {
+            .placement = VplPlacement::surfels, .count = count, .bounces = bounces, .seed = 0};
+        return configuration;
+    }
+
+    /// What a renderer that has seen nothing else makes of the scene.
+    Picture fresh_picture(const Scene& scene, glm::uvec2 size) {
+        TestedRenderer fresh(context->get_proc());
+        REQUIRE(fresh.configure(renderer.configuration()).empty());
+        const RenderTarget target(device, size);
+        fresh.render(scene.world, scene.camera, target.target());
+        return target.read();
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("surfels: where they are") {
+    TEST_CASE("their cells have the area of all surfaces, each about its share of it") {
+        for (const std::uint32_t count : {24U, 100U, 1000U}) {
+            CAPTURE(count);
+            const SurfelSet set = place_surfels(cube(), count, test_seed());
+            CHECK(set.surfels.size() <= count);
+            CHECK(set.surfels.size() > 0.8 * count);
+            CHECK(total_area(set) == doctest::Approx(24.0).epsilon(1e-4));
+            const double mean = 24.0 / static_cast<double>(set.surfels.size());
+            for (const gpu::Vpl& surfel : set.surfels) {
+                // A cell has some 16 of the points, and after two rounds of moving to its middle none has
+                // very few or many.
+                CHECK(static_cast<double>(surfel.area) > 0.2 * mean);
+                CHECK(static_cast<double>(surfel.area) < 3.0 * mean);
+            }
+        }
+    }
+
+    TEST_CASE("a cell is flat, on one side and near its surfel") {
+        const SurfelSet set = place_surfels(cube(), 200, test_seed());
+        const float width = std::sqrt(24.0F / 200.0F);
+        std::size_t points = 0;
+        for (const gpu::Vpl& surfel : set.surfels) {
+            REQUIRE(surfel.first_point == points);
+            for (std::uint32_t i = 0; i < surfel.point_count; ++i, ++points) {
+                const gpu::CellPoint& point = set.points[points];
+                CHECK(glm::dot(point.normal, surfel.normal) > 0.999F);
+                CHECK(std::abs(glm::dot(point.position - surfel.position, surfel.normal)) < 1e-5F);
+                CHECK(glm::distance(point.position, surfel.position) < 2.0F * width);
+                CHECK(set.surfels[point.surfel].first_point == surfel.first_point);
+            }
+        }
+        CHECK(points == set.points.size());
+    }
+
+    TEST_CASE("surfaces that are double-sided have them on both sides, others on their front") {
+        SurfelGround sheet{.triangles = {}, .item_of = {}, .double_sided = {false}};
+        add_parallelogram(sheet, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        for (const bool both : {false, true}) {
+            sheet.double_sided[0] = both;
+            const SurfelSet set = place_surfels(sheet, 50, 0);
+            const auto front = std::ranges::count_if(
+                set.surfels, [](const gpu::Vpl& surfel) { return surfel.normal.z > 0.5F; });
+            CHECK(total_area(set) == doctest::Approx(both ? 2.0 : 1.0).epsilon(1e-4));
+            CHECK(static_cast<double>(front) / static_cast<double>(set.surfels.size()) ==
+                  doctest::Approx(both ? 0.5 : 1.0).epsilon(0.1));
+        }
+    }
+
+    TEST_CASE("no cell reaches over to another item, though that lies in the same plane") {
+        SurfelGround two{.triangles = {}, .item_of = {}, .double_sided = {false}};
+        add_parallelogram(two, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        const SurfelSet set = place_surfels(two, 40, test_seed());
+        for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+            const gpu::Vpl& surfel = set.surfels[i];
+            for (std::uint32_t p = 0; p < surfel.point_count; ++p) {
+                CHECK((set.points[surfel.first_point + p].position.x < 1.0F) == (set.item_of[i] == 0));
+            }
+        }
+    }
+
+    TEST_CASE("a set of another seed is another one, and nothing gives none") {
+        CHECK(place_surfels(cube(), 100, 1).surfels[0].position !=
+              place_surfels(cube(), 100, 2).surfels[0].position);
+        CHECK(place_surfels(cube(), 0, 1).surfels.empty());
+        CHECK(place_surfels({}, 100, 1).surfels.empty());
+    }
+
+    TEST_CASE("an item's shape does not depend on how it is turned, to the bit") {
+        std::mt19937 engine(test_seed());
+        std::uniform_real_distribution<float> number(-1.0F, 1.0F);
+        for (const glm::vec3 scale :
+             {glm::vec3(1.0F), glm::vec3(2.0F, 1.0F, 0.7F), glm::vec3(-1.0F, 0.3F, 5.0F)}) {
+            const glm::mat3 shape = shape_of(glm::scale(glm::mat4(1.0F), scale));
+            for (int i = 0; i < 200; ++i) {
+                const glm::vec3 axis =
+                    glm::normalize(glm::vec3(number(engine), number(engine), number(engine)));
+                glm::mat4 world = glm::rotate(glm::mat4(1.0F), 3.0F * number(engine), axis);
+                world = glm::scale(world, scale);
+                world[3] = glm::vec4(number(engine), 2.0F, number(engine), 1.0F);
+                CHECK(shape_of(world) == shape);
+                // What is left is a rotation: mirrors stay in the shape.
+                const glm::mat3 rotation = glm::mat3(world) * glm::inverse(shape);
+                CHECK(glm::determinant(rotation) == doctest::Approx(1.0).epsilon(1e-3));
+            }
+        }
+    }
+}
+
+TEST_SUITE("surfels: their light") {
+    TEST_CASE_FIXTURE(SurfelTests, "in a sphere lit from its centre, walls reflect evenly and lose little") {
+        // Radiance ρ/π · I/R² · ρ/(1 - ρ) comes by way of surfaces. Discs take off what is nearer than their
+        // radius: of 256 points a cell each, some 16⁻¹ of 256⁻¹ of the sphere, times a logarithm.
+        constexpr float albedo = 0.5F;
+        Scene scene;
+        add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 4, diffuse(glm::vec3(albedo)))});
+        scene.light = add(scene.world, Transform{}, PointLight{.intensity = 3.0F});
+        scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+        configure(surfels(256, 24));  // 2⁻²⁴ is left after them
+        const Picture picture = render(scene, {48, 36});
+        const double expected = 0.5 / pi * 3.0 / 4.0;
+        CHECK(mean(picture) == doctest::Approx(expected).epsilon(0.02));
+        for (const glm::vec3& pixel : picture.pixels) {
+            CHECK(static_cast<double>(pixel.r) == doctest::Approx(expected).epsilon(0.06));
+        }
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "the more there are, the more of a closed box's light is accounted for") {
+        const Scene scene = furnace_box(0.5F);
+        double before = 1.0;
+        for (const std::uint32_t count : {64U, 256U, 1024U}) {
+            CAPTURE(count);
+            configure(surfels(count, 24));
+            static_cast<void>(render(scene, {16, 12}));
+            const EnergyAccount flux = renderer.report().vpls->flux;
+            // A light of 1 cd emits 4π lm, of which 16 points a surfel are a fine quadrature.
+            CHECK(flux.emitted.r == doctest::Approx(4.0 * pi).epsilon(0.01));
+            CHECK(flux.escaped.r == 0.0);
+            const double lost =
+                std::abs(flux.emitted.r - flux.absorbed.r - flux.truncated.r) / flux.emitted.r;
+            CHECK(lost < before);
+            before = lost;
+        }
+        CHECK(before < 0.005);
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "without bounces there are none, and one bounce is the lights' alone") {
+        const Scene scene = cornell_box();
+        configure(surfels(64, 0));
+        const Picture dark = render(scene, {24, 18});
+        CHECK(mean(dark) == 0.0);
+        configure(surfels(64, 1));
+        const Picture once = render(scene, {24, 18});
+        configure(surfels(64, 2));
+        const Picture twice = render(scene, {24, 18});
+        configure(surfels(64, 8));
+        const Picture more = render(scene, {24, 18});
+        CHECK(mean(once) > 0.0);
+        CHECK(mean(twice) > mean(once));
+        CHECK(mean(more) > mean(twice));
+        // What each further bounce adds is less than the one before, by the scene's albedo.
+        CHECK(mean(more) - mean(twice) < 3.0 * (mean(twice) - mean(once)));
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "light on a floor does not come through the wall that stands on it") {
+        // Of few surfels, whose cells reach under the wall. Behind it is nothing but the floor, which lights
+        // nothing of itself, and the wall's back.
+        Scene scene;
+        add(scene.world, Transform{}, MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F)))});
+        const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
+        add(scene.world, Transform{.translation = {0, 0, 0}, .rotation = upright},
+            MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F), true))});
+        scene.light = add(scene.world, at({1.0F, 1.0F, 0}), PointLight{.intensity = 10.0F});
+        scene.camera = add(scene.world, looking({-1.0F, 1.5F, 0.1F}, {-0.3F, 0.3F, 0}), Camera{});
+        for (const auto method : {VplVisibility::maps, VplVisibility::rays}) {
+            Configuration configuration = surfels(50);
+            configuration.visibility.method = method;
+            configure(configuration);
+            const double behind = mean(render(scene, {32, 24}));
+            Scene before = scene;
+            before.world.set(before.camera, looking({1.0F, 1.5F, 0.1F}, {0.3F, 0.3F, 0}));
+            renderer.invalidate();
+            const double lit = mean(render(before, {32, 24}));
+            CHECK(lit > 0.05);
+            CHECK(behind < 1e-3 * lit);
+        }
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "what moves is seen where it is now, bit for bit as by a fresh renderer") {
+        for (const auto method : {VplVisibility::maps, VplVisibility::none}) {
+            Configuration configuration = surfels(96);
+            configuration.visibility = {.method = method, .map_resolution = 16};
+            configure(configuration);
+            Scene scene = cornell_box();
+            Entity block;
+            for (const auto& [entity, name] : scene.world.view<Name>()) {
+                if (name.value == "tall block") block = entity;
+            }
+            static_cast<void>(render(scene, {40, 30}));
+            for (int step = 0; step < 4; ++step) {
+                CAPTURE(step);
+                scene.world.edit<Transform>(block, [](Transform& pose) {
+                    pose.translation += glm::vec3(0.05F, 0.02F, 0.03F);
+                    pose.rotation = glm::angleAxis(0.2F, glm::vec3(0, 1, 0)) * pose.rotation;
+                });
+                CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
+            }
+            // A light moves between two moves of the block.
+            scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.2F; });
+            CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
+            CHECK_FALSE(ran("surfels"));
+            CHECK_FALSE(ran("surfel-visibility"));
+            scene.world.edit<Transform>(block, [](Transform& pose) { pose.translation.z -= 0.1F; });
+            CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
+        }
+    }
+}
