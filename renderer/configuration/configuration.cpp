@@ -281,6 +281,10 @@ std::vector<std::string> validate(const Configuration& configuration) {
     std::vector<std::string> faults;
     Validator validator(faults);
     visit(configuration, validator);
+    if (configuration.vpls.placement == VplPlacement::surfels && configuration.vpls.count > most_surfels) {
+        faults.push_back(fmt::format("vpls.count: {} surfels are too many; {} are possible",
+                                     configuration.vpls.count, most_surfels));
+    }
     if (configuration.lists.tile_size % 16 != 0) {
         faults.push_back(
             fmt::format("lists.tile_size: {} is not a multiple of 16", configuration.lists.tile_size));

@@ -54,7 +54,7 @@ struct Configuration {
     VplSettings vpls;
     Interleave interleave = Interleave::automatic;
     VplVisibilitySettings visibility;
-    float geometry_bound = 1.0F;  ///< factor on the bound of a VPL's geometry term: see vpl_radius2
+    float geometry_bound = 1.0F;  ///< factor on the bound of a traced VPL's geometry term: see vpl_radius2
     ListSettings lists;
     ShadowSettings shadows;
     RefinementSettings refinement;

@@ -18,6 +18,9 @@ enum class VplPlacement : std::uint8_t {
     surfels  ///< evenly on all surfaces, whatever the lights do; they gather their light
 };
 
+/// With VplPlacement::surfels. What they see of each other then takes some 256 MiB.
+inline constexpr std::uint32_t most_surfels = 65536;
+
 struct VplSettings {
     VplPlacement placement = VplPlacement::surfels;
     std::uint32_t count = 512;  ///< at most so many are placed on paths, about so many surfels

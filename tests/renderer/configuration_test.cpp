@@ -106,6 +106,7 @@ TEST_SUITE("configuration") {
 
     TEST_CASE("values out of range are found, and so is what is not a number") {
         Configuration c;
+        c.vpls.placement = VplPlacement::paths;
         c.vpls.count = (1U << 20U) + 1;
         c.vpls.bounces = 65;
         c.geometry_bound = std::nanf("");
@@ -118,6 +119,17 @@ TEST_SUITE("configuration") {
         CHECK(faults[2].starts_with("vpls.geometry_bound: "));
         CHECK(faults[3].starts_with("shadows.cube_resolution: "));
         CHECK(faults[4].starts_with("tone_map.exposure_ev: "));
+    }
+
+    TEST_CASE("of surfels fewer are possible than of VPLs on paths") {
+        Configuration c;
+        c.vpls = {.placement = VplPlacement::surfels, .count = 65536};
+        CHECK(validate(c).empty());
+        c.vpls.count = 65537;
+        CHECK(validate(c) ==
+              std::vector<std::string>{"vpls.count: 65537 surfels are too many; 65536 are possible"});
+        c.vpls.placement = VplPlacement::paths;
+        CHECK(validate(c).empty());
     }
 
     TEST_CASE_FIXTURE(RenderFixture, "a faulty configuration leaves the present one running") {
