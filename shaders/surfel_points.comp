@@ -22,6 +22,8 @@ void main() {
     float lift = LIFT * sqrt(surfel.area);
     vec3 origin = surfel.position + lift * surfel.normal;
     vec3 direction = point.position + lift * point.normal - origin;
-    if (!may_have_changed(origin, direction, 1.0)) return;
+    // What has moved by itself lies in a changed box, though what is lifted off it may not.
+    bool moved = may_have_changed(surfel.position, point.position - surfel.position, 1.0);
+    if (!moved && !may_have_changed(origin, direction, 1.0)) return;
     seen[id] = any_hit(origin, direction, 0.0, 1.0) ? 0u : 1u;
 }

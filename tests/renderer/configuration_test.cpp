@@ -192,9 +192,11 @@ TEST_SUITE("configuration") {
         };
         // The first of each is about the frame before, whose VPLs and radiance are overwritten.
         CHECK(barriers_of(ShadingPath::deferred) ==
-              "surfel-bounce: storage\ndeferred: image access + storage\ntransparent: framebuffer\n"
+              "surfel-light: storage\nsurfel-bounce: storage\ndeferred: image access + storage\ntransparent: "
+              "framebuffer\n"
               "tone-map: texture fetch\n");
-        CHECK(barriers_of(ShadingPath::forward) == "surfel-bounce: storage\nforward: storage\n");
+        CHECK(barriers_of(ShadingPath::forward) ==
+              "surfel-light: storage\nsurfel-bounce: storage\nforward: storage\n");
     }
 
     TEST_CASE_FIXTURE(RenderFixture, "the graph is described for Graphviz and as JSON, too") {
