@@ -151,6 +151,9 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
         refine_ = false;
     }
     set_refinement_clock();
+    if (frame_.epoch) {
+        runtime_.set(*frame_.epoch, epoch_);
+    }
 
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t index = next_frame_++;
@@ -216,6 +219,7 @@ void Renderer::set_refinement_clock() {
 
 void Renderer::invalidate() {
     runtime_.invalidate();
+    ++epoch_;
     world_ = nullptr;
 }
 

@@ -154,6 +154,7 @@ class Renderer {
     Tick last_revision_ = 0;  // of the world, in the last frame
     Clock::time_point last_move_;
     FrameHandles frame_;
+    std::uint64_t epoch_ = 0;  // another one: nothing of the scene is known
     RefinementClock refinement_clock_;
     bool refine_ = false;           // whether the next frame is to add another set of VPLs to the mean
     const World* world_ = nullptr;  // of the last frame, if that was finished

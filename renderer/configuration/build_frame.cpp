@@ -55,7 +55,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const SceneData seen = add_view_cull(graph, gpu, scene, camera);
     std::optional<MappedVpls> mapped;
     if (configuration.indirect && configuration.vpls.placement == VplPlacement::surfels) {
-        const ValueHandle<SceneMotion> motion = add_scene_motion(graph, scene);
+        frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
+        const ValueHandle<SceneMotion> motion = add_scene_motion(graph, scene, *frame.epoch);
         const Surfels surfels = add_surfels(graph, gpu, scene, frame.refinement, configuration.vpls);
         const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels, motion);
         frame.vpls = add_surfel_light(graph, gpu, tracing, surfels, visibility,

@@ -23,7 +23,9 @@ struct FrameHandles {
     ValueHandle<LightTable> lights;
     ValueHandle<ShadowPlan> shadows;
     ValueHandle<DrawnShadows> drawn_shadows;
-    std::optional<Vpls> vpls;                                      ///< none without indirect light
+    std::optional<ValueHandle<std::uint64_t>>
+        epoch;                 ///< imported: see add_scene_motion; none without surfels
+    std::optional<Vpls> vpls;  ///< none without indirect light
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::optional<ValueHandle<Refinement>> refinement;
     std::uint32_t interleave = 1;           ///< 1: each pixel asks all VPLs as it is shaded

@@ -54,20 +54,23 @@ std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
 
 }  // namespace
 
-ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene) {
+ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene,
+                                          ValueHandle<std::uint64_t> epoch) {
     return graph.add("scene-motion", [&](Pass& pass) {
         pass.remembers();
         pass.read(scene.layout);
         pass.read(scene.placement);
+        pass.read(epoch);
         const auto motion = pass.write(graph.value<SceneMotion>("scene motion"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
             const SceneMotion* const last = run.find(motion);
             SceneMotion now;
+            now.epoch = run.value(epoch);
             now.geometry = run.value(layout).geometry;
             now.placement = run.value(placement);
             if (last != nullptr) {
                 now.step = last->step + 1;
-                now.everything = last->geometry != now.geometry;
+                now.everything = last->epoch != now.epoch || last->geometry != now.geometry;
             }
             if (!now.everything) {
                 now.boxes = moved_boxes(now.geometry, last->placement, now.placement);

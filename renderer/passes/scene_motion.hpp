@@ -13,16 +13,18 @@ namespace candela {
 
 /// What has moved since the frame in which something moved before.
 struct SceneMotion {
-    std::uint64_t step = 0;  ///< counts the frames in which something moved
-    bool everything = true;  ///< meshes came, went or changed; `boxes` is empty then
-    std::vector<Box> boxes;  ///< world space, around what moved, as it was and as it is
-    SceneGeometry geometry;  ///< at the end of the step
+    std::uint64_t step = 0;   ///< counts the frames in which something moved
+    bool everything = true;   ///< meshes came, went or changed; `boxes` is empty then
+    std::vector<Box> boxes;   ///< world space, around what moved, as it was and as it is
+    std::uint64_t epoch = 0;  ///< of the host's: see add_scene_motion
+    SceneGeometry geometry;   ///< at the end of the step
     ScenePlacement placement;
     bool operator==(const SceneMotion&) const = default;
 };
 
-/// Node `scene-motion` (CPU).
-[[nodiscard]] ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene);
+/// Node `scene-motion` (CPU). Another `epoch` than before: everything is as if it had changed.
+[[nodiscard]] ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene,
+                                                        ValueHandle<std::uint64_t> epoch);
 
 /// Outside of which boxes all is as it was after the step `done`: at most MOST_CHANGED_BOXES of them, none
 /// where nothing moved. Nothing: anything may have changed.
