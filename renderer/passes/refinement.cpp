@@ -20,8 +20,13 @@ ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<Refinement
             const std::uint64_t epoch = run.value(clock).epoch;
             const bool moved =
                 run.changed(layout) || run.changed(placement) || run.changed(lights) || run.changed(view);
-            const bool rests = last != nullptr && last->epoch == epoch && !moved;
-            run.set(out, {rests ? last->set + 1 : 0, epoch});
+            const bool goes_on = last != nullptr && last->epoch == epoch;
+            Refinement now{.epoch = epoch};
+            if (goes_on) {
+                now.set = moved ? 0 : last->set + 1;
+                now.surfel_set = moved ? last->surfel_set : last->surfel_set + 1;
+            }
+            run.set(out, now);
         });
         return out;
     });

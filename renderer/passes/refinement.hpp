@@ -24,15 +24,18 @@ struct RefinementClock {
 };
 
 /// Which set of VPLs a frame is lit by. Set 0 is that of a frame without refinement; set k has the seed
-/// `VplSettings::seed` + k, and is seen at sample k of the pixels: see pixel_sample.
+/// `VplSettings::seed` + k, and is seen at sample k of the pixels: see pixel_sample. When something moves,
+/// paths fall back to set 0. Surfels go on from the set that they are, so that none of them has to be looked
+/// at anew.
 struct Refinement {
-    std::uint32_t set = 0;  ///< so many sets are in the mean already
+    std::uint32_t set = 0;         ///< so many sets are in the mean already
+    std::uint32_t surfel_set = 0;  ///< of surfels: where something moves they stay what they are
     std::uint64_t epoch = 0;
     bool operator==(const Refinement&) const = default;
 };
 
 /// Node `refinement` (CPU): goes on to the next set in each round in which the scene, its lights and the view
-/// are what they were, and else back to set 0 at once.
+/// are what they were, and else back to set 0 at once; surfels stay the set that they are.
 [[nodiscard]] ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
                                                      const SceneData& scene, ValueHandle<LightTable> lights,
                                                      ValueHandle<CameraView> view);

@@ -348,6 +348,30 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const ScenePlacement& pla
     return set;
 }
 
+ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
+                                      std::optional<ValueHandle<Refinement>> refinement,
+                                      const VplSettings& settings) {
+    return graph.add("surfel-spread", [&](Pass& pass) {
+        pass.read(scene.layout);
+        pass.read(scene.placement);
+        if (refinement) {
+            pass.read(*refinement);
+        }
+        pass.parameter(settings.count);
+        pass.parameter(settings.seed);
+        pass.parameter(settings.bounces > 0);
+        pass.remembers();
+        const auto out = pass.write(graph.value<SpreadSurfels>("spread surfels"));
+        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
+            VplSettings of_set = settings;
+            of_set.seed += refinement ? run.value(*refinement).surfel_set : 0;
+            of_set.count = of_set.bounces > 0 ? of_set.count : 0;
+            run.set(out, spread(run.find(out), run.value(layout), run.value(placement), of_set));
+        });
+        return out;
+    });
+}
+
 }  // namespace
 
 glm::mat3 shape_of(const glm::mat4& world) {
@@ -391,35 +415,23 @@ SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::ui
 
 Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                     std::optional<ValueHandle<Refinement>> refinement, const VplSettings& settings) {
+    const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, settings);
     return graph.add("surfels", [&](Pass& pass) {
-        pass.read(scene.layout);
+        pass.read(spread_surfels);
         pass.read(scene.placement);
-        if (refinement) {
-            pass.read(*refinement);
-        }
-        pass.parameter(settings.count);
-        pass.parameter(settings.seed);
-        pass.parameter(settings.bounces > 0);
-        pass.remembers();
-        const auto last = pass.write(graph.value<SpreadSurfels>("spread surfels"));
         const Surfels out{
             .plan = pass.write(graph.value<VplPlan>("surfel plan")),
             .set = pass.write(graph.value<std::uint64_t>("surfel set")),
             .surfels = pass.write(graph.buffer<gpu::Vpl>("surfels", 1, Lifetime::persistent), Usage::copy),
             .points = pass.write(graph.buffer<gpu::CellPoint>("cell points", 1, Lifetime::persistent),
                                  Usage::copy)};
-        pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
-            VplSettings of_set = settings;
-            of_set.seed += refinement ? run.value(*refinement).set : 0;
-            of_set.count = of_set.bounces > 0 ? of_set.count : 0;
-            const SpreadSurfels spread_now =
-                spread(run.find(last), run.value(layout), run.value(placement), of_set);
+        pass.run([=, &gpu, placement = scene.placement](Execution& run) {
+            const SpreadSurfels& spread_now = run.value(spread_surfels);
             const SurfelSet set = placed_in_world(spread_now, run.value(placement));
             upload<gpu::Vpl>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
             run.set(out.plan, plan_of(set));
             run.set(out.set, spread_now.number);
-            run.set(last, spread_now);
         });
         return out;
     });

@@ -48,8 +48,9 @@ struct Surfels {
     BufferHandle<gpu::CellPoint> points;
 };
 
-/// Node `surfels` (CPU), with refinement those of the set which is due. They belong to the items of the scene
-/// and move with them; they are spread anew where an item comes, goes or changes its size.
+/// Nodes `surfel-spread` (CPU: where they are on their items, with refinement those of the set which is due)
+/// and `surfels` (CPU: where they are in the world). They belong to the items of the scene and move with
+/// them; they are spread anew where an item comes, goes or changes its size.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                   std::optional<ValueHandle<Refinement>> refinement,
                                   const VplSettings& settings);

@@ -168,7 +168,7 @@ TEST_SUITE("configuration") {
             "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
             "view view-upload view-cull ";
         const std::string vpls =
-            "scene-motion surfels surfel-visibility surfel-light surfel-bounce vpl-constants ";
+            "scene-motion surfel-spread surfels surfel-visibility surfel-light surfel-bounce vpl-constants ";
         CHECK(passes_of(ShadingPath::deferred, true) ==
               scene + vpls + "gbuffer deferred transparent tone-map");
         CHECK(passes_of(ShadingPath::forward, true) == scene + vpls + "forward transparent tone-map");

@@ -162,7 +162,8 @@ TEST_SUITE("refinement") {
     TEST_CASE_FIXTURE(RefinementTests, "whatever moves gives the unrefined frame at once, bit for bit") {
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
-            const Configuration configuration = refining(16, path);
+            Configuration configuration = refining(16, path);
+            configuration.vpls.placement = VplPlacement::paths;
             configure(configuration);
             const Entity block = [&] {
                 Entity last{};
@@ -182,6 +183,28 @@ TEST_SUITE("refinement") {
             scene.world.edit<PointLight>(scene.light, [](PointLight& light) { light.intensity *= 1.5F; });
             CHECK(render(scene, size) == fresh_picture(configuration));
         }
+    }
+
+    TEST_CASE_FIXTURE(RefinementTests,
+                      "surfels stay the set that they are when a light or the camera moves") {
+        Configuration configuration = refining(16);
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+        configure(configuration);
+        static_cast<void>(refined(4));
+        for (const Entity moved : {scene.light, scene.camera}) {
+            move(moved);
+            Configuration of_set = configuration;
+            of_set.vpls.seed += 3;
+            CHECK(render(scene, size) == fresh_picture(of_set));
+            CHECK(renderer.report().refined == 1);
+            for (const std::string& pass : passes_that_ran()) {
+                CHECK((pass != "surfel-visibility" && pass != "vpl-maps"));
+            }
+        }
+        // From there the mean goes on with other sets.
+        static_cast<void>(refined(1));
+        CHECK(ran("vpl-maps"));
+        CHECK(renderer.report().refined == 2);
     }
 
     TEST_CASE_FIXTURE(RefinementTests, "it stops after as many frames, and then a frame costs nothing") {
