@@ -24,7 +24,8 @@ ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<Refinement
             Refinement now{.epoch = epoch};
             if (goes_on) {
                 now.set = moved ? 0 : last->set + 1;
-                now.surfel_set = moved ? last->surfel_set : last->surfel_set + 1;
+                const bool next_surfels = !moved && now.set % frames_a_surfel_set == 0;
+                now.surfel_set = last->surfel_set + (next_surfels ? 1 : 0);
             }
             run.set(out, now);
         });

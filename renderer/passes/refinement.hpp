@@ -23,10 +23,14 @@ struct RefinementClock {
     bool operator==(const RefinementClock&) const = default;
 };
 
+/// Frames in the mean that share a set of surfels, which costs some times as much as a frame does; until the
+/// first next one is due a host that moves something waits for none.
+inline constexpr std::uint32_t frames_a_surfel_set = 8;
+
 /// Which set of VPLs a frame is lit by. Set 0 is that of a frame without refinement; set k has the seed
-/// `VplSettings::seed` + k, and is seen at sample k of the pixels: see pixel_sample. When something moves,
-/// paths fall back to set 0. Surfels go on from the set that they are, so that none of them has to be looked
-/// at anew.
+/// `VplSettings::seed` + k, of surfels + k / frames_a_surfel_set, and is seen at sample k of the pixels: see
+/// pixel_sample. When something moves, paths fall back to set 0. Surfels go on from the set that they are, so
+/// that none of them has to be looked at anew.
 struct Refinement {
     std::uint32_t set = 0;         ///< so many sets are in the mean already
     std::uint32_t surfel_set = 0;  ///< of surfels: where something moves they stay what they are
