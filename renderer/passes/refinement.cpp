@@ -20,11 +20,10 @@ ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<Refinement
             const std::uint64_t epoch = run.value(clock).epoch;
             const bool moved =
                 run.changed(layout) || run.changed(placement) || run.changed(lights) || run.changed(view);
-            const bool goes_on = last != nullptr && last->epoch == epoch;
             Refinement now{.epoch = epoch};
-            if (goes_on) {
-                now.set = moved ? 0 : last->set + 1;
-                const bool next_surfels = !moved && now.set % frames_a_surfel_set == 0;
+            if (last != nullptr) {
+                now.set = last->epoch != epoch || moved ? 0 : last->set + 1;
+                const bool next_surfels = now.set > 0 && now.set % frames_a_surfel_set == 0;
                 now.surfel_set = last->surfel_set + (next_surfels ? 1 : 0);
             }
             run.set(out, now);
