@@ -10,17 +10,16 @@ layout(local_size_x = SURFEL_GROUP) in;
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
-
 layout(std430, binding = BINDING_SEEN_POINTS) readonly restrict buffer Seen { uint seen[]; };
 
 uniform uint point_count;
 uniform uint light_count;
 uniform uint lights_before;  // in the dispatches before this one
 uniform uint lights_now;     // at most
-uniform float ray_offset;    // metres, off the surface
+uniform float ray_offset;    // metres, off the surface, and before a light, which may lie on one
 
 bool is_hidden(Light light, vec3 origin, vec3 direction) {
-    float distance = light.kind == LIGHT_DIRECTIONAL ? 1.0 / 0.0 : length(light.position - origin);
+    float distance = light.kind == LIGHT_DIRECTIONAL ? 1.0 / 0.0 : length(light.position - origin) - ray_offset;
     return any_hit(origin, direction, 0.0, distance);
 }
 

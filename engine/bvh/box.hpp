@@ -23,6 +23,12 @@ struct Box {
         upper = glm::max(upper, box.upper);
     }
     bool operator==(const Box&) const = default;
+
+    /// Corner 0 to 7: bit 0 of the index tells upper x from lower, bit 1 y, bit 2 z.
+    [[nodiscard]] glm::vec3 corner(unsigned index) const {
+        return {(index & 1U) != 0 ? upper.x : lower.x, (index & 2U) != 0 ? upper.y : lower.y,
+                (index & 4U) != 0 ? upper.z : lower.z};
+    }
 };
 
 [[nodiscard]] inline Box bounds(const Triangle& triangle) {

@@ -31,8 +31,7 @@ LightGrid add_light_grid(FrameGraph& graph, const Gpu& gpu, Declare declare, Mak
                 graph.buffer<gpu::CellConstants>("cell constants", 1, Lifetime::persistent), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const CellGrid grid = make_grid(run);
-            const gpu::CellConstants content = cell_constants(grid);
-            upload<gpu::CellConstants>(gpu, run, out.constants, {&content, 1});
+            upload_one(gpu, run, out.constants, cell_constants(grid));
             run.set(out.cells, grid);
         });
         return out;

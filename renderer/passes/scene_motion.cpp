@@ -9,32 +9,24 @@
 namespace candela {
 namespace {
 
-/// Box around what of a mesh stops light.
-Box box_around(const Mesh& mesh, const glm::mat4& world) {
-    Box box;
-    for (const Primitive& primitive : mesh.primitives) {
-        if (primitive.material->alpha_mode == AlphaMode::blend) {
-            continue;
-        }
-        for (const Vertex& vertex : primitive.vertices) {
-            box.grow(glm::vec3(world * glm::vec4(vertex.position, 1.0F)));
-        }
+Box placed(const Box& box, const glm::mat4& world) {
+    Box around;
+    for (unsigned i = 0; i < 8; ++i) {
+        around.grow(glm::vec3(world * glm::vec4(box.corner(i), 1.0F)));
     }
-    return box;
+    return around;
 }
 
-std::vector<Box> moved_boxes(const SceneGeometry& geometry, const ScenePlacement& before,
+/// Around what stops light of the items that moved, as they were and as they are.
+std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& before,
                              const ScenePlacement& now) {
     std::vector<Box> boxes;
-    for (std::size_t i = 0; i < geometry.items.size(); ++i) {
-        if (before.world[i] == now.world[i]) {
-            continue;
-        }
-        for (const glm::mat4& world : {before.world[i], now.world[i]}) {
-            const Box box = box_around(*geometry.items[i].mesh, world);
-            if (box != Box{}) {
-                boxes.push_back(box);
-            }
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        const glm::mat4& from = before.world[drawable.item];
+        const glm::mat4& to = now.world[drawable.item];
+        if (from != to) {
+            boxes.push_back(placed(drawable.bounds, from));
+            boxes.push_back(placed(drawable.bounds, to));
         }
     }
     return boxes;
@@ -73,7 +65,7 @@ ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& sc
                 now.everything = last->epoch != now.epoch || last->geometry != now.geometry;
             }
             if (!now.everything) {
-                now.boxes = moved_boxes(now.geometry, last->placement, now.placement);
+                now.boxes = moved_boxes(run.value(layout), last->placement, now.placement);
             }
             run.set(motion, std::move(now));
         });

@@ -23,19 +23,20 @@ std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
     return run.value(surfels.plan).vpl_count;
 }
 
-/// Up to which step of the scene's motion, for which set of surfels, and in which buffers visibility is
-/// known.
+/// Up to which step of the scene's motion, for which set of surfels, by rays how far off surfaces, and in
+/// which buffers visibility is known.
 struct KnownVisibility {
     std::uint64_t set = 0;
     std::uint64_t step = 0;
+    float ray_offset = 0.0F;
     ObjectId form_factors = 0;
     ObjectId hits = 0;
     ObjectId seen = 0;
     bool operator==(const KnownVisibility&) const = default;
 
     [[nodiscard]] bool is_of(const KnownVisibility& other) const {
-        return set == other.set && form_factors == other.form_factors && hits == other.hits &&
-               seen == other.seen;
+        return set == other.set && ray_offset == other.ray_offset && form_factors == other.form_factors &&
+               hits == other.hits && seen == other.seen;
     }
 };
 
@@ -178,6 +179,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             run.reserve(out.seen_points, std::max(points, 1U));
             const KnownVisibility now{.set = run.value(surfels.set),
                                       .step = run.value(motion).step,
+                                      .ray_offset = run.value(tracing.metrics).ray_offset(),
                                       .form_factors = run.object(out.form_factors),
                                       .hits = run.object(hits),
                                       .seen = run.object(out.seen_points)};
@@ -195,11 +197,10 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             gpu.bind_storage(BINDING_FORM_FACTORS, now.form_factors);
             gpu.bind_storage(BINDING_COVER, now.hits);
             gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(out.rows));
-            const float offset = run.value(tracing.metrics).ray_offset();
             for (const gl::Program* tracer : {&factors, &cover, &seer}) {
                 bind_tracing(gpu, run, *tracer, tracing);
-                tracer->set("ray_offset", offset);
-                set_changed_boxes(*tracer, changed, 4.0F * offset);
+                tracer->set("ray_offset", now.ray_offset);
+                set_changed_boxes(*tracer, changed, 4.0F * now.ray_offset);
             }
             find_form_factors(gpu.gl(), factors, count);
             find_cover(gpu.gl(), cover, count);

@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "engine/graph/execute.hpp"
+#include "renderer/passes/r2_sequence.hpp"
 #include "renderer/passes/upload.hpp"
 #include "renderer/passes/world_triangles.hpp"
 
@@ -65,13 +66,11 @@ std::uint32_t hash(std::uint32_t x) {
     return x ^ (x >> 16U);
 }
 
-/// Point `index` of the sequence R2 in a triangle (Roberts, 2018), folded from the square: weights of b and
-/// c.
+/// Point `index` of the sequence R2 in a triangle, folded from the square: weights of b and c.
 glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
-    constexpr glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
     constexpr double unit = 1.0 / 4294967296.0;
     const glm::dvec2 start(hash(seed) * unit, hash(seed ^ 0x9e3779b9U) * unit);
-    glm::dvec2 point = glm::fract(start + step * static_cast<double>(index));
+    glm::dvec2 point = r2_point(index, start);
     if (point.x + point.y > 1.0) {
         point = 1.0 - point;
     }

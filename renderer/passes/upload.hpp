@@ -20,4 +20,10 @@ void upload(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, std::span<co
                                 data.data());
 }
 
+/// The same of a buffer that holds one element.
+template <class T>
+void upload_one(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, const T& element) {
+    upload<T>(gpu, run, buffer, {&element, 1});
+}
+
 }  // namespace candela

@@ -7,6 +7,7 @@
 
 #include "engine/graph/execute.hpp"
 #include "engine/scene/hierarchy.hpp"
+#include "renderer/passes/r2_sequence.hpp"
 #include "renderer/passes/upload.hpp"
 
 namespace candela {
@@ -88,10 +89,8 @@ glm::vec2 pixel_sample(std::uint32_t i) {
     if (i == 0) {
         return glm::vec2(0.0F);
     }
-    // The powers of 1/p, p being the real root of x³ = x + 1.
-    constexpr glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
     const std::uint32_t pair = (i + 1) / 2;
-    const glm::dvec2 point = glm::fract(0.5 + step * static_cast<double>(pair)) - 0.5;
+    const glm::dvec2 point = r2_point(pair, glm::dvec2(0.5)) - 0.5;
     return glm::vec2(i % 2 == 1 ? point : -point);
 }
 
@@ -112,8 +111,7 @@ FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraV
         const auto constants = pass.write(
             graph.buffer<gpu::ViewConstants>("view constants", 1, Lifetime::persistent), Usage::copy);
         pass.run([=, &gpu](Execution& run) {
-            const gpu::ViewConstants content = view_constants(run.value(camera), size);
-            upload<gpu::ViewConstants>(gpu, run, constants, {&content, 1});
+            upload_one(gpu, run, constants, view_constants(run.value(camera), size));
         });
         return FrameView{camera, constants};
     });

@@ -42,8 +42,8 @@ struct CameraView {
 void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 
 /// Sample i within a pixel, in pixels from its centre, within [-0.5, 0.5]. Sample 0 is the centre; 2k - 1 and
-/// 2k lie opposite each other, at point k of the sequence R2 (Roberts, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences", 2018), so that a mean over samples does not shift the picture.
+/// 2k lie opposite each other, at point k of the sequence R2, so that a mean over samples does not shift the
+/// picture.
 [[nodiscard]] glm::vec2 pixel_sample(std::uint32_t i);
 
 /// Node `view` (CPU).

@@ -16,18 +16,13 @@ std::array<float, 6> plane_distances(const glm::vec4& clip) {
     return {clip.w + clip.x, clip.w - clip.x, clip.w + clip.y, clip.w - clip.y, clip.z, clip.w - clip.z};
 }
 
-glm::vec4 corner(const Box& box, unsigned index) {
-    return {(index & 1U) != 0 ? box.upper.x : box.lower.x, (index & 2U) != 0 ? box.upper.y : box.lower.y,
-            (index & 4U) != 0 ? box.upper.z : box.lower.z, 1.0F};
-}
-
 }  // namespace
 
 bool is_outside(const Box& box, const glm::mat4& clip_from_box) {
     std::array<bool, 6> all_beyond;
     all_beyond.fill(true);
     for (unsigned i = 0; i < 8; ++i) {
-        const glm::vec4 clip = clip_from_box * corner(box, i);
+        const glm::vec4 clip = clip_from_box * glm::vec4(box.corner(i), 1.0F);
         const float slack = rounding * (std::abs(clip.x) + std::abs(clip.y) + std::abs(clip.w));
         const std::array<float, 6> distances = plane_distances(clip);
         for (std::size_t plane = 0; plane < distances.size(); ++plane) {

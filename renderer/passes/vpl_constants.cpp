@@ -77,8 +77,7 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
             const SceneMetrics& scene = run.value(metrics);
             const std::uint32_t count = run.value(plan).vpl_count;
             const VplAtlas atlas = atlas_of_scene(settings, count, scene, gpu.device().limits());
-            const gpu::VplConstants content = constants_of(count, scene, atlas, bound);
-            upload<gpu::VplConstants>(gpu, run, out.constants, {&content, 1});
+            upload_one(gpu, run, out.constants, constants_of(count, scene, atlas, bound));
             run.set(out.atlas, atlas);
         });
         return out;

@@ -29,22 +29,11 @@ void move(World& world, Entity entity, glm::vec3 by) {
     world.edit<Transform>(entity, [&](Transform& transform) { transform.translation += by; });
 }
 
-class Changes : public RenderFixture {
- protected:
-    /// What a renderer that has seen nothing else makes of the scene.
-    Picture fresh_picture(const Scene& scene) {
-        TestedRenderer fresh(context->get_proc());
-        REQUIRE(fresh.configure(renderer.configuration()).empty());
-        const RenderTarget target(device, size);
-        fresh.render(scene.world, scene.camera, target.target());
-        return target.read();
-    }
-};
-
 }  // namespace
 
 TEST_SUITE("changes") {
-    TEST_CASE_FIXTURE(Changes, "every change shows in the same frame, as in a renderer that starts with it") {
+    TEST_CASE_FIXTURE(RenderFixture,
+                      "every change shows in the same frame, as in a renderer that starts with it") {
         Configuration unlimited = linear_configuration();
         configure(unlimited);
         Scene scene = cornell_box();
@@ -105,12 +94,12 @@ TEST_SUITE("changes") {
             edit.apply();
             const Picture after = render(scene, size);
             CHECK(after != before);
-            CHECK(after == fresh_picture(scene));
+            CHECK(after == fresh_picture(scene, size));
             before = after;
         }
     }
 
-    TEST_CASE_FIXTURE(Changes, "the seed chooses other VPLs; the same seed the same ones") {
+    TEST_CASE_FIXTURE(RenderFixture, "the seed chooses other VPLs; the same seed the same ones") {
         const Scene scene = cornell_box();
         Configuration configuration = linear_configuration();
         configure(configuration);
@@ -121,7 +110,7 @@ TEST_SUITE("changes") {
         configuration.vpls.seed = 0;
         configure(configuration);
         CHECK(render(scene, size) == first);
-        CHECK(fresh_picture(scene) == first);
+        CHECK(fresh_picture(scene, size) == first);
     }
 
     TEST_CASE("VPLs keep their places while lights move and change a little") {

@@ -301,6 +301,14 @@ Picture RenderFixture::render(const World& world, Entity camera, glm::uvec2 size
     return target.read();
 }
 
+Picture RenderFixture::fresh_picture(const Scene& scene, glm::uvec2 size) {
+    TestedRenderer fresh(context->get_proc());
+    REQUIRE(fresh.configure(renderer.configuration()).empty());
+    const RenderTarget target(device, size);
+    fresh.render(scene.world, scene.camera, target.target());
+    return target.read();
+}
+
 bool RenderFixture::ran(std::string_view pass) const {
     const auto found = std::ranges::find(renderer.last_passes(), pass, &PassRecord::name);
     REQUIRE(found != renderer.last_passes().end());

@@ -119,6 +119,8 @@ class RenderFixture : public GlFixture {
     [[nodiscard]] Picture render(const Scene& scene, glm::uvec2 size) {
         return render(scene.world, scene.camera, size);
     }
+    /// What a renderer of the same configuration that has seen nothing else makes of the scene.
+    [[nodiscard]] Picture fresh_picture(const Scene& scene, glm::uvec2 size);
     /// Whether the pass ran in the last frame; the graph must have it.
     [[nodiscard]] bool ran(std::string_view pass) const;
 

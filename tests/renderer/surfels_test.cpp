@@ -66,15 +66,6 @@ class SurfelTests : public RenderFixture {
             .placement = VplPlacement::surfels, .count = count, .bounces = bounces, .seed = 0};
         return configuration;
     }
-
-    /// What a renderer that has seen nothing else makes of the scene.
-    Picture fresh_picture(const Scene& scene, glm::uvec2 size) {
-        TestedRenderer fresh(context->get_proc());
-        REQUIRE(fresh.configure(renderer.configuration()).empty());
-        const RenderTarget target(device, size);
-        fresh.render(scene.world, scene.camera, target.target());
-        return target.read();
-    }
 };
 
 }  // namespace
@@ -223,6 +214,30 @@ TEST_SUITE("surfels: their light") {
         CHECK(mean(more) > mean(twice));
         // What each further bounce adds is less than the one before, by the scene's albedo.
         CHECK(mean(more) - mean(twice) < 3.0 * (mean(twice) - mean(once)));
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "a light that lies on a wall lights what it would light just before it") {
+        Scene scene = furnace_box(0.5F);
+        configure(surfels(256, 2));
+        const auto lit_from = [&](float x) {
+            scene.world.set(scene.light, at({x, 0.2F, 0.1F}));
+            return mean(render(scene, {24, 18}));
+        };
+        // On the wall that it lies on, which it grazes, is what the two differ by.
+        CHECK(lit_from(1.0F) == doctest::Approx(lit_from(0.999F)).epsilon(0.05));
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "a scene that grows past twice its size is looked at anew") {
+        // Rays start farther off surfaces then, everywhere.
+        Configuration configuration = surfels(96);
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+        configure(configuration);
+        Scene scene = cornell_box();
+        const Entity far =
+            add(scene.world, at({0, 0, -1.5F}), MeshInstance{square(0.1F, diffuse({1, 1, 1}))});
+        static_cast<void>(render(scene, {40, 30}));
+        scene.world.set(far, at({0, 0, -40.0F}));
+        CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
     }
 
     TEST_CASE_FIXTURE(SurfelTests, "light on a floor does not come through the wall that stands on it") {
