@@ -196,7 +196,7 @@ struct VplRecord {
 
 struct FluxAccount {
     glm::vec3 emitted;
-    float pad0;
+    std::uint32_t spent;
     glm::vec3 absorbed;
     float pad1;
     glm::vec3 escaped;

@@ -1,29 +1,34 @@
-// Where the light went that the lights send to the surfaces. One work group adds up all cells.
+// Where the light went that the lights send to the surfaces, and whether enough is left for another bounce. One work group
+// adds up all cells.
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // scale, open share
 layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
-layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 irradiance[]; };
-layout(std430, binding = BINDING_FLUX_ACCOUNT) writeonly restrict buffer Flux { FluxAccount flux[]; };
+layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 bounced[]; };  // radiosity, scale
+layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccount flux[]; };
 
-uniform uint bounces;
+uniform uint bounce;  // gathered last; 1: none was
+
+const float LITTLE = 1e-3;  // of the light that surfaces reflect at first: no more is gathered
 
 shared vec3 emitted[SURFEL_GROUP];
 shared vec3 absorbed[SURFEL_GROUP];
 shared vec3 escaped[SURFEL_GROUP];
 shared vec3 truncated[SURFEL_GROUP];
+shared vec3 reflected[SURFEL_GROUP];
 
 // What a cell reflects of the last bounce, which nobody gathers.
 vec3 left_over(uint id, CellLight cell) {
-    if (bounces < 2u) return cell.direct;
-    return cell.area * cell.albedo * irradiance[((bounces + 1u) % 2u) * surfel_count + id].rgb;
+    if (bounce < 2u) return cell.direct;
+    return cell.area * bounced[((bounce + 1u) % 2u) * surfel_count + id].rgb;
 }
 
 void main() {
+    if (bounce > 1u && flux[0].spent != 0u) return;
     uint lane = gl_LocalInvocationID.x;
-    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = vec3(0.0);
+    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = reflected[lane] = vec3(0.0);
     for (uint id = lane; id < surfel_count; id += SURFEL_GROUP) {
         CellLight cell = cells[id];
         vec3 left = left_over(id, cell);
@@ -32,15 +37,19 @@ void main() {
         absorbed[lane] += cell.arriving - cell.direct + (1.0 - cell.albedo) * indirect;
         escaped[lane] += rows[id].y * (cell.direct + cell.albedo * indirect - left);
         truncated[lane] += left;
+        reflected[lane] += cell.direct;
     }
     barrier();
     if (lane > 0u) return;
-    FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    vec3 first = vec3(0.0);
+    FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     for (uint i = 0u; i < SURFEL_GROUP; ++i) {
         account.emitted += emitted[i];
         account.absorbed += absorbed[i];
         account.escaped += escaped[i];
         account.truncated += truncated[i];
+        first += reflected[i];
     }
+    if (all(lessThanEqual(account.truncated, LITTLE * first))) account.spent = 1u;
     flux[0] = account;
 }

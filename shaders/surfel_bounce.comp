@@ -10,7 +10,9 @@ layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { 
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
 layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // scale, open share
 layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight cells[]; };
-layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 irradiance[]; };  // of the last bounce and of this one
+// Radiosity of the last bounce and of this one; the surfel's scale.
+layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]; };
+layout(std430, binding = BINDING_FLUX_ACCOUNT) readonly restrict buffer Flux { FluxAccount flux[]; };
 
 uniform uint bounce;  // from 2 on
 
@@ -33,27 +35,30 @@ vec3 from_lit_cell(Vpl from, uint other) {
     return sum;
 }
 
+// Irradiance from a column, before the row's scale.
 vec3 from_column(Vpl from, uint row, uint column, float factor) {
-    if (factor == 0.0) return vec3(0.0);
     uint other = surfel_of(row, column);
+    if (factor == 0.0) return vec3(0.0);
 #ifdef FIRST
-    return from_lit_cell(from, other);
+    return rows[other].x * from_lit_cell(from, other);
 #else
-    return factor * cells[other].albedo * irradiance[(bounce % 2u) * surfel_count + other].rgb;
+    vec4 sent = bounced[(bounce % 2u) * surfel_count + other];
+    return factor * sent.a * sent.rgb;
 #endif
 }
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
-    if (id >= surfel_count) return;
+    if (id >= surfel_count || flux[0].spent != 0u) return;
     Vpl from = surfels[id];
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < columns / 2u; ++i) {
-        vec2 factors = unpackHalf2x16(form_factors[id * (columns / 2u) + i]);
+        vec2 factors = unpackHalf2x16(form_factors[form_factors_at(id, i)]);
         if (factors == vec2(0.0)) continue;
         sum += from_column(from, id, 2u * i, factors.x) + from_column(from, id, 2u * i + 1u, factors.y);
     }
-    sum *= rows[id].x;
-    irradiance[((bounce + 1u) % 2u) * surfel_count + id] = vec4(sum, 0.0);
-    cells[id].indirect += sum;
+    float scale = rows[id].x;
+    vec3 irradiance = scale * sum;
+    bounced[((bounce + 1u) % 2u) * surfel_count + id] = vec4(cells[id].albedo * irradiance, scale);
+    cells[id].indirect += irradiance;
 }

@@ -1,5 +1,5 @@
 // The share of a surfel's hemisphere that each of its columns takes up, 0 where it does not see it. Two columns an
-// invocation; work groups go along columns, then rows.
+// invocation; work groups go along rows, then columns.
 #include "bvh.glsl"
 #include "changed_boxes.glsl"
 #include "surfel.glsl"
@@ -47,10 +47,10 @@ float visible_form_factor(uint row, uint column) {
 }
 
 void main() {
-    uint pair = gl_GlobalInvocationID.x;
-    uint row = gl_WorkGroupID.y + gl_NumWorkGroups.y * gl_WorkGroupID.z;
+    uint row = gl_GlobalInvocationID.x;
+    uint pair = gl_WorkGroupID.y;
     if (2u * pair >= columns || row >= surfel_count) return;
     if (!pair_may_have_changed(row, 2u * pair) && !pair_may_have_changed(row, 2u * pair + 1u)) return;
     vec2 factors = vec2(visible_form_factor(row, 2u * pair), visible_form_factor(row, 2u * pair + 1u));
-    form_factors[row * (columns / 2u) + pair] = packHalf2x16(factors);
+    form_factors[form_factors_at(row, pair)] = packHalf2x16(factors);
 }

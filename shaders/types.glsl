@@ -204,7 +204,7 @@ struct VplRecord {
 
 struct FluxAccount {
     vec3 emitted;
-    float pad0;
+    uint spent;  // of surfels: 1 where too little is left to be gathered once more
     vec3 absorbed;
     float pad1;
     vec3 escaped;

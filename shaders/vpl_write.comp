@@ -37,7 +37,7 @@ void main() {
         uint place = path.first_vpl + i;
         vpls[place] = make_vpl(vec3(0.0), vec3(0.0), vec3(0.0), place);
     }
-    FluxAccount account = FluxAccount(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     vec3 throughput = vec3(1.0);
     float window = 1.0;
     vec3 reflected = vec3(0.0);  // at the bounce before

@@ -56,11 +56,9 @@ void dispatch_surfels(const gl::Functions& gl, const gl::Program& program, std::
 }
 
 void find_form_factors(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
-    constexpr std::uint32_t rows_a_layer = 32768;
-    const std::uint32_t layers = (count + rows_a_layer - 1) / rows_a_layer;
     set_count(program, count);
     program.use();
-    gl.DispatchCompute(groups(surfel_columns(count).count / 2), std::min(count, rows_a_layer), layers);
+    gl.DispatchCompute(groups(count), surfel_columns(count).count / 2, 1);
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -72,10 +70,43 @@ void find_cover(const gl::Functions& gl, const gl::Program& program, std::uint32
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void add_up(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+/// Even, so that the last one's scales are in the first half of the rows.
+constexpr std::uint32_t last_round = 4;
+
+void scale_rows(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    for (std::uint32_t round = 0; round <= last_round; ++round) {
+        program.set("round", round);
+        dispatch_surfels(gl, program, count);
+    }
+}
+
+void add_up(const gl::Functions& gl, const gl::Program& program, std::uint32_t count, std::uint32_t bounce) {
     set_count(program, count);
+    program.set("bounce", bounce);
     program.use();
     gl.DispatchCompute(1, 1, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+struct BouncePrograms {
+    const gl::Program* first;
+    const gl::Program* further;
+    const gl::Program* account;
+};
+
+/// To the last bounce, or until the account finds that little is left.
+void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std::uint32_t count,
+                    std::uint32_t bounces) {
+    constexpr std::uint32_t bounces_an_account = 4;
+    add_up(gl, *programs.account, count, 1);
+    for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
+        const gl::Program& program = bounce == 2 ? *programs.first : *programs.further;
+        program.set("bounce", bounce);
+        dispatch_surfels(gl, program, count);
+        if (bounce % bounces_an_account == 0 || bounce == bounces) {
+            add_up(gl, *programs.account, count, bounce);
+        }
+    }
 }
 
 /// A shadow ray walks through a tree, and software drivers end all loops of an invocation together after
@@ -173,7 +204,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             const std::uint32_t count = count_of(run, surfels);
             run.reserve(out.form_factors,
                         std::max<std::uint64_t>(std::uint64_t{count} * surfel_columns(count).count / 2, 1));
-            run.reserve(out.rows, std::max(count, 1U));
+            run.reserve(out.rows, std::max(2 * count, 1U));
             const std::uint32_t points = run.value(surfels.plan).point_count;
             run.reserve(hits, std::max(count * COVER_PARTS, 1U));
             run.reserve(out.seen_points, std::max(points, 1U));
@@ -204,7 +235,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             }
             find_form_factors(gpu.gl(), factors, count);
             find_cover(gpu.gl(), cover, count);
-            dispatch_surfels(gpu.gl(), rows, count);
+            scale_rows(gpu.gl(), rows, count);
             gpu.bind_storage(BINDING_SEEN_POINTS, now.seen);
             seer.set("point_count", points);
             seer.use();
@@ -225,13 +256,13 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.read(visibility.form_factors, Usage::storage);
         pass.read(visibility.rows, Usage::storage);
         pass.parameter(bounces);
-        const gl::Program& first = gpu.program({"surfel_bounce.comp"}, {"FIRST"});
-        const gl::Program& further = gpu.program({"surfel_bounce.comp"});
+        const BouncePrograms programs{.first = &gpu.program({"surfel_bounce.comp"}, {"FIRST"}),
+                                      .further = &gpu.program({"surfel_bounce.comp"}),
+                                      .account = &gpu.program({"surfel_account.comp"})};
         const gl::Program& writer = gpu.program({"surfel_write.comp"});
-        const gl::Program& account = gpu.program({"surfel_account.comp"});
         const auto cells = pass.write(direct.cells, Usage::storage);
-        const auto irradiance =
-            pass.write(graph.buffer<glm::vec4>("surfel irradiance", 1, Lifetime::persistent), Usage::storage);
+        const auto bounced =
+            pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent), Usage::storage);
         const Vpls out{
             .plan = surfels.plan,
             .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
@@ -239,9 +270,9 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
                 pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage),
             .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
                                  Usage::storage)};
-        pass.run([=, &gpu, &first, &further, &writer, &account](Execution& run) {
+        pass.run([=, &gpu, &writer](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
-            run.reserve(irradiance, std::max(2 * count, 1U));
+            run.reserve(bounced, std::max(2 * count, 1U));
             run.reserve(out.vpls, std::max(count, 1U));
             run.reserve(*out.points, std::max(run.value(surfels.plan).point_count, 1U));
             if (count == 0) {
@@ -253,15 +284,9 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             gpu.bind_storage(BINDING_CELL_LIGHT, run.object(cells));
             gpu.bind_storage(BINDING_FORM_FACTORS, run.object(visibility.form_factors));
             gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(visibility.rows));
-            gpu.bind_storage(BINDING_BOUNCE, run.object(irradiance));
-            for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
-                const gl::Program& program = bounce == 2 ? first : further;
-                program.set("bounce", bounce);
-                dispatch_surfels(gpu.gl(), program, count);
-            }
+            gpu.bind_storage(BINDING_BOUNCE, run.object(bounced));
             gpu.bind_storage(BINDING_FLUX_ACCOUNT, run.object(out.flux));
-            account.set("bounces", bounces);
-            add_up(gpu.gl(), account, count);
+            gather_bounces(gpu.gl(), programs, count, bounces);
             gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
             gpu.bind_storage(BINDING_LIT_POINTS, run.object(*out.points));
             dispatch_surfels(gpu.gl(), writer, count);

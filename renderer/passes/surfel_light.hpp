@@ -13,7 +13,7 @@ namespace candela {
 /// What surfels see of each other.
 struct SurfelVisibility {
     BufferHandle<std::uint32_t> form_factors;  ///< half floats, two a word: `surfel_columns` a row
-    BufferHandle<glm::vec2> rows;  ///< by surfel: scale of its row, share of its hemisphere that is open
+    BufferHandle<glm::vec2> rows;  ///< by surfel: scale of its factors, share of its hemisphere that is open
     BufferHandle<std::uint32_t> seen_points;  ///< by point of a cell: 1 where its surfel sees it
 };
 
@@ -36,7 +36,8 @@ struct SurfelLights {
 };
 
 /// Nodes `surfel-light` (the real lights at the points of the cells, with a shadow ray each) and
-/// `surfel-bounce` (what surfels gather of each other, to `bounces`): the light of surfels, as VPLs.
+/// `surfel-bounce` (what surfels gather of each other, to `bounces`, or until less than
+/// 0.1 % is left): the light of surfels, as VPLs.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const Surfels& surfels, const SurfelVisibility& visibility,
                                     const SurfelLights& lights, std::uint32_t bounces);

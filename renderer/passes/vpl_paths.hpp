@@ -24,7 +24,8 @@ inline constexpr std::uint32_t most_surfels = 65536;
 struct VplSettings {
     VplPlacement placement = VplPlacement::surfels;
     std::uint32_t count = 512;  ///< at most so many are placed on paths, about so many surfels
-    std::uint32_t bounces = 8;  ///< 1: light → surface → seen surface
+    /// At most; 1: light → surface → seen surface. Surfels end where less than 0.1 % is left.
+    std::uint32_t bounces = 64;
     std::uint32_t seed = 0;
     bool operator==(const VplSettings&) const = default;
 };
