@@ -15,7 +15,7 @@ COST_FACTOR = 5.0
 SAME_COST = 1.05  # medians of times differ by as much from run to run
 SAME_ERROR = 1.001  # paths that add up the same light in another order
 YARDSTICK = {
-    "path": "deferred", "vpls": 256, "bounces": 8, "bound": "infinity", "visibility": "none", "lever": "none"
+    "path": "deferred", "vpls": 256, "bounces": 64, "bound": "infinity", "visibility": "none", "lever": "none"
 }
 
 
@@ -108,6 +108,22 @@ def flicker_table(played: Sequence[Row]) -> list[Row]:
             line[f"surfels_to_{name}"] = flicker["surfels"] / max(flicker[name], 1e-30)
         line["excess_frames"] = excess_frames(found["surfels"], found["fixed"])
         table.append(line)
+    return table
+
+
+def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
+    """By scene and number of VPLs, error and bias of the indirect light by placement."""
+    placed = select(rows, suite="placement")
+    table = []
+    for scene, vpls in dict.fromkeys((row["scene"], row["vpls"]) for row in placed):
+        found = {row["lever"]: row for row in select(placed, scene=scene, vpls=vpls)}
+        if not set(levers.values()) <= found.keys():
+            continue
+        line: Row = {"scene": scene, "vpls": vpls}
+        for name, lever in levers.items():
+            line |= {name: found[lever]["indirect_rel_mse"], f"{name}_bias": found[lever]["indirect_bias"]}
+        line["surfels_to_paths"] = line["surfels"] / line["paths"]
+        table.append({**line, "noise": found[levers["paths"]]["reference_noise"]})
     return table
 
 

@@ -149,10 +149,10 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
                         key=lambda row: row["samples"])
         figure, panels = plt.subplots(1, 2, figsize=(10, 4.6), sharey=True)
         for axes, (time, time_label) in zip(panels, TIMES.items()):
-            for n, (colour, marker) in zip(matrix.GATHERED, SERIES):
-                lever = matrix.interleaved(64, n).axes["lever"]
+            levers = {matrix.interleaved(64, n).axes["lever"]: f"paths, one in {n * n}" for n in matrix.GATHERED}
+            levers |= {"none": "paths, every pixel asks all", "surfels": "surfels, as the app does"}
+            for (lever, label), (colour, marker) in zip(levers.items(), SERIES):
                 points = sorted(select(chosen, lever=lever), key=lambda row: row["vpls"])
-                label = "every pixel asks all VPLs" if n == 1 else f"one in {n * n}"
                 axes.plot([row[time] for row in points], [row["total_rel_mse"] for row in points], color=colour,
                           marker=marker, markersize=5, label=label)
                 for row in points:
@@ -165,7 +165,7 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
         legend_below(figure, panels[0], 5)
         name = f"gather-{scene}"
         save(figure, out, name)
-        made[name] = f"{scene}: interleaved gathering. Numbers beside marks: VPLs."
+        made[name] = f"{scene}: interleaved gathering of VPLs on paths, and of surfels. Numbers beside marks: VPLs."
     return made
 
 

@@ -15,7 +15,7 @@ Config = dict[str, Any]
 FORWARD = ["forward", "tiled-forward", "forward+", "clustered-forward"]
 DEFERRED = ["deferred", "tiled-deferred", "clustered-deferred"]
 PATHS = FORWARD + DEFERRED
-DEFAULT_PATH, DEFAULT_BOUNCES, DEFAULT_BOUND, DEFAULT_VISIBILITY = "deferred", 8, 1.0, "maps"
+DEFAULT_PATH, DEFAULT_BOUNCES, DEFAULT_BOUND, DEFAULT_VISIBILITY = "deferred", 64, 1.0, "maps"
 UNBOUNDED = "infinity"
 
 # name: the part of the configuration that it sets. "none", against which the others are measured, has every lever off,
@@ -27,7 +27,7 @@ LEVERS: dict[str, Config] = {
         "vpls": {"placement": "paths", "visibility": "none", "interleave": 1},
         "refinement": {"enabled": False},
     },
-    "surfels": {"vpls": {"placement": "surfels"}},
+    "surfels": {"vpls": {"placement": "surfels", "interleave": "auto"}},
     "interleave-2": {"vpls": {"interleave": 2}},
     "interleave-4": {"vpls": {"interleave": 4}},
     "interleave-8": {"vpls": {"interleave": 8}},
@@ -35,6 +35,9 @@ LEVERS: dict[str, Config] = {
     "shadow-maps-half": {"shadows": {"cube_resolution": 256, "map_resolution": 512, "budget_mib": 8192}},
     "shadow-maps-double": {"shadows": {"cube_resolution": 1024, "map_resolution": 2048, "budget_mib": 8192}},
 }
+
+# By placement, the lever that it is measured with.
+PLACEMENTS = {"paths": "interleave-auto", "surfels": "surfels"}
 
 # How a VPL finds out what it sees: an axis of its own.
 MAP_RESOLUTION = 64  # texels a side of a VPL's depth map
@@ -50,14 +53,14 @@ VISIBILITIES: dict[str, Config] = {
 COUNTS = [16, 64, 256, 1024, 4096, 16384]
 SEEING_COUNTS = [16, 64, 256, 1024]  # of VPLs that look out for obstacles, one by one
 BOUNDS = [0.1, 0.3, 1.0, 3.0, UNBOUNDED]
-BOUNCES = [0, 1, 2, 3, 5, 8]
+BOUNCES = [0, 1, 2, 3, 5, 8, DEFAULT_BOUNCES]
 TABLE_COUNTS = [128, 192, 256, 320, 384, 448, 512]  # of the student report
 TRACER_SAMPLES = [4**i for i in range(7)]
 
 # An odd number of columns and an even one of rows: the camera looks straight into the Cornell box, whose creases run
 # from the corners of a picture at 45 degrees. With both even, or both odd, they would run through the centres of pixels,
 # which then show either wall as rounding has it, in the renderer the one and in the reference the other.
-SIZE, SMALL, QUICK, LARGE = (127, 96), (63, 48), (63, 64), (511, 512)
+SIZE, SMALL, QUICK, LARGE, SQUARE = (127, 96), (63, 48), (63, 64), (511, 512), (191, 192)
 
 
 @dataclass(frozen=True)
@@ -160,7 +163,7 @@ def short_sweep() -> tuple[Point, ...]:
         + [point(256, bound=bound) for bound in BOUNDS]
         + [point(256, bounces=bounces) for bounces in (1, 3)]
         + [point(256, visibility="maps-32")]
-        + [point(n, lever="interleave-auto") for n in (256, 1024)]
+        + [point(n, lever=lever) for n in (256, 512, 1024) for lever in PLACEMENTS.values()]
         + [blind(n) for n in (64, 256, 1024)]
         + [blind(256, path) for path in PATHS]
         + [blind(256, lever=lever) for lever in LEVERS]
@@ -254,7 +257,8 @@ def interleaved(vpls: int, n: int) -> Point:
     return point(vpls, lever="none" if n == 1 else f"interleave-{n}", seeds=tuple(range(4 if vpls <= 1024 else 1)))
 
 
-# Of the VPLs, by interleaving: pixels that ask all of so many take minutes for a frame.
+SURFELS = [128, 256, 512, 1024, 4096]  # interleaved as the app does
+# Of the VPLs on paths, by interleaving: pixels that ask all of so many take minutes for a frame.
 GATHERED = {1: [64, 128, 256, 1024], 2: [64, 128, 256, 1024], 4: [256, 1024, 4096], 8: [1024, 4096, 16384]}
 
 
@@ -269,11 +273,19 @@ def gather_groups() -> list[Group]:
             LARGE,
             Reference(samples=256),
             2,
-            tuple(interleaved(vpls, n) for n, counts in GATHERED.items() for vpls in counts if vpls <= limit),
+            tuple(interleaved(vpls, n) for n, counts in GATHERED.items() for vpls in counts if vpls <= limit)
+            + tuple(point(vpls, lever="surfels", seeds=(0,)) for vpls in SURFELS),
             tuple(TRACER_SAMPLES[:4]),
         )
         for scene, limit in most.items()
     ]
+
+
+def placement_groups() -> list[Group]:
+    """Paths against surfels, as the app gathers them."""
+    points = tuple(point(vpls, lever=lever) for vpls in (256, 1024) for lever in PLACEMENTS.values())
+    scenes = ("cornell", "two-rooms", "corner", "furnace", "glass", "hall-256", "fins", "atrium")
+    return [Group("placement", scene, SQUARE, Reference(samples=512), 0, points) for scene in scenes]
 
 
 def quick_groups() -> list[Group]:

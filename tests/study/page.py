@@ -180,6 +180,16 @@ def flicker(table_rows: Sequence[Row]) -> str:
     return element("h2", "Flicker") + element("p", note) + table(columns, table_rows)
 
 
+def placement(table_rows: Sequence[Row]) -> str:
+    if not table_rows:
+        return ""
+    columns = {"scene": "", "vpls": "VPLs", "paths": "relMSE, paths", "surfels": "relMSE, surfels",
+               "surfels_to_paths": "surfels / paths", "paths_bias": "bias, paths", "surfels_bias": "bias, surfels",
+               "noise": "the reference's own noise, relMSE"}
+    note = "Indirect light with depth maps, by where VPLs are placed, against a reference of any depth."
+    return element("h2", "Paths and surfels") + element("p", note) + table(columns, table_rows)
+
+
 def gathering(table_rows: Sequence[Row], camera: Sequence[Row]) -> str:
     if not table_rows:
         return ""
@@ -223,6 +233,7 @@ class Findings:
     visibility: Sequence[Row]
     gathering: Sequence[Row]
     camera: Sequence[Row]
+    placement: Sequence[Row]
 
 
 def write(
@@ -241,6 +252,7 @@ def write(
         element("p", 'All figures: <a href="results.csv">results.csv</a>, <a href="results.json">results.json</a>.'),
         default_choice(found.best),
         charts(found.charts),
+        placement(found.placement),
         gathering(found.gathering, found.camera),
         flicker(found.flicker),
         visibility_costs(out, rows, found.visibility),

@@ -25,7 +25,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "gather", "motion"]
+SUITES = ["matrix", "table", "growth", "gather", "placement", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
 RESULTS = scenes.ROOT / "tests" / "study" / "results"
@@ -69,6 +69,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
         "table": matrix.table_groups(),
         "growth": matrix.growth_groups(),
         "gather": matrix.gather_groups(),
+        "placement": matrix.placement_groups(),
         "motion": [],
     }
     wanted = parts or SUITES
@@ -129,14 +130,16 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     flicker, costs = analysis.flicker_table(played), analysis.visibility_costs(rows)
     gathering, camera = analysis.gather_table(rows, tracer), analysis.camera_flicker(played)
     extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
-    extra |= {"gathering": gathering, "camera": camera}
+    placement = analysis.placement_table(rows, matrix.PLACEMENTS)
+    extra |= {"placement": placement, "gathering": gathering, "camera": camera}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    found = page.Findings(made, best, flicker, costs, gathering, camera)
+    found = page.Findings(made, best, flicker, costs, gathering, camera, placement)
     page.write(study.out, rows, found, study.machine, machine.provenance(STUDY))
-    for line in gathering + camera:
-        print("study: gathering,", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
+    for part, lines in {"gathering": gathering + camera, "placement": placement}.items():
+        for line in lines:
+            print(f"study: {part},", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
     print(f"study: {study.out / 'index.html'}")
     if best:
         same = "what the app does by default" if best["is_default_of_app"] else "NOT what the app does by default"

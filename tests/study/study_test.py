@@ -92,7 +92,7 @@ class Gathering(unittest.TestCase):
 
 
 def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
-    base = {"path": "deferred", "vpls": 256, "bounces": 8, "bound": 1.0, "visibility": "maps", "lever": "none"}
+    base = {"path": "deferred", "vpls": 256, "bounces": analysis.YARDSTICK["bounces"], "bound": 1.0, "visibility": "maps", "lever": "none"}
     figures = {"frame_ms": cost, "full_ms": cost, "total_rel_mse": error}
     return {"suite": "matrix", "scene": scene, "id": name, "failed": "", **base, **figures, **axes}
 
