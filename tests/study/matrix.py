@@ -50,7 +50,7 @@ VISIBILITIES: dict[str, Config] = {
     "rays": {"visibility": "rays"},
 }
 
-COUNTS = [16, 64, 256, 1024, 4096, 16384]
+COUNTS = [16, 64, 256, 512, 1024, 4096, 16384]
 SEEING_COUNTS = [16, 64, 256, 1024]  # of VPLs that look out for obstacles, one by one
 BOUNDS = [0.1, 0.3, 1.0, 3.0, UNBOUNDED]
 BOUNCES = [0, 1, 2, 3, 5, 8, DEFAULT_BOUNCES]
