@@ -162,7 +162,7 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
                       marker="*", markersize=7, label="path tracer (Embree, the same cores), 1 sample and up")
             axes.set(xscale="log", yscale="log", xlabel=time_label, ylabel="relMSE of the total light")
         figure.suptitle(f"{scene}: {chosen[0]['width']} × {chosen[0]['height']} pixels, VPLs with depth maps")
-        legend_below(figure, panels[0], 5)
+        legend_below(figure, panels[0], 3)
         name = f"gather-{scene}"
         save(figure, out, name)
         made[name] = f"{scene}: interleaved gathering of VPLs on paths, and of surfels. Numbers beside marks: VPLs."
