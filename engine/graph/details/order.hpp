@@ -17,7 +17,7 @@ struct Edge {
 };
 
 /// All passes in a valid order: the order of declaration as far as `afters` allow, or a random order if there
-/// is a seed. Passes of a cycle, and passes that depend on them, are missing; each cycle is added to
+/// is a seed. Passes of a cycle, and passes that depend on them, are missing; the cycles found are added to
 /// `faults`.
 [[nodiscard]] std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan& plan,
                                                       const std::vector<Edge>& afters,
