@@ -9,7 +9,7 @@
 
 namespace candela {
 
-/// Axis-aligned box, empty until it is grown. Points that are not numbers do not grow it.
+/// Axis-aligned box, initially empty. NaN coordinates do not grow it.
 struct Box {
     glm::vec3 lower{std::numeric_limits<float>::infinity()};
     glm::vec3 upper{-std::numeric_limits<float>::infinity()};
@@ -24,7 +24,7 @@ struct Box {
     }
     bool operator==(const Box&) const = default;
 
-    /// Corner 0 to 7: bit 0 of the index tells upper x from lower, bit 1 y, bit 2 z.
+    /// Corner 0 to 7: bit 0 of the index selects upper (1) or lower (0) x, bit 1 y, bit 2 z.
     [[nodiscard]] glm::vec3 corner(unsigned index) const {
         return {(index & 1U) != 0 ? upper.x : lower.x, (index & 2U) != 0 ? upper.y : lower.y,
                 (index & 4U) != 0 ? upper.z : lower.z};

@@ -14,14 +14,15 @@ namespace {
 constexpr std::uint32_t bin_count = 16;
 constexpr std::uint32_t max_leaf_size = 4;
 
-// A triangle as the builder sees it. The centroid is finite whatever the triangle is.
+// A triangle as the builder sees it. `centroid` is the centre of its box, with coordinates that are not
+// finite replaced by 0.
 struct Reference {
     Box box;
     glm::vec3 centroid;
     std::uint32_t triangle;
 };
 
-// A node still to be made from references [first, first + count).
+// A node still to be built from references [first, first + count).
 struct Task {
     std::uint32_t node;
     std::uint32_t first;
@@ -29,8 +30,8 @@ struct Task {
     std::uint32_t depth;
 };
 
-// Sorts centroids into equal slices of their extent along one axis; all into the first if they have no
-// extent.
+// Divides the extent of the centroids along one axis into `bin_count` equal slices. Without an extent, all
+// centroids are in the first slice.
 struct Slicing {
     glm::length_t axis;
     float lower;
@@ -44,7 +45,7 @@ struct Slicing {
     }
 
     [[nodiscard]] std::uint32_t slice(const Reference& reference) const {
-        // In this order the maximum turns what is not a number (0 · ∞) into 0.
+        // With the arguments in this order, std::max turns NaN (from 0 · ∞) into 0.
         const float at = std::max(0.0F, (reference.centroid[axis] - lower) * slices_per_metre);
         return static_cast<std::uint32_t>(std::min(at, static_cast<float>(bin_count - 1)));
     }
@@ -58,12 +59,12 @@ struct Bin {
         box.grow(other.box);
         count += other.count;
     }
-    // Expected cost of intersecting what is in it, in triangle tests times area.
+    // Expected cost of intersecting its triangles, in triangle tests times (half) surface area.
     [[nodiscard]] float cost() const { return half_area(box.lower, box.upper) * static_cast<float>(count); }
 };
 using Bins = std::array<Bin, bin_count>;
 
-// References in slices below `slice` along `axis` go left. An infinite cost stands for no split.
+// References in slices below `slice` along `axis` go left. An infinite cost means that there is no split.
 struct Split {
     glm::length_t axis = 0;
     std::uint32_t slice = 0;
@@ -119,7 +120,7 @@ Split cheapest_split(std::span<const Reference> references, const Box& centroids
     return best;
 }
 
-// Levels of median splits that bring n triangles into leaves.
+// Number of levels of median splits that divide n triangles into leaves.
 std::uint32_t median_levels(std::uint32_t n) {
     return static_cast<std::uint32_t>(std::bit_width((n - 1) / max_leaf_size));
 }
@@ -143,7 +144,8 @@ std::uint32_t split_at(const Split& split, std::span<Reference> references, cons
     return static_cast<std::uint32_t>(right - references.begin());
 }
 
-// Reorders the references of a node so that the left child's come first, and counts them; 0 makes a leaf.
+// Reorders the references of a node so that the left child's come first, and returns their number; 0 means
+// that the node is a leaf.
 std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint32_t depth) {
     const auto n = static_cast<std::uint32_t>(references.size());
     if (n == 1) {
@@ -154,11 +156,12 @@ std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint3
         centroids.grow(reference.centroid);
     }
 
-    // Every node keeps room below it for median splits down to leaves, so that no input exceeds the depth.
+    // Below every node there must be enough levels left for median splits down to the leaves, so that no
+    // input exceeds bvh_max_depth.
     const bool free_choice = depth + median_levels(n) < bvh_max_depth;
     const Split split = free_choice ? cheapest_split(references, centroids) : Split{};
     if (n <= max_leaf_size) {
-        // Descending costs as much as one triangle test.
+        // Entering an inner node costs as much as one triangle test.
         const float area = half_area(box.lower, box.upper);
         const bool pays = area + split.cost < area * static_cast<float>(n);
         return pays ? split_at(split, references, centroids) : 0;

@@ -28,13 +28,12 @@ struct BvhNode {
 };
 static_assert(sizeof(BvhNode) == 32);
 
-/// Deepest path from the root to a leaf, in edges, that any hierarchy has; traversal stacks hold this many
-/// entries.
+/// Maximum depth of a hierarchy: edges from the root to a leaf. Traversal stacks need this many entries.
 inline constexpr std::uint32_t bvh_max_depth = 48;
 
 /// A hierarchy over triangles that it does not own. Empty (no nodes) for no triangles.
 struct Bvh {
-    std::vector<BvhNode> nodes;  ///< nodes[0] is the root; at most 2n - 1, children behind their parents
+    std::vector<BvhNode> nodes;  ///< nodes[0] is the root; at most 2n - 1; children come after their parents
     std::vector<std::uint32_t> order;  ///< a permutation of the triangles' indices, leaf by leaf
 };
 
@@ -57,27 +56,28 @@ struct Hit {
 
 /// Builds by binned surface-area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies", 2007), falling back to median splits where that would exceed `bvh_max_depth`. Leaves hold at
-/// most 4 triangles. O(n log n), deterministic. Vertices that are not finite spoil only the boxes around
-/// them. Fewer than 2^31 triangles.
+/// most 4 triangles. O(n log n), deterministic. A vertex that is not finite affects only the boxes that
+/// contain its triangle. There must be fewer than 2^31 triangles.
 [[nodiscard]] Bvh build_bvh(std::span<const Triangle> triangles);
 
-/// Fits the boxes to moved triangles, keeping the topology. `triangles` has the size it was built with. O(n).
+/// Fits the boxes to moved triangles and keeps the topology. `triangles` must have the same size as for
+/// build_bvh. O(n).
 void refit(Bvh& bvh, std::span<const Triangle> triangles);
 
-/// Expected number of inner nodes entered plus triangles tested by a ray that enters the root, by surface
-/// areas; 0 if the root has none. Tells when refitting has degraded the hierarchy.
+/// Surface-area estimate of the inner nodes entered plus the triangles tested by a ray that enters the root;
+/// 0 if the root has no area. A growing value shows that refitting has degraded the hierarchy.
 [[nodiscard]] float sah_cost(const Bvh& bvh);
 
-/// Nearest triangle along the ray, whichever side it shows. At equal distance the lowest index wins.
+/// Nearest triangle along the ray, front or back facing. At equal distance the lowest index wins.
 [[nodiscard]] std::optional<Hit> closest_hit(const Bvh& bvh, std::span<const Triangle> triangles,
                                              const Ray& ray);
 
-/// Whether anything lies on the ray.
+/// Whether the ray hits any triangle.
 [[nodiscard]] bool any_hit(const Bvh& bvh, std::span<const Triangle> triangles, const Ray& ray);
 
 /// Ray against one triangle (Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997),
-/// two-sided. The hit is held to the triangle's box, so that traversal finds exactly what testing every
-/// triangle finds.
+/// two-sided. The hit distance is clamped to the part of the ray inside the triangle's box, so that traversal
+/// finds exactly what testing every triangle finds.
 [[nodiscard]] std::optional<Hit> intersect(const Triangle& triangle, std::uint32_t index, const Ray& ray);
 
 }  // namespace candela

@@ -6,7 +6,7 @@
 namespace candela {
 
 void refit(Bvh& bvh, std::span<const Triangle> triangles) {
-    // Children stand behind their parents, so that going backwards meets them first.
+    // Children come after their parents, so going backwards updates the children first.
     for (auto at = bvh.nodes.rbegin(); at != bvh.nodes.rend(); ++at) {
         BvhNode& node = *at;
         Box box;

@@ -13,8 +13,9 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-// Widens a box's interval on the ray: rounding needs 4e-7 (Ize, "Robust BVH Ray Traversal", 2013), and a
-// GPU's division, which is off by up to 2.5 units in the last place, about as much again.
+// Relative margin of a box's interval on the ray. Rounding needs 4e-7 (Ize, "Robust BVH Ray Traversal",
+// 2013); division on a GPU, with an error of up to 2.5 units in the last place, needs about as much in
+// addition.
 constexpr float slack = 1.00001F;
 
 struct Interval {
@@ -27,9 +28,9 @@ struct Interval {
 // The part of the ray in a box, by slabs (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986). Per axis,
 //     enter = (plane met first - origin) / direction,  exit = (the other plane - origin) / direction,
 // and near and far are the latest entry and the earliest exit. Where direction is 0, IEEE division makes them
-// -∞ or +∞ as the origin lies between the planes or not. An origin on a plane gives 0 · ∞, not a number: the
-// comparisons are so written that it constrains nothing. Every step is monotonic, so that the interval in a
-// box contains that in each box within it, rounding included.
+// -∞ or +∞, depending on whether the origin is between the planes. An origin on a plane gives 0 · ∞ = NaN:
+// the comparisons are written so that NaN does not restrict the interval. Every step is monotonic, so the
+// interval in a box contains the interval in each box inside it, also with rounding.
 class Slabs {
  public:
     explicit Slabs(const Ray& ray)
@@ -55,7 +56,7 @@ class Slabs {
     Interval whole_;
 };
 
-// A node waiting for its visit, and where the ray enters it; +∞ if it does not.
+// A node to visit, and the distance at which the ray enters it; +∞ if it misses the node.
 struct Entry {
     std::uint32_t node;
     float near;
@@ -66,8 +67,8 @@ Entry enter(const Bvh& bvh, std::uint32_t node, const Slabs& slabs) {
     return {node, inside.empty() ? infinity : inside.near};
 }
 
-// Calls `visit(triangle)` for what the ray may hit, roughly from near to far. `visit` returns the distance
-// beyond which nothing matters any more.
+// Calls `visit(triangle)` for each triangle that the ray may hit, roughly from near to far. `visit` returns
+// the distance beyond which triangles can be skipped.
 template <class Visit>
 void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit) {
     if (bvh.nodes.empty()) {
@@ -75,8 +76,8 @@ void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit) {
     }
     const Slabs slabs(ray);
     float limit = std::min(ray.t_max, std::numeric_limits<float>::max());  // finite, so that it excludes +∞
-    // Each inner node on the way down leaves at most its farther child behind, and there are at most
-    // `bvh_max_depth` of them above a leaf.
+    // Each inner node on the way down puts at most its farther child on the stack, and there are at most
+    // `bvh_max_depth` inner nodes above a leaf.
     std::array<Entry, bvh_max_depth> stack{};
     std::size_t waiting = 0;
     Entry current = enter(bvh, 0, slabs);
@@ -123,9 +124,9 @@ std::optional<Hit> intersect(const Triangle& triangle, std::uint32_t index, cons
         return std::nullopt;
     }
 
-    // Along a plane, rounding alone decides the rest. Holding the hit to the triangle's box bounds that
-    // error, and makes traversal exact: whatever hits a triangle enters all the boxes around it, and no later
-    // than the hit.
+    // For a ray almost in the triangle's plane, rounding errors dominate the distance. Clamping it to the
+    // triangle's box bounds that error and makes traversal exact: a ray that hits a triangle also enters all
+    // boxes that contain the triangle, and not later than the hit.
     const Box box = bounds(triangle);
     const Interval inside = Slabs(ray)(box.lower, box.upper);
     if (inside.empty()) {

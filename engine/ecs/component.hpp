@@ -6,7 +6,7 @@
 
 namespace candela {
 
-/// What a World stores: any copyable value. (`bool` alone is out, because std::vector packs it into bits.)
+/// What a World can store: any copyable type except `bool`, because std::vector packs bools into bits.
 template <class C>
 concept Component = std::copyable<C> && !std::same_as<C, bool>;
 
@@ -17,7 +17,8 @@ consteval std::string_view signature() {
     return __PRETTY_FUNCTION__;
 }
 
-/// GCC and Clang frame a type's name by fixed text; a type of known name tells how much of it on each side.
+/// GCC and Clang put a fixed text before and after the type's name in the signature. A type with a known name
+/// gives the lengths of both.
 inline constexpr std::string_view known_name = "double";
 inline constexpr std::size_t prefix = signature<double>().find(known_name);
 inline constexpr std::size_t suffix = signature<double>().size() - prefix - known_name.size();

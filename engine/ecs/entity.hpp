@@ -9,8 +9,8 @@
 
 namespace candela {
 
-/// Names one entity of one World. A plain value that owns nothing; it stays safe to hold after the entity is
-/// destroyed, since the slot's next tenant has another generation. Default-constructed it is null.
+/// Identifies one entity of one World. A plain value that owns nothing. It is safe to keep after the entity
+/// is destroyed: an entity that later reuses the index has another generation. Null if default-constructed.
 struct Entity {
     static constexpr std::uint32_t null_index = std::numeric_limits<std::uint32_t>::max();
 
@@ -20,14 +20,15 @@ struct Entity {
     // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 misreads the zero in a defaulted comparison.
     std::strong_ordering operator<=>(const Entity&) const = default;
 
-    /// Not null. Whether it is alive only its World knows.
+    /// True if not null. Only World::alive tells whether the entity is alive.
     explicit operator bool() const { return index != null_index; }
 };
 
 /// "the null entity" or "entity 3 (generation 5)".
 [[nodiscard]] std::string to_string(Entity entity);
 
-/// Use of an entity that is not alive, or of a component that it lacks. The message names both.
+/// Thrown for use of an entity that is not alive, or of a component that it does not have. The message names
+/// the entity and the component.
 class EntityError : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;

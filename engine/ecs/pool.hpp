@@ -13,10 +13,10 @@
 
 namespace candela {
 
-/// Counts a world's changes, from 1; 0 means never.
+/// Counts the changes of a world, from 1; 0 means never.
 using Tick = std::uint64_t;
 
-/// What a World asks of a pool without knowing its component.
+/// The operations on a pool that do not depend on its component type.
 class PoolBase {
  public:
     PoolBase() = default;
@@ -25,7 +25,7 @@ class PoolBase {
 
     [[nodiscard]] virtual std::unique_ptr<PoolBase> clone() const = 0;
 
-    /// Removes the entity's component at tick `now`; false, and no stamp, if it has none.
+    /// Removes the entity's component at tick `now`. If it has none, returns false and changes no tick.
     virtual bool remove(Entity entity, Tick now) = 0;
 
  protected:
@@ -40,7 +40,8 @@ class Pool final : public PoolBase {
  public:
     [[nodiscard]] std::unique_ptr<PoolBase> clone() const override { return std::make_unique<Pool>(*this); }
 
-    /// Inserts or replaces at tick `now`; false, and no stamp, if the entity already has an equal value.
+    /// Inserts or replaces at tick `now`. If the entity already has an equal value, returns false and changes
+    /// no tick.
     bool set(Entity entity, C value, Tick now) {
         const std::uint32_t at = position(entity);
         if (at == absent) {
@@ -70,13 +71,13 @@ class Pool final : public PoolBase {
         return true;
     }
 
-    /// Null if the entity has none. Valid until the pool next changes.
+    /// Null if the entity has none. Valid until the next change of the pool.
     [[nodiscard]] const C* find(Entity entity) const {
         const std::uint32_t at = position(entity);
         return at == absent ? nullptr : &values_[at];
     }
 
-    /// When the entity's component last changed; 0 if it has none.
+    /// Tick at which the entity's component last changed; 0 if it has none.
     [[nodiscard]] Tick changed(Entity entity) const {
         const std::uint32_t at = position(entity);
         return at == absent ? 0 : ticks_[at];

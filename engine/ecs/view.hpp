@@ -14,10 +14,10 @@ namespace candela {
 ///
 ///     for (auto [entity, light, transform] : world.view<PointLight, Transform>()) { ... }
 ///
-/// Walks the smallest of the pools (the first named among equals) in its packed order: order of insertion,
-/// where each removal moved the last component into the gap. The order thus follows from the world's history
-/// alone. Refers to the pools: any change to one of them invalidates the view, its iterators and what they
-/// gave.
+/// Iterates over the smallest of the pools (the first named one among equals) in its packed order: the order
+/// of insertion, except that each removal moved the last component into the gap. The order is therefore
+/// deterministic: it depends only on the sequence of changes to the world. A view refers to the pools: any
+/// change to one of them invalidates the view, its iterators and the references from them.
 template <Component... Cs>
 class View {
     using Pools = std::tuple<const Pool<Cs>*...>;
@@ -71,7 +71,7 @@ class View {
         std::span<const Entity> candidates_;  // from here to the end of the smallest pool
     };
 
-    /// A null pool is an empty one.
+    /// A null pool counts as empty.
     explicit View(const Pool<Cs>*... pools) : pools_(pools...) {
         if ((pools && ...)) {
             candidates_ = std::get<0>(pools_)->entities();

@@ -49,7 +49,7 @@ void World::destroy(Entity entity) {
     }
     tick_ += changed ? 1 : 0;
     --live_;
-    // A slot whose generations are used up is never let again, lest an old handle come back to life.
+    // An index whose generations are used up is not reused: an old handle could become valid again.
     if (++generations_[entity.index] != std::numeric_limits<std::uint32_t>::max() - 1) {
         free_.push_back(entity.index);
     }

@@ -17,11 +17,11 @@
 
 namespace candela {
 
-/// Entities and their components, with a tick for every change: for each component of each entity, and for
-/// each pool of components. A value: copies are independent and keep entities and ticks. Not synchronised. A
-/// world that was moved from may only be assigned to or destroyed.
+/// Entities and their components, with the tick of the last change of each component of each entity and of
+/// each pool (all components of one type). A value type: copies are independent and keep entities and ticks.
+/// Not synchronised. A world that was moved from may only be assigned to or destroyed.
 ///
-/// Whatever takes an Entity, `alive` aside, throws EntityError if it is not alive.
+/// All functions that take an Entity, except `alive`, throw EntityError if the entity is not alive.
 class World {
  public:
     World() = default;
@@ -32,14 +32,14 @@ class World {
     ~World() = default;
 
     [[nodiscard]] Entity create();
-    /// Removes its components too; together that is one change.
+    /// Also removes its components; together this counts as one change.
     void destroy(Entity entity);
     [[nodiscard]] bool alive(Entity entity) const;
     /// Number of live entities.
     [[nodiscard]] std::size_t size() const { return live_; }
 
-    /// Inserts or replaces. A value equal to the present one (where C compares) changes nothing and does not
-    /// stamp.
+    /// Inserts or replaces. If C has operator== and the value equals the current one, nothing changes, the
+    /// ticks included.
     template <Component C>
     void set(Entity entity, C value);
 
@@ -47,8 +47,8 @@ class World {
     template <Component C>
     void remove(Entity entity);
 
-    /// Replaces the component by what `change(C&)` makes of a copy of it, on the terms of `set`; if `change`
-    /// throws, nothing changes. EntityError if the entity has no C.
+    /// Calls `change(C&)` with a copy of the component and then sets the component to the copy, as `set`
+    /// does. If `change` throws, nothing changes. EntityError if the entity has no C.
     template <Component C, std::invocable<C&> F>
     void edit(Entity entity, F&& change);
 
@@ -65,15 +65,15 @@ class World {
         return find<C>(entity) != nullptr;
     }
 
-    /// When the entity's C last changed; 0 if it has none.
+    /// Tick at which the entity's C last changed; 0 if it has none.
     template <Component C>
     [[nodiscard]] Tick changed(Entity entity) const;
 
-    /// When a C was last inserted, changed or removed; 0 if never.
+    /// Tick at which a C was last inserted, changed or removed; 0 if never.
     template <Component C>
     [[nodiscard]] Tick revision() const;
 
-    /// When anything last changed in any pool; 0 if never.
+    /// Tick of the last change in any pool; 0 if never.
     [[nodiscard]] Tick revision() const { return tick_; }
 
     /// Number of entities that have a C.
@@ -92,8 +92,8 @@ class World {
     template <Component C>
     [[nodiscard]] const Pool<C>* pool() const;
 
-    // A slot's generation is odd while an entity lives in it: even a made-up Entity cannot pass for a free
-    // slot.
+    // Per index: its generation, which is odd while an entity uses the index. An Entity with an even
+    // generation is never alive, so not even an invented handle can refer to a free index.
     std::vector<std::uint32_t> generations_;
     std::vector<std::uint32_t> free_;
     std::size_t live_ = 0;

@@ -15,7 +15,7 @@ namespace candela {
 namespace detail {
 namespace {
 
-/// Checks that passes have names of their own, and resolves those that `after` gives.
+/// Checks that pass names are unique, and resolves the names given to `after`.
 std::vector<Edge> resolve_passes(const Declaration& declared, std::vector<Fault>& faults) {
     IndexTable table(declared.pass_count());
     const auto named = [&](std::string_view name) {
@@ -44,7 +44,8 @@ std::vector<Edge> resolve_passes(const Declaration& declared, std::vector<Fault>
     return afters;
 }
 
-/// Checks that resources known from graph to graph have names of their own, and that pasts have a present.
+/// Checks that the names of persistent and imported resources are unique, and that every resource with a
+/// history is written.
 void check_resources(const Declaration& declared, std::vector<Fault>& faults) {
     const auto known = [](const Resource& resource) {
         return resource.lifetime != Lifetime::transient && resource.history_of == none;
@@ -102,7 +103,7 @@ bool is_root(const Declaration& declared, std::uint32_t pass) {
     });
 }
 
-/// By pass: whether something that must happen needs it.
+/// Per pass: whether it is kept, because it is a root (see is_root) or a kept pass uses its results.
 std::vector<std::uint8_t> needed_passes(const Declaration& declared, const Plan& plan) {
     std::vector<std::uint8_t> needed(declared.pass_count(), 0);
     std::vector<std::uint32_t> open;

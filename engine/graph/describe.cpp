@@ -51,7 +51,7 @@ std::string access_text(const CompiledGraph& graph, const Access& access) {
     return text;
 }
 
-/// Passes that compiling left out, in the order of declaration.
+/// Culled passes, in the order of declaration.
 std::vector<std::uint32_t> culled_passes(const CompiledGraph& graph) {
     std::vector<bool> kept(graph.declared().pass_count(), false);
     for (const std::uint32_t pass : graph.plan().order) {
@@ -66,7 +66,7 @@ std::vector<std::uint32_t> culled_passes(const CompiledGraph& graph) {
     return culled;
 }
 
-/// Resources that kept passes use, pasts aside.
+/// Resources that kept passes use, without histories.
 std::vector<std::uint32_t> used_resources(const CompiledGraph& graph) {
     std::vector<std::uint32_t> used;
     for (std::uint32_t index = 0; index < graph.declared().resources.size(); ++index) {
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> used_resources(const CompiledGraph& graph) {
     return used;
 }
 
-/// For each object the place among those that the back end or the host provides, or none: values have none.
+/// Per object: its number among the textures and buffers; none for values.
 std::vector<std::uint32_t> object_numbers(const CompiledGraph& graph) {
     std::vector<std::uint32_t> numbers;
     std::uint32_t next = 0;

@@ -6,12 +6,14 @@
 
 namespace candela {
 
-/// For people and golden tests: passes in order with accesses and barriers, culled passes, resources with
-/// lifetimes and objects. Stable for one declaration.
+/// A listing for readers and golden tests: the passes in execution order with accesses and barriers, the
+/// culled passes, and the resources with lifetimes (first and last position) and object numbers. The same
+/// declaration always gives the same text.
 [[nodiscard]] std::string describe_text(const CompiledGraph& graph);
-/// For Graphviz: passes are boxes, edges are the versions that one hands to another.
+/// Graphviz source. Passes are boxes; an edge is a resource that one pass writes and another uses, dashed for
+/// histories.
 [[nodiscard]] std::string describe_dot(const CompiledGraph& graph);
-/// The text's content as a JSON document.
+/// The content of describe_text as a JSON document.
 [[nodiscard]] std::string describe_json(const CompiledGraph& graph);
 
 }  // namespace candela

@@ -13,11 +13,11 @@ using detail::none;
 
 namespace {
 
-/// Whether a pass may run in a frame; combined as bits.
+/// Whether a pass runs in the current frame, as bits.
 enum Need : std::uint8_t {
     nothing = 0,
-    may_change = 1,  // its inputs have changed, or may yet
-    certain = 2      // it runs in any case
+    may_change = 1,  // its inputs have changed, or may still change in this frame
+    certain = 2      // it runs even if its inputs do not change
 };
 
 template <class F>
@@ -49,7 +49,8 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
     require_imports();
     notice_world(world);
     mark(world, 0);
-    bool marked_too_many = false;  // readers of a pass that was to change something, and has not
+    // Set when a pass that might have changed its results did not: its readers may be marked without need.
+    bool marked_too_many = false;
 
     record_.frame = frame_;
     std::fill(state_.turned.begin(), state_.turned.end(), std::uint8_t{0});
@@ -102,7 +103,8 @@ void GraphRuntime::require_imports() const {
     }
 }
 
-/// Another world's revisions say nothing about this one's.
+/// If the world is not the one of the last run, makes all passes that read components dirty: the revisions of
+/// different worlds cannot be compared.
 void GraphRuntime::notice_world(const World& world) {
     if (world_ == &world) {
         return;
@@ -132,8 +134,8 @@ bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
     return false;
 }
 
-/// Marks what a frame may have to run from a position on. Everything before is done, and what that has left
-/// clean no longer makes others run.
+/// Marks which passes may have to run, from position `from` on. The passes before it are finished: those that
+/// have not changed their results do not make others run.
 void GraphRuntime::mark(const World& world, std::uint32_t from) {
     for (const std::uint32_t held : state_.holds) {
         if (held != none) {
@@ -146,7 +148,7 @@ void GraphRuntime::mark(const World& world, std::uint32_t from) {
     }
 }
 
-/// Forward: a pass may change if it is dirty now, or reads from one that may change.
+/// Forward sweep: a pass may change if it is dirty now, or if it has an input from a pass that may change.
 void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
     for (std::uint32_t position = from; position < state_.step_count(); ++position) {
         const detail::Step& step = state_.steps[position];
@@ -165,9 +167,10 @@ void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
     }
 }
 
-/// Backward: whoever makes what a running pass lacks must run as well. A run also takes the place of what a
-/// later pass has put into the same object, be it a later version or another resource. Gives whether that has
-/// taken something away which readers seen before may lack, so that another round is due.
+/// Backward sweep: if an input of a running pass is missing, the pass that produces it must run as well. A
+/// run also overwrites what a later pass has put into the same object: a later version or another resource.
+/// Returns true if that removes a version whose readers the sweep has already visited, so that another sweep
+/// is needed.
 bool GraphRuntime::mark_missing(std::uint32_t from) {
     bool again = false;
     for (std::uint32_t position = state_.step_count(); position-- > from;) {
@@ -220,7 +223,7 @@ bool GraphRuntime::has_results(const detail::Step& step) const {
         outputs, [&](const detail::Output& output) { return state_.versions[output.version].present; });
 }
 
-/// Whether all that the step has just made is new to its readers.
+/// Whether all outputs of the step, which has just run, count as changed for their readers.
 bool GraphRuntime::renewed_results(const detail::Step& step) const {
     const auto outputs =
         std::span(state_.outputs).subspan(step.first_output, (&step + 1)->first_output - step.first_output);
@@ -229,7 +232,8 @@ bool GraphRuntime::renewed_results(const detail::Step& step) const {
     });
 }
 
-/// Nothing holds while the pass runs, lest an exception leave half a result behind.
+/// Marks the outputs as not present while the pass runs, so that an exception cannot leave an incomplete
+/// result that counts as valid.
 void GraphRuntime::begin_outputs(const detail::Step& step) {
     const detail::Step& next = *(&step + 1);
     for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
@@ -252,7 +256,8 @@ void GraphRuntime::release(std::uint32_t slot) {
     held = none;
 }
 
-/// The present becomes the past, and what was the past is there to be filled.
+/// Swaps the two objects of a resource with a history: the current content becomes the history, and the
+/// object of the old history will be written.
 void GraphRuntime::turn_over(std::uint32_t slot) {
     std::swap(state_.slots[slot], state_.slots[slot + 1]);
     state_.slots[slot].filled = false;
@@ -282,8 +287,8 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
     backend_.begin_pass(step.name, position, &targets);
 }
 
-/// A pass that ran only to bring back what it had made before keeps the stamps of its results; so does a
-/// value that was set to what it was.
+/// Records a completed run. The outputs keep their stamps if the pass ran only to restore a result, with
+/// unchanged inputs; a value keeps its stamp also if it was set to an equal value.
 void GraphRuntime::keep_record(detail::Step& step, const World& world, bool changed) {
     const detail::Step& next = *(&step + 1);
     for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
@@ -318,7 +323,7 @@ void GraphRuntime::invalidate() {
     }
 }
 
-// What passes and the host may touch
+// Access for passes and the host
 
 const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
     if (!graph_) {
@@ -344,7 +349,7 @@ void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureD
     if (!slot) {
         return;
     }
-    slot->object = object;  // may be 0, as the window's framebuffer is
+    slot->object = object;  // may be 0: the window's framebuffer
     slot->texture = texture;
     slot->buffer = buffer;
     slot->filled = true;
@@ -355,7 +360,8 @@ void GraphRuntime::touch(ResourceHandle imported) {
     state_.versions[graph_->plan().version(imported.resource, 0)].stamp = ++clock_;
 }
 
-/// Until a resource has turned over in a frame, what it holds is what it held at the end of the last one.
+/// The slot of a resource or of a history. Until turn_over was called in a frame, a resource still holds its
+/// content from the end of the previous frame, so its own slot is the history.
 detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
     const std::uint32_t past_of = graph_->declared().resources[index].history_of;
     const std::uint32_t slot = graph_->plan().object[past_of == none ? index : past_of];

@@ -19,86 +19,99 @@
 namespace candela {
 
 struct PassRecord {
-    std::string_view name;  ///< lasts until the next graph is adopted
+    std::string_view name;  ///< valid until the next call of GraphRuntime::adopt
     bool ran = false;
-    bool verified = false;  ///< ran again after the frame, with the same result
-    double cpu_ms = 0.0;    ///< milliseconds on the CPU; 0 without timing
+    bool verified = false;  ///< GraphRuntime::verify ran it again, with the same result
+    double cpu_ms = 0.0;    ///< elapsed milliseconds on the CPU side; 0 without timing
 };
 
 struct FrameRecord {
-    std::uint64_t frame = 0;         ///< counts runs from 0
-    std::vector<PassRecord> passes;  ///< kept passes, in the order of the graph
+    std::uint64_t frame = 0;         ///< number of runs completed before this one
+    std::vector<PassRecord> passes;  ///< all passes that were not culled, in execution order
 };
 
-/// Bytes of storage that a runtime holds, without what a driver adds.
+/// Bytes of GPU storage that a runtime owns, without driver overhead.
 struct MemoryUse {
     std::uint64_t texture_bytes = 0;
     std::uint64_t buffer_bytes = 0;
-    std::uint64_t shared_by_aliasing_bytes =
-        0;                          ///< what transients would need in addition if they shared nothing
-    std::uint64_t spare_bytes = 0;  ///< of the above, kept for a return to the previous graph
+    /// What transients would need in addition if they did not share objects.
+    std::uint64_t shared_by_aliasing_bytes = 0;
+    /// The part of texture_bytes and buffer_bytes in the free pool, kept for a switch back to the previous
+    /// graph.
+    std::uint64_t spare_bytes = 0;
 };
 
 enum class Timing : bool { off, on };
 
 class GraphRuntime;
 
-/// What a running pass may do. Access to what the pass did not declare throws GraphError naming both.
+/// The interface of a running pass; valid only during its function. Every access to a resource that the pass
+/// has not declared throws GraphError, which names the pass and the resource.
 class Execution {
  public:
+    /// The world given to GraphRuntime::run. Read only components that the pass has declared: an undeclared
+    /// read is not checked here, and the pass would miss changes.
     [[nodiscard]] const World& world() const { return world_; }
 
+    /// The back end's object that holds the resource in this frame. `reserve` may replace it.
     [[nodiscard]] ObjectId object(TextureHandle texture) const { return slot(texture, false).object; }
     template <class T>
     [[nodiscard]] ObjectId object(BufferHandle<T> buffer) const {
         return slot(buffer, false).object;
     }
 
-    /// As it is now: after `reserve`, and as bound by the host.
+    /// The current description, including changes by `reserve`; for imports, that given to `bind`.
     [[nodiscard]] const TextureDesc& desc(TextureHandle texture) const {
         return slot(texture, false).texture;
     }
-    /// Elements that the buffer has room for now; at least what was declared or reserved.
+    /// Number of elements that the buffer can hold now: for imports as bound, else at least as many as
+    /// declared or reserved.
     template <class T>
     [[nodiscard]] std::uint64_t count(BufferHandle<T> buffer) const {
         return slot(buffer, false).buffer.count;
     }
 
-    /// Lasts until a pass or the host sets the value anew. GraphError if it was never set.
+    /// The reference is valid until a pass or the host sets the value again. Throws GraphError if the value
+    /// was never set.
     template <class T>
     [[nodiscard]] const T& value(ValueHandle<T> value) const {
         return *static_cast<const T*>(content(value));
     }
 
-    /// What a value that the pass reads or writes holds now, null if it was never set: how a pass comes by
-    /// its own last result.
+    /// The current content of a value that the pass reads or writes; null if it was never set. A pass reads
+    /// its own previous result this way (see Pass::remembers). Valid until the value is set again.
     template <class T>
     [[nodiscard]] const T* find(ValueHandle<T> value) const {
         return static_cast<const T*>(slot(value, false).value.get());
     }
 
-    /// Whether what the pass reads has changed since it ran last, for passes that keep parts of their last
-    /// result. Everything has where there is no last result to keep: in the first run, after
-    /// GraphRuntime::invalidate, where the result was overwritten or the pass threw, and in verification,
-    /// which thus compares parts with the whole.
+    /// Whether an input (a version that the pass reads or modifies in place) has changed since the pass last
+    /// ran. For passes that update only parts of their previous result. Always true if there is no previous
+    /// result: in the first run, after GraphRuntime::invalidate, if the result was overwritten, or if the
+    /// pass threw. Also always true during verification, which thereby compares partial updates with a full
+    /// one. Throws GraphError for anything that is not an input, histories included.
     [[nodiscard]] bool changed(ResourceHandle read) const;
 
-    /// Sets a value that the pass writes. One that equals the present (where T compares) leaves its readers
-    /// clean.
+    /// Sets a value that the pass writes. If T has operator== and the new content equals the old, the readers
+    /// of the value do not run again because of it.
     template <class T>
     void set(ValueHandle<T> value, std::type_identity_t<T> content);
 
-    /// Makes room for `count` elements in a persistent buffer that the pass writes from version 0. Grows by
-    /// half at least, and never shrinks; growing loses the content.
+    /// Ensures that a persistent buffer can hold `count` elements. The pass must write the buffer from
+    /// version 0; GraphError otherwise. The buffer grows by at least half its size and never shrinks. Growing
+    /// replaces the object, and its content is lost.
     template <class T>
     void reserve(BufferHandle<T> buffer, std::uint64_t count) {
         reserve_buffer(buffer, count);
     }
-    /// Gives a persistent texture that the pass writes from version 0 this description; another one loses the
-    /// content.
+    /// Changes the description of a persistent texture. The pass must write the texture from version 0, and
+    /// not as colour_target or depth_target; GraphError otherwise. A description that differs from the
+    /// current one replaces the object, and its content is lost.
     void reserve(TextureHandle texture, const TextureDesc& desc);
 
-    /// Whether a history handle has content of the resource's present description, with no cut since.
+    /// Whether a history has usable content: it was written, the resource has the same description now, and
+    /// GraphRuntime::invalidate_history was not called since the previous frame. GraphError if the handle is
+    /// not a history.
     [[nodiscard]] bool history_valid(TextureHandle history) const { return valid(history); }
     template <class T>
     [[nodiscard]] bool history_valid(BufferHandle<T> history) const {
@@ -118,41 +131,55 @@ class Execution {
     GraphRuntime& runtime_;
     const World& world_;
     std::uint32_t position_ = 0;
-    bool anew_ = true;  // the running pass has no last result to keep
+    bool anew_ = true;  // the running pass has no previous result that it could keep
 };
 
-/// Runs compiled graphs, one at a time, and owns what must outlast a frame: the objects of the graph's
-/// resources, the values, and for each pass and version the stamps that tell whether a pass must run again.
+/// Runs a compiled graph, frame by frame, and can switch to another graph. Owns what is kept between frames:
+/// the GPU objects of the graph's resources (except imported ones), the values, and the change stamps that
+/// decide whether a pass must run again. Not thread-safe.
 ///
-/// A pass runs when it has not yet run, when a stamp of its inputs (what it reads or changes, component
-/// pools, imported values) is not the one of its last run, when it has a side effect or writes an imported
-/// resource, and when a pass that runs needs a result of it that has been overwritten. Not synchronised.
+/// In each frame only some passes run. A pass runs if
+/// - it has not run yet,
+/// - one of its inputs has changed since it last ran: a resource version that it reads or modifies in place,
+///   a component pool or an imported resource,
+/// - it has a side effect or writes an imported resource, or
+/// - a pass that runs needs one of its results, and that result has been overwritten.
+/// Otherwise its previous results stay in use.
 class GraphRuntime {
  public:
-    /// The back end must outlive the runtime.
+    /// Keeps a reference: the back end must outlive the runtime.
     explicit GraphRuntime(Backend& backend) : backend_(backend) {}
     GraphRuntime(const GraphRuntime&) = delete;
     GraphRuntime& operator=(const GraphRuntime&) = delete;
-    /// Destroys every object that it made.
+    /// Destroys every object that the runtime has created, not the imported ones.
     ~GraphRuntime();
 
-    /// Replaces the graph. Persistent resources and values that both graphs declare alike stay, and so do the
-    /// records of passes with the same name, parameters and inputs: what was clean stays clean. Objects that
-    /// the new graph does not need are spared until the graph after it, or `trim`. If the back end throws,
-    /// nothing has changed. Imported textures and buffers must be bound anew.
+    /// Switches to another graph and takes ownership of it. Handles of the old graph become invalid.
+    ///
+    /// Persistent resources and values that both graphs declare with the same kind, name and description keep
+    /// their content. A pass that both graphs declare with the same name, accesses and parameters stays up to
+    /// date: it runs again only to provide results that were not kept, such as transients. Imported textures
+    /// and buffers must be bound again; imported values stay set.
+    ///
+    /// Objects that the new graph does not use go to a free pool. The next call of `adopt` reuses what it can
+    /// from there and destroys the rest; `trim` destroys them at once. If the back end throws, the exception
+    /// passes through and the runtime keeps the old graph, unchanged.
     void adopt(CompiledGraph graph);
 
-    /// The adopted graph, or null.
+    /// The current graph, or null before the first `adopt`. Valid until the next `adopt`.
     [[nodiscard]] const CompiledGraph* graph() const { return graph_ ? &*graph_ : nullptr; }
 
-    /// Sets an imported value; it stays until set again, and an equal one (where T compares) leaves its
-    /// readers clean.
+    /// Sets an imported value, which stays until it is set again. If T has operator== and the new value
+    /// equals the old, the readers do not run again because of it. Does nothing if only culled passes use the
+    /// value. GraphError if there is no graph, or if the handle is of another graph or not imported.
     template <class T>
     void set(ValueHandle<T> imported, std::type_identity_t<T> value);
 
-    /// Gives an imported texture or buffer its object, which the host keeps. Stays until bound again; each
-    /// call counts as new content. Bind before each run what the host fills, passes read and later passes
-    /// write.
+    /// Provides the object of an imported texture or buffer. The host keeps ownership, and the object must
+    /// stay alive while it is bound. The binding stays until the next `bind` or `adopt`. Each call counts as
+    /// new content, so the readers run again. If passes read the host's content and later passes overwrite
+    /// it, call `bind` before each run. `object` may be 0 for the window's framebuffer. Does nothing if only
+    /// culled passes use the resource. Throws GraphError like `set`.
     void bind(TextureHandle imported, ObjectId object, const TextureDesc& desc) {
         bind(imported, object, desc, {});
     }
@@ -161,48 +188,58 @@ class GraphRuntime {
         bind(imported, object, {}, {count, sizeof(T)});
     }
 
-    /// Runs one frame and tells which passes ran. The record lasts until the next run. GraphError if nothing
-    /// is adopted or an import is missing. What a pass throws passes through: that pass then counts as not
-    /// having run, and the next run takes up from there.
+    /// Runs one frame and returns which passes ran. The record is valid until the next run. `timing` turns on
+    /// PassRecord::cpu_ms. Throws GraphError if there is no graph, or if an imported resource that a kept
+    /// pass uses was not bound or set. Exceptions from a pass pass through: that pass then counts as not
+    /// having run, and the next `run` runs it again; passes that had completed keep their results.
     ///
-    /// A world is known by its address and its pools' revisions. Call `invalidate` after replacing the
-    /// content of the world at one address by that of another.
+    /// Changes of the world are detected by its address and the revisions of its component pools. Call
+    /// `invalidate` after assigning another world to the same object.
     const FrameRecord& run(const World& world, Timing timing = Timing::off);
 
-    /// Whether frames are noted for `verify`, and can be: off at first. While it is on, the content of what a
-    /// pass writes is read back each time that it runs; while it is off, it costs nothing.
+    /// Turns recording for `verify` on or off; initially off. While on, the outputs of a pass are read back
+    /// (as digests) each time that it runs; while off, there is no cost.
     void set_verification(bool on);
     [[nodiscard]] bool verifies() const { return verifying_; }
-    /// Runs the last frame's passes again, clean ones too, and compares what they write with what they wrote
-    /// when they ran before: textures and buffers by the back end's digests of their content, values where
-    /// their type compares. GraphError names the first pass, in the order of the graph, and the resource that
-    /// differ: the pass depends on what it did not declare, or on chance. It then counts as not having run.
+    /// Checks for undeclared inputs: runs the passes of the last frame again, including those that did not
+    /// run in it, and compares what they write with what they wrote before. Textures and buffers are compared
+    /// by the back end's digests, values with operator== where their type has it.
     ///
-    /// Call it after `run`, with the same world, unchanged. Each pass reads what the passes before it have
-    /// just made again, so that versions which later passes have changed in place, and transients whose
-    /// object has another user by then, are compared like all others. Not run again are passes with side
-    /// effects and those that write imports (they have run in this frame), passes that remember (a history,
-    /// or their own last result), passes that would overwrite what one of those has made, and passes that
-    /// lack what only those could bring back. `reserve` finds the room that it made before. A pass that a
-    /// frame runs only to bring back what another lacks is compared in that frame already.
-    /// The frame's record stays as it is, but for `PassRecord::verified`; of transients that share objects
-    /// others may be there for the next frame than without verification.
+    /// Throws GraphError if there is no graph or verification is off, and at the first difference. That error
+    /// names the pass, the first one in execution order, and the resource: the pass depends on something that
+    /// it did not declare, or is not deterministic. The pass then counts as not having run.
+    ///
+    /// Call `verify` after `run`, with the same world, unchanged. Each pass reads what the passes before it
+    /// have just written again, so the check also covers versions that later passes modify in place and
+    /// transients whose object another resource uses later in the frame. Not run again are
+    /// - passes with side effects and passes that write imports (they run in every frame),
+    /// - passes that read a history or have declared Pass::remembers,
+    /// - passes that would overwrite a result of one of those, and
+    /// - passes with an input that has been overwritten and that only one of those could write again.
+    ///
+    /// `reserve` finds the capacity that it made before. PassRecord::verified is set; the rest of the frame's
+    /// record stays. Transients that share objects may hold other content afterwards than without `verify`,
+    /// so the next frame may have to run other passes to restore their results.
+    ///
+    /// While verification is on, `run` makes the same comparison, with the same GraphError, for a pass that
+    /// it runs only to restore an overwritten result.
     void verify(const World& world);
 
-    /// All passes run in the next frame.
+    /// Makes all passes run in the next frame.
     void invalidate();
-    /// The next frame finds no valid history: for camera cuts.
+    /// Makes all histories invalid in the next frame, for example after a camera cut.
     void invalidate_history() { cut_ = true; }
-    /// Destroys the objects spared for a return to the previous graph.
+    /// Destroys the objects in the free pool (see `adopt`).
     void trim();
 
-    /// A value of the adopted graph. GraphError if it was never set.
+    /// A value of the current graph; the reference is valid until the value is set again or `adopt` is
+    /// called. GraphError if it was never set.
     template <class T>
     [[nodiscard]] const T& value(ValueHandle<T> value) const {
         return *static_cast<const T*>(content(value));
     }
-    /// The object that holds a resource of the adopted graph; 0 if no kept pass uses it. A transient's
-    /// content lasts only until its object's next user.
+    /// The object that holds a resource of the current graph; 0 if only culled passes use it. A transient's
+    /// content is valid only until another resource uses the same object.
     [[nodiscard]] ObjectId object(ResourceHandle resource) const;
     [[nodiscard]] MemoryUse memory() const;
 
@@ -240,16 +277,16 @@ class GraphRuntime {
     Backend& backend_;
     std::optional<CompiledGraph> graph_;
     detail::State state_;
-    std::vector<detail::Slot> spare_;  // objects of the graph before
+    std::vector<detail::Slot> spare_;  // free pool: objects of the previous graph
     FrameRecord record_;
     std::uint64_t frame_ = 0;
-    std::vector<ObjectId> colours_;  // scratch: the attachments of the running pass
+    std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
     const World* world_ = nullptr;   // of the last run
     detail::Stamp clock_ = 0;
-    Barrier carried_ = Barrier::none;  // owed by passes that were skipped
+    Barrier carried_ = Barrier::none;  // pending: planned for passes that were skipped
     bool cut_ = false;
     bool verifying_ = false;
-    bool repeating_ = false;  // within verify
+    bool repeating_ = false;  // during verify
 };
 
 template <class T>

@@ -7,28 +7,29 @@
 namespace candela {
 
 enum class FaultCode : std::uint8_t {
-    foreign_handle,       ///< a handle of another graph, or of none
-    stale_handle,         ///< a read of a version that another pass has overwritten
+    foreign_handle,       ///< a null handle, or one of another graph or of another kind
+    stale_handle,         ///< a read of a version that another pass has already overwritten
     two_writers,          ///< two passes write one version, and `after` does not order them
-    unwritten_read,       ///< a read of what nobody writes
-    wrong_usage,          ///< a usage that the resource or the direction does not allow
-    feedback,             ///< a pass reads the version that it overwrites
+    unwritten_read,       ///< a read before any write, or a history of what no pass writes
+    wrong_usage,          ///< an access that the resource's kind, format or lifetime does not allow
+    feedback,             ///< a pass declares a read of the version that it overwrites
     attachment_mismatch,  ///< attachments of different sizes, or two depth targets
-    duplicate_pass,       ///< two passes of one name
-    duplicate_resource,   ///< two kept or imported resources of one kind and name
-    unknown_pass,         ///< `after` names no pass
-    nested_pass,          ///< a pass declared while another was being declared
-    cycle                 ///< passes that wait for each other
+    duplicate_pass,       ///< two passes with the same name
+    duplicate_resource,   ///< two persistent or imported resources with the same kind and name
+    unknown_pass,         ///< `after` with a name that no pass has
+    nested_pass,          ///< a pass added while another pass is being declared
+    cycle                 ///< passes that depend on each other in a cycle
 };
 
-/// Why a graph does not compile: one line that names the passes and the resources concerned.
+/// One reason why a graph does not compile. `message` is one line that names the passes and resources.
 struct Fault {
     FaultCode code;
     std::string message;
     bool operator==(const Fault&) const = default;
 };
 
-/// Misuse of a compiled graph while it runs, or taking a graph that did not compile.
+/// Thrown for misuse of a GraphRuntime or an Execution, for a failed verification, and by CompileResult::take
+/// if the graph did not compile.
 class GraphError : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;

@@ -14,23 +14,29 @@
 namespace candela {
 
 class CompiledGraph;
-class Execution;  // what a pass sees while it runs: execute.hpp
+class Execution;  // the interface of a running pass: execute.hpp
 class FrameGraph;
 struct CompileOptions;
 struct CompileResult;
 
-/// Declares one pass: what it reads, what it writes, what it runs. Lives only inside `FrameGraph::add`.
+/// Declares one pass: what it reads, what it writes and the function that it runs. The object exists only
+/// during the call of `FrameGraph::add`.
 ///
-/// Writing gives the next version of a resource. Version 0 has no content in this frame, and the pass must
-/// fill it; from version 1 on the pass changes what is there and depends on it, without having to read it as
-/// well. Each version is written once: who writes a version that another pass has overwritten must say
-/// `after` that pass, and then writes its result. Passes declared after a write must read the handle that it
-/// gave.
+/// A handle names one version of a resource. Each write returns the handle of the next version, and passes
+/// declared after the write must use that handle. A write to version 0 does not depend on earlier content:
+/// the pass must fill the resource. A write to version 1 or later modifies the content in place: the pass
+/// depends on that content and does not declare a read of it. Two passes may not write the same version: a
+/// pass that writes a handle which another pass has already overwritten must also call `after` with the name
+/// of the pass that wrote the newest version; it then modifies that newest version.
+///
+/// No member throws on misuse; `compile` reports the errors.
 class Pass {
  public:
     Pass(const Pass&) = delete;
     Pass& operator=(const Pass&) = delete;
 
+    /// The pass reads this version of the resource, and runs again when it changes (histories excepted). The
+    /// version must be the newest one, and it must have been written by a pass, be imported or be a history.
     void read(TextureHandle texture, Usage usage) { declared_.read(texture, ResourceKind::texture, usage); }
     template <class T>
     void read(BufferHandle<T> buffer, Usage usage) {
@@ -41,13 +47,16 @@ class Pass {
         declared_.read(value, ResourceKind::value, {});
     }
 
-    /// Reads a component pool of the world: the pass is dirty when the pool's revision has moved.
+    /// The pass reads components of type C from the world (Execution::world). It runs again when a C of any
+    /// entity was added, changed or removed.
     template <Component C>
     void read() {
         declared_.components.push_back(
             {component_name<C>(), [](const World& world) { return world.revision<C>(); }});
     }
 
+    /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
+    /// imported values cannot be written.
     [[nodiscard]] TextureHandle write(TextureHandle texture, Usage usage) {
         return {declared_.write(texture, ResourceKind::texture, usage)};
     }
@@ -60,8 +69,9 @@ class Pass {
         return {declared_.write(value, ResourceKind::value, {})};
     }
 
-    /// A constant of the declaration that the pass's result depends on. When a new graph is adopted, a pass
-    /// whose parameters compare equal keeps its results.
+    /// A constant on which the pass's result depends, for example one that the function captures.
+    /// `GraphRuntime::adopt` keeps the results of a pass only if its parameters are equal in both graphs. The
+    /// graph owns the copy.
     template <std::equality_comparable T>
     void parameter(T value) {
         const auto equal = [](const void* a, const void* b) {
@@ -70,19 +80,20 @@ class Pass {
         declared_.parameters.push_back({typeid(T), declared_.store(std::move(value)), equal});
     }
 
-    /// Never culled, and runs in every frame.
+    /// The pass is never culled and runs in every frame.
     void side_effect() { declared_.passes.back().side_effect = true; }
 
-    /// The result depends on the pass's own last one (`Execution::find`), so that running twice is not
-    /// running once. A pass that reads a history does without saying. Verification leaves such passes alone;
-    /// nothing else about them differs.
+    /// The result depends on the pass's own previous result (`Execution::find`), so a second run with the
+    /// same inputs may give a different result. Implied for passes that read a history. Only verification
+    /// uses this: it does not run such passes again.
     void remembers() { declared_.passes.back().remembers = true; }
 
-    /// An order that no data states: this pass runs after the named one, which may be declared later. It
-    /// keeps nobody alive. Unknown names are faults.
+    /// This pass runs after the named one, which may be declared later. For order without a data dependency:
+    /// it does not prevent the named pass from being culled. `compile` reports unknown names.
     void after(std::string_view pass) { declared_.after(pass); }
 
-    /// What the pass does: `void(Execution&)`. The last call counts.
+    /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
+    /// replaces the function; a pass without one only has its barriers issued and its attachments bound.
     template <std::invocable<Execution&> F>
     void run(F function) {
         detail::PassNode& pass = declared_.passes.back();
@@ -97,39 +108,45 @@ class Pass {
     detail::Declaration& declared_;
 };
 
-/// The declaration of a frame. Declaring never throws on misuse; `compile` reports every fault by name, and
-/// leaves nothing to declare into.
+/// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
+/// reports every error. `compile` consumes the graph: afterwards it may only be assigned to or destroyed.
 class FrameGraph {
  public:
-    // Names are for people, and the key under which persistent and imported resources and values are known
-    // from one graph to the next: among those, each kind's names must be unique.
+    // Names appear in messages and reports. They also identify persistent and imported resources across
+    // graphs (GraphRuntime::adopt), so the names of persistent and imported resources must be unique within
+    // each kind (texture, buffer, value). The graph copies the names.
+
+    /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
+    /// and GraphRuntime::bind gives the actual description.
     [[nodiscard]] TextureHandle texture(std::string_view name, const TextureDesc& desc,
                                         Lifetime lifetime = Lifetime::transient) {
         return {declared_.add_texture(name, desc, lifetime)};
     }
 
-    /// A buffer of `count` `T`s.
+    /// A buffer of `count` elements of type `T`, sizeof(T) bytes apart.
     template <class T>
     [[nodiscard]] BufferHandle<T> buffer(std::string_view name, std::uint64_t count,
                                          Lifetime lifetime = Lifetime::transient) {
         return {declared_.add_buffer(name, {count, sizeof(T)}, lifetime)};
     }
 
-    /// A CPU value that a pass sets, kept from frame to frame.
+    /// A CPU value that a pass sets (Execution::set). It is kept from frame to frame.
     template <class T>
     [[nodiscard]] ValueHandle<T> value(std::string_view name) {
         return {declared_.add_value(name, typeid(T), Lifetime::persistent)};
     }
 
-    /// A CPU value that the host sets before the first run, and whenever it likes.
+    /// A CPU value that the host sets (GraphRuntime::set): before the first run, and again whenever it
+    /// changes.
     template <class T>
     [[nodiscard]] ValueHandle<T> import_value(std::string_view name) {
         return {declared_.add_value(name, typeid(T), Lifetime::imported)};
     }
 
-    /// What the resource held at the end of the last frame, which makes the resource persistent; read only.
-    /// Invalid in the first frame, after a cut and after a resize: ask `Execution::history_valid`. A memory,
-    /// not an input: reading it never makes a pass dirty.
+    /// A read-only handle for the content that the resource had at the end of the previous frame. Makes the
+    /// resource persistent; imported resources cannot have a history. The history is invalid in the first
+    /// frame, after a camera cut and after a resize: ask `Execution::history_valid`. A change of the history
+    /// does not make its readers run again.
     [[nodiscard]] TextureHandle history(TextureHandle texture) {
         return {declared_.add_history(texture, ResourceKind::texture)};
     }
@@ -138,8 +155,8 @@ class FrameGraph {
         return {declared_.add_history(buffer, ResourceKind::buffer)};
     }
 
-    /// Adds a pass; `declare(Pass&)` is called at once and its result (the handles that the pass gives) is
-    /// returned.
+    /// Adds a pass. Calls `declare(Pass&)` immediately and returns its result, usually the handles that the
+    /// pass writes. Pass names must be unique in the graph. `declare` may add resources, but no other pass.
     template <std::invocable<Pass&> Declare>
     std::invoke_result_t<Declare, Pass&> add(std::string_view name, Declare&& declare) {
         declared_.begin_pass(name);

@@ -7,10 +7,10 @@
 
 namespace candela {
 
-/// One version of one resource of one graph. Declaring a write yields the next version; the older handle is
-/// then stale for passes declared later. Plain value, owns nothing.
+/// Names one version of one resource of one graph. Declaring a write gives the handle of the next version;
+/// passes declared later must not read the old one. A plain value that owns nothing.
 struct ResourceHandle {
-    std::uint32_t graph = 0;     ///< identity of the declaring FrameGraph; 0 is no graph
+    std::uint32_t graph = 0;     ///< identity of the declaring FrameGraph; 0 for a null handle
     std::uint32_t resource = 0;  ///< index within the graph
     std::uint32_t version = 0;   ///< 0: not yet written in this frame
     bool operator==(const ResourceHandle&) const = default;
@@ -18,7 +18,7 @@ struct ResourceHandle {
 
 struct TextureHandle : ResourceHandle {};
 
-/// A GPU buffer of `T`s.
+/// A GPU buffer with elements of type `T`.
 template <class T>
 struct BufferHandle : ResourceHandle {};
 
@@ -57,10 +57,10 @@ struct TextureDesc {
     std::uint32_t mips = 1;
     bool operator==(const TextureDesc&) const = default;
 };
-/// Bytes of all layers and mip levels, without what a driver adds.
+/// Bytes of all layers and mip levels, without driver overhead.
 [[nodiscard]] std::uint64_t byte_size(const TextureDesc& desc);
 
-/// Storage of a buffer of `count` elements, `stride` bytes apart.
+/// Storage of a buffer with `count` elements, `stride` bytes apart.
 struct BufferDesc {
     std::uint64_t count = 0;
     std::uint32_t stride = 1;
@@ -68,10 +68,10 @@ struct BufferDesc {
 };
 [[nodiscard]] std::uint64_t byte_size(const BufferDesc& desc);
 
-/// How a pass touches a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
+/// How a pass accesses a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
 enum class Usage : std::uint8_t {
     sampled,        ///< read: texture fetches
-    storage,        ///< read or write: shader storage buffer or image; writes are incoherent
+    storage,        ///< read or write: shader storage buffer or image; writes are incoherent (need barriers)
     uniform,        ///< read: uniform buffer
     vertex,         ///< read: vertex attributes
     index,          ///< read: element buffer
@@ -79,15 +79,18 @@ enum class Usage : std::uint8_t {
     colour_target,  ///< write: attachment, bound by the back end before the pass runs
     depth_target,   ///< write: attachment; read: attachment for depth tests without depth writes
     layer_target,   ///< write: the pass attaches single layers itself
-    copy            ///< read or write: copies, clears and uploads by the GL's own commands
+    copy            ///< read or write: copies, clears and uploads by API commands, not by shaders
 };
 [[nodiscard]] std::string_view to_string(Usage usage);
 
 enum class Lifetime : std::uint8_t {
-    transient,   ///< lives between its first and last use in a frame; memory is shared where lifetimes are
-                 ///< disjoint
-    persistent,  ///< kept from frame to frame, and across graphs that declare the same name and description
-    imported     ///< owned by the host, bound before it is used
+    /// Content is kept only from the first to the last use in a frame. Transients of the same kind and
+    /// description whose lifetimes do not overlap may share one object.
+    transient,
+    /// Kept from frame to frame, and across graphs that declare it with the same name and description.
+    persistent,
+    /// Owned by the host, which provides it with GraphRuntime::bind or set.
+    imported
 };
 [[nodiscard]] std::string_view to_string(Lifetime lifetime);
 

@@ -8,7 +8,7 @@
 namespace candela {
 namespace {
 
-/// While it lives the flag is set.
+/// Sets the flag for its own lifetime.
 class Raised {
  public:
     explicit Raised(bool& flag) : flag_(flag) { flag_ = true; }
@@ -38,7 +38,7 @@ void GraphRuntime::verify(const World& world) {
     const std::vector<std::uint8_t> again = detail::repeatable_steps(state_);
     const Raised repeating(repeating_);
     Execution execution(*this, world);
-    carried_ = all_barriers;  // the plan counts on frames that begin at the beginning
+    carried_ = all_barriers;  // the planned barriers assume whole frames, one after the other
     for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
         carried_ = carried_ | state_.steps[position].barrier;
         if (!again[position]) {
@@ -51,7 +51,8 @@ void GraphRuntime::verify(const World& world) {
     carried_ = all_barriers;
 }
 
-/// Notes what the step has made, and compares it with what it had made before from the same inputs.
+/// Records the contents of the step's outputs. If the inputs have not changed, compares them with those of
+/// its previous run and throws GraphError at a difference.
 void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
     const detail::Step& next = *(&step + 1);
     const auto drifted = [&](std::uint32_t version) { return state_.contents[version].drifted; };
@@ -64,7 +65,7 @@ void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
         const bool stamped = state_.versions[output.version].stamp == clock_;
         detail::Content& known = state_.contents[output.version];
         if (!output.value && !slot.owned) {
-            known.drifted = !stamped;  // the host's: nobody can tell
+            known.drifted = !stamped;  // imported: its content cannot be compared
             continue;
         }
         detail::Content now = content_of(slot);

@@ -16,17 +16,18 @@
 
 namespace candela {
 
-// The components of a scene. All are plain values that compare by value; what is heavy (meshes, images) is
-// shared and immutable, so that "did it change?" is a comparison of pointers. Conventions are glTF's:
-// right-handed, +Y up, a camera and a light look along their local -Z, lengths in metres, linear RGB.
+// The components of a scene. All are plain values that compare by value. Large data (meshes, images) is
+// shared and immutable, so comparing pointers is enough to detect a change. Conventions are those of glTF:
+// right-handed, +Y up, cameras and lights point along their local -Z, lengths in metres, linear RGB.
 
-/// What people call the entity; not unique.
+/// Display name of the entity; not unique.
 struct Name {
     std::string value;
     bool operator==(const Name&) const = default;
 };
 
-/// Local-to-parent transform: scale, then rotation, then translation (metres). A null `parent` is the world.
+/// Local-to-parent transform: scale, then rotation, then translation (metres). A null `parent` means world
+/// space.
 struct Transform {
     glm::vec3 translation{0.0F};
     glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
@@ -49,18 +50,18 @@ struct Image {
 
 /// What a material's alpha means (glTF's alphaMode).
 enum class AlphaMode : std::uint8_t {
-    opaque,  ///< nothing
-    mask,    ///< where it is below the cutoff there is no surface: it is neither seen nor does it stop light
-    blend    ///< share of the light behind that the surface covers; see add_transparent
+    opaque,  ///< alpha is ignored
+    mask,    ///< where alpha is below the cutoff there is no surface: it is not visible and blocks no light
+    blend    ///< alpha is the fraction of the light behind the surface that it blocks; see add_transparent
 };
 
-/// A Lambertian surface. Albedo = `base_colour` × the decoded texture, each channel in [0, 1]; so is alpha.
-/// The back of a single-sided surface is not drawn and reflects nothing, yet it still stops light.
+/// A Lambertian surface. Albedo and alpha are `base_colour` × the decoded texture, each channel in [0, 1].
+/// The back of a single-sided surface is not drawn and reflects no light, but it still blocks light.
 struct Material {
     std::string name;
     glm::vec4 base_colour{1.0F};                       ///< linear
     std::shared_ptr<const Image> base_colour_texture;  ///< null: none
-    glm::vec3 emissive{0.0F};                          ///< linear; kept for later, not yet emitted
+    glm::vec3 emissive{0.0F};                          ///< linear; not used yet: it emits no light
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;  ///< of AlphaMode::mask, >= 0
@@ -74,8 +75,8 @@ struct Vertex {
     bool operator==(const Vertex&) const = default;
 };
 
-/// Indexed triangles of one material, counter-clockwise from the front. `indices.size()` is a multiple of 3
-/// and every index is below `vertices.size()`.
+/// Indexed triangles of one material, counter-clockwise seen from the front. `indices.size()` is a multiple
+/// of 3 and every index is below `vertices.size()`.
 struct Primitive {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
@@ -98,13 +99,13 @@ struct MeshInstance {
 struct PointLight {
     glm::vec3 colour{1.0F};  ///< linear, multiplies `intensity`
     float intensity = 1.0F;  ///< candela
-    float range =
-        std::numeric_limits<float>::infinity();  ///< metres; reaches zero there (KHR_lights_punctual)
+    /// Metres; the light falls to zero at this distance (KHR_lights_punctual).
+    float range = std::numeric_limits<float>::infinity();
     bool casts_shadow = true;
     bool operator==(const PointLight&) const = default;
 };
 
-/// Cone of light along the entity's -Z.
+/// Spot light at the entity's origin along its -Z.
 struct SpotLight {
     glm::vec3 colour{1.0F};                                ///< linear, multiplies `intensity`
     float intensity = 1.0F;                                ///< candela, inside the inner cone

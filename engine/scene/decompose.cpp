@@ -13,20 +13,20 @@ namespace candela {
 
 namespace {
 
-// Axes written in single precision are perpendicular to about 1e-7; ten times that for a product of a few
-// matrices, and ten again for good measure.
+// Tolerance for perpendicular axes (cosine of the angle). Axes stored in single precision are perpendicular
+// to about 1e-7; ten times that for a product of a few matrices, and a safety factor of ten.
 constexpr double perpendicular = 1e-5;
 
-// Below this part of the longest axis, an axis has no direction left to speak of.
+// An axis shorter than this fraction of the longest one has no reliable direction.
 constexpr double vanishing = 1e-9;
 
 bool are_perpendicular(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
     return std::abs(glm::dot(a, b)) <= tolerance * glm::length(a) * glm::length(b);
 }
 
-// Turns columns p and q of `a` in their plane until they are perpendicular, and the same columns of `v` along
-// with them (one step of the one-sided Jacobi method: Hestenes, "Inversion of Matrices by
-// Biorthogonalization", 1958).
+// Rotates columns p and q of `a` in their plane so that they become perpendicular, and applies the same
+// rotation to columns p and q of `v` (one step of the one-sided Jacobi method: Hestenes, "Inversion of
+// Matrices by Biorthogonalization", 1958).
 void make_perpendicular(glm::dmat3& a, glm::dmat3& v, int p, int q) {
     const double overlap = glm::dot(a[p], a[q]);
     const double zeta = (glm::dot(a[q], a[q]) - glm::dot(a[p], a[p])) / (2.0 * overlap);
@@ -40,7 +40,7 @@ void make_perpendicular(glm::dmat3& a, glm::dmat3& v, int p, int q) {
     }
 }
 
-// The rotation V after which the columns of `a`·V are perpendicular; `a` becomes that product.
+// Returns the rotation V for which the columns of `a`·V are perpendicular, and replaces `a` by that product.
 glm::dmat3 make_perpendicular(glm::dmat3& a, double tolerance) {
     constexpr int sweeps = 30;  // converges quadratically: six are usual for 3 × 3
     constexpr std::array<std::array<int, 2>, 3> pairs{{{0, 1}, {0, 2}, {1, 2}}};
@@ -66,7 +66,8 @@ glm::dvec3 any_perpendicular(const glm::dvec3& unit) {
     return glm::normalize(glm::cross(unit, axis));
 }
 
-// The directions of perpendicular columns; those of vanished ones are chosen to complete the frame.
+// Unit directions of perpendicular columns. Columns of (almost) zero length get directions that complete an
+// orthonormal frame.
 glm::dmat3 directions(const glm::dmat3& columns, const glm::dvec3& lengths) {
     const double longest = std::max({lengths.x, lengths.y, lengths.z});
     if (longest == 0.0) {

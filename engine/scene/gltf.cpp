@@ -65,7 +65,7 @@ ImportReport import_document(gltf::Document document, const std::filesystem::pat
     return report;
 }
 
-/// One line of bearable length, whatever the file's strings contain.
+/// The message as one line of limited length. It may quote arbitrary strings from the file.
 std::string one_line(std::string_view message) {
     constexpr std::size_t longest = 300;
     std::string line(message.substr(0, longest));
@@ -75,7 +75,7 @@ std::string one_line(std::string_view message) {
     return line;
 }
 
-/// Runs the import; whatever it throws becomes a SceneError that names the file.
+/// Runs the import and turns every exception into a SceneError that names the file.
 template <class Import>
 ImportReport naming_file(std::string_view name, Import import) {
     try {

@@ -14,28 +14,29 @@
 
 namespace candela {
 
-/// What an import brought into the world.
+/// What an import has added to the world.
 struct ImportReport {
-    std::vector<Entity> entities;       ///< all that were created, parents before their children
-    std::uint64_t triangles = 0;        ///< of all mesh instances together
-    std::vector<std::string> warnings;  ///< what the file has and the import leaves out, a line each
+    std::vector<Entity> entities;       ///< all created entities, parents before their children
+    std::uint64_t triangles = 0;        ///< total of all mesh instances
+    std::vector<std::string> warnings;  ///< what the import has left out, one line each
 };
 
-/// Adds the default scene of a glTF 2.0 file, .gltf or .glb, to the world: an entity with Name and Transform
-/// for each node and, where the node has them, MeshInstance, one of the lights, Camera. Meshes, materials and
-/// images are shared between instances. Buffers and images may be embedded or lie in files relative to this
-/// one; images are PNG or JPEG, reduced to 8 bits a channel.
+/// Adds the default scene of a glTF 2.0 file, .gltf or .glb, to the world. Each node becomes an entity with
+/// Name and Transform and, if the node has them, MeshInstance, one of the lights, and Camera. Meshes,
+/// materials and images are shared between instances. Buffers and images may be embedded or in files relative
+/// to this one; images are PNG or JPEG, reduced to 8 bits per channel.
 ///
-/// Of the extensions KHR_lights_punctual is supported. Another one that the file requires is an error; one
-/// that it merely uses is a warning, as are points and lines, skins, animations, morph targets, vertex
-/// colours and base colours that read a second set of texture coordinates. Triangles without
-/// area are dropped. A matrix with shear, which no Transform can hold, becomes two entities, one the parent
-/// of the other (see decompose).
+/// The only supported extension is KHR_lights_punctual. Any other extension is an error if the file requires
+/// it and a warning if the file only uses it. Also left out with a warning: points and lines, skins,
+/// animations, morph targets, vertex colours, and base colours that read a second set of texture coordinates.
+/// Triangles without area are dropped. A node with a sheared matrix, which a Transform cannot represent,
+/// becomes two entities, one the parent of the other (see decompose).
 ///
-/// Throws SceneError, whose one line names the file, the object and the fault; the world is then as it was.
+/// Throws SceneError, whose message is one line that names the file, the object and the problem. The world is
+/// then unchanged.
 ImportReport import_gltf(const std::filesystem::path& path, World& into);
 
-/// The same from memory. `name` stands for the file in messages; relative URIs start from `base_directory`.
+/// The same from memory. `name` is the file's name in messages; URIs are relative to `base_directory`.
 ImportReport import_gltf(std::span<const unsigned char> bytes, const std::filesystem::path& base_directory,
                          std::string_view name, World& into);
 

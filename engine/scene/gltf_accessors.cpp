@@ -22,7 +22,7 @@ T load(const unsigned char* bytes) {
     return value;
 }
 
-/// Elements at regular distances within one buffer view.
+/// Elements at a constant stride (bytes) in one buffer view.
 struct Elements {
     const unsigned char* first;
     std::size_t stride;
@@ -30,7 +30,7 @@ struct Elements {
     const unsigned char* operator[](std::size_t i) const { return first + i * stride; }
 };
 
-/// A run of elements as a file describes it; `owner` names it in messages.
+/// A range of elements as a file describes it; offset and sizes in bytes. `owner` names it in messages.
 struct Run {
     std::string owner;
     int buffer_view;
@@ -68,7 +68,7 @@ std::size_t component_size(int component_type) {
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
             return 2;
         default:
-            return 4;  // what this file reads has been checked by its callers
+            return 4;  // UNSIGNED_INT or FLOAT: callers have checked the type
     }
 }
 
@@ -89,8 +89,8 @@ bool is_unsigned(int component_type) {
            component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-/// Without a buffer view an accessor is all zeros, however many: only their number is in the file. No more of
-/// them are taken than the file has bytes of data, so that a few bytes cannot ask for gigabytes.
+/// An accessor without a buffer view is all zeros, and the file stores only their number. Limits that number
+/// to the bytes of data in the file, so that a small file cannot request gigabytes of memory.
 void check_zeros(const tinygltf::Model& model, const tinygltf::Accessor& accessor, int index) {
     const std::size_t bytes = std::accumulate(
         model.buffers.begin(), model.buffers.end(), std::size_t{0},
@@ -102,7 +102,7 @@ void check_zeros(const tinygltf::Model& model, const tinygltf::Accessor& accesso
     }
 }
 
-/// Replaces the elements that the sparse part lists.
+/// Replaces the elements that the sparse part of the accessor lists.
 template <class Element, class Decode>
 void apply_sparse(const tinygltf::Model& model, int index, Decode decode, std::size_t element_size,
                   std::vector<Element>& elements) {
@@ -131,7 +131,7 @@ void apply_sparse(const tinygltf::Model& model, int index, Decode decode, std::s
     }
 }
 
-/// All elements, each made from its bytes by `decode`. The accessor's types are known to be readable.
+/// All elements, each converted from its bytes by `decode`. The caller has checked the accessor's types.
 template <class Element, class Decode>
 std::vector<Element> read(const tinygltf::Model& model, int index, Decode decode) {
     const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];

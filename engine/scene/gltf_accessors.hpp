@@ -10,9 +10,9 @@
 
 namespace candela::gltf {
 
-// Reading of accessors, strided and sparse ones included. Every bound is checked against the loaded buffers
-// before anything is allocated. All of these throw SceneError that names the accessor or the buffer view and
-// the fault.
+// Reading of accessors, including strided and sparse ones. Every range is checked against the loaded buffers
+// before memory is allocated for it. All functions throw SceneError, which names the accessor or the buffer
+// view and the problem.
 
 /// The bytes of a buffer view.
 [[nodiscard]] std::span<const unsigned char> buffer_view_bytes(const tinygltf::Model& model, int buffer_view);

@@ -23,11 +23,11 @@ namespace {
 using Bytes = std::span<const unsigned char>;
 using Json = nlohmann::json;
 
-// The parser behind the import descends into extensions and extras by recursion. glTF's own members nest 8
-// deep.
+// TinyGLTF parses extensions and extras recursively, so deep nesting could overflow the stack. glTF's own
+// members are nested at most 8 deep.
 constexpr int deepest_nesting = 256;
 
-/// The two parts of a glTF file; a .gltf has no binary part.
+/// The two parts of a glTF file. A .gltf has no binary part.
 struct Container {
     Bytes json;
     std::optional<Bytes> binary;
@@ -41,7 +41,7 @@ std::uint32_t read_u32(Bytes bytes, std::size_t offset) {
     return value;
 }
 
-/// Takes one chunk of a .glb off the front of `rest`.
+/// Removes one chunk of a .glb from the front of `rest` and returns its data.
 Bytes take_chunk(Bytes& rest, std::string_view type) {
     if (rest.size() < 8) {
         throw SceneError("the .glb ends inside a chunk's header");
@@ -86,7 +86,7 @@ Container split(Bytes bytes) {
     return container;
 }
 
-/// Before anything parses it: exact where the text is JSON, and where it is not that comes to light later.
+/// Runs before any parser. The depth is exact for valid JSON; invalid JSON is reported later by the parser.
 void check_nesting(Bytes text) {
     int depth = 0;
     bool in_string = false;
@@ -123,7 +123,7 @@ Json parse_json(Bytes text) {
     }
 }
 
-/// Refuses what is required and not supported; returns a warning each for what is merely used.
+/// Throws for required extensions that are not supported; returns a warning for each other unsupported one.
 std::vector<std::string> check_extensions(const Json& document) {
     const auto names = [&](const char* member) { return document.value(member, std::set<std::string>{}); };
     for (const std::string& name : names("extensionsRequired")) {
@@ -187,9 +187,9 @@ std::vector<tinygltf::Image> describe_images(const Json& document) {
     return images;
 }
 
-/// Writes out two defaults that TinyGLTF 2.5 takes amiss: it misses the offsets of sparse accessors, and
-/// writes out of bounds for an accessor without a buffer view, which gets the one whose index is returned,
-/// behind those of the file.
+/// Adds two defaults that TinyGLTF 2.5 does not handle: byte offsets that a sparse accessor leaves out, and
+/// the buffer view of an accessor without one (TinyGLTF then writes out of bounds). Such accessors get an
+/// extra buffer view after those of the file; its index is returned.
 std::size_t write_defaults(Json& document) {
     Json& views = document["bufferViews"];
     views.push_back({{"buffer", 0}, {"byteLength", 1}});
@@ -206,7 +206,7 @@ std::size_t write_defaults(Json& document) {
     return none;
 }
 
-/// Everything but buffers and images, which need no parser but more care than it takes.
+/// Parses everything but buffers and images. Those are read here, with stricter checks than TinyGLTF's.
 tinygltf::Model parse_model(Json document) {
     for (const char* member : {"buffers", "images", "animations", "skins"}) {
         document.erase(member);

@@ -26,8 +26,9 @@ bool starts_with(Bytes bytes, std::string_view prefix) {
 }
 
 Image decode(Bytes encoded) {
-    // At best, deflate packs 1,032 bytes into one (zlib's documentation) and a byte of a PNG holds 8 pixels.
-    // A JPEG spends at least a bit on 64 pixels, which is less. A header that promises more is not believed.
+    // Upper bound of pixels per encoded byte, to reject headers with impossible sizes. Deflate compresses at
+    // most 1,032 : 1 (zlib's documentation), and an uncompressed PNG byte holds at most 8 pixels. A JPEG uses
+    // at least 1 bit for 64 pixels, which gives fewer pixels per byte.
     constexpr std::uint64_t most_pixels_in_a_byte = 8256;  // 8 × 1,032
 
     if (!starts_with(encoded, "\x89PNG") && !starts_with(encoded, "\xFF\xD8\xFF")) {
@@ -88,7 +89,7 @@ Wrap to_wrap(int mode, int sampler) {
     }
 }
 
-/// The image that a base colour reads, with the wrapping of its sampler.
+/// The image of a base colour and the wrapping modes of its sampler.
 ImageKey image_key(const tinygltf::Model& model, const tinygltf::Texture& texture) {
     if (texture.sampler < 0) {
         return {texture.source, Wrap::repeat, Wrap::repeat};
@@ -123,7 +124,7 @@ std::shared_ptr<const Image> base_colour_texture(const tinygltf::TextureInfo& in
     return image;
 }
 
-/// The schema has let through no other name.
+/// check_schema accepts no other names.
 AlphaMode to_alpha_mode(std::string_view name) {
     if (name == "MASK") {
         return AlphaMode::mask;

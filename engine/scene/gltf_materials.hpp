@@ -9,10 +9,10 @@
 
 namespace candela::gltf {
 
-/// The document's materials in its order, and after them the default one (white, single-sided). Textures that
-/// agree in image and wrapping share one Image; images that no base colour uses are not loaded. What a
-/// material asks for and does not get is added to the document's warnings. Throws SceneError that names the
-/// image and the fault.
+/// The document's materials in its order, followed by the default material (white, single-sided). Textures
+/// with the same image and wrapping share one Image; images that no base colour uses are not loaded. A
+/// base-colour texture that cannot be used is left out, with an entry in the document's warnings. Throws
+/// SceneError, which names the image or sampler and the problem.
 [[nodiscard]] std::vector<std::shared_ptr<const Material>> read_materials(
     Document& document, const std::filesystem::path& base_directory);
 

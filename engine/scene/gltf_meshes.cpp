@@ -19,7 +19,7 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// What was left out of the meshes, each reported once however often it occurs.
+/// Kinds of content that were left out of the meshes. Each is reported once.
 struct Omissions {
     bool points_or_lines = false;
     bool no_positions = false;
@@ -49,7 +49,7 @@ std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::
         const std::vector<glm::vec3> normals = read_vectors(model, *accessor);
         check_count("normals", normals.size(), vertices.size());
         for (std::size_t i = 0; i < normals.size(); ++i) {
-            // In double precision, where the square of no float vanishes or overflows.
+            // In double precision, the square of a float neither underflows nor overflows.
             const glm::dvec3 normal(normals[i]);
             const double length = glm::length(normal);
             if (length > 0.0) {
@@ -77,7 +77,7 @@ std::vector<std::uint32_t> read_order(const tinygltf::Model& model, const tinygl
     return order;
 }
 
-/// The triangles of a list, strip or fan, each wound as glTF 2.0 (section 3.7.2.1) says.
+/// The triangles of a list, strip or fan, with the winding order of glTF 2.0 (section 3.7.2.1).
 std::vector<Corners> assemble(std::span<const std::uint32_t> order, int mode) {
     if (order.size() < 3 || (mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0)) {
         throw SceneError(fmt::format("it has {} indices or vertices, which make no whole number of triangles",
@@ -100,8 +100,8 @@ std::vector<Corners> assemble(std::span<const std::uint32_t> order, int mode) {
     return triangles;
 }
 
-/// Unit normal of the triangle's front; zero if it has no area. In double precision, where no product of
-/// floats vanishes or overflows.
+/// Unit normal of the triangle's front; zero if it has no area. Computed in double precision, in which the
+/// products of floats neither underflow nor overflow.
 glm::vec3 face_normal(const std::vector<Vertex>& vertices, const Corners& corners) {
     const glm::dvec3 a(vertices[corners[0]].position);
     const glm::dvec3 normal = glm::cross(glm::dvec3(vertices[corners[1]].position) - a,
@@ -121,7 +121,7 @@ std::vector<Vertex> unshare(const std::vector<Vertex>& vertices, std::vector<Cor
     return unshared;
 }
 
-/// Gives each vertex without a normal that of the first face it belongs to; to one without a face, any.
+/// Gives each vertex without a normal that of the first face that uses it, or +Z if no face does.
 void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& triangles) {
     for (const Corners& corners : triangles) {
         const glm::vec3 normal = face_normal(vertices, corners);
@@ -148,7 +148,7 @@ bool is_drawn(const tinygltf::Primitive& source, Omissions& omissions) {
     return triangles && positions;
 }
 
-/// Empty if all of its triangles are without area.
+/// Without indices if no triangle has an area.
 Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& source) {
     Primitive primitive;
     primitive.vertices = read_vertices(model, source, *find_attribute(source, "POSITION"));

@@ -9,12 +9,12 @@
 
 namespace candela::gltf {
 
-/// The document's meshes as triangles, in its order; null for one that has no triangle. Strips and fans
-/// become lists. Triangles without area are dropped: they show nothing, stop nothing and have no normal.
-/// Missing normals are those of the faces, which unshares the vertices; a normal of length zero becomes that
-/// of a face at its vertex; missing texture coordinates are zero. Points, lines and what else is left out is
-/// added to the document's warnings, once each. Throws SceneError that names the mesh, or the accessor, and
-/// the fault.
+/// The document's meshes as triangles, in its order; null for a mesh without triangles. Strips and fans
+/// become lists. Triangles without area are dropped: they are invisible, block no light and have no normal.
+/// If normals are missing, the vertices are unshared and get the normals of their faces. A normal of length
+/// zero is replaced by the normal of a face at that vertex. Missing texture coordinates are zero. Each kind
+/// of content that is left out, such as points and lines, is added to the document's warnings once. Throws
+/// SceneError, which names the mesh and the problem.
 [[nodiscard]] std::vector<std::shared_ptr<const Mesh>> read_meshes(
     Document& document, const std::vector<std::shared_ptr<const Material>>& materials);
 

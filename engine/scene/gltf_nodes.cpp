@@ -19,7 +19,7 @@ namespace {
 
 constexpr float half_pi = 1.57079632679489662F;
 
-/// A node on its way to becoming an entity.
+/// A node to convert, and the index of its parent's entity.
 struct Visit {
     int node;
     std::optional<std::size_t> parent;
@@ -36,7 +36,7 @@ const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
     return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
 }
 
-/// The parent of each node, -1 for a root.
+/// The parent of each node; -1 for a root.
 std::vector<int> find_parents(const tinygltf::Model& model) {
     std::vector<int> parents(model.nodes.size(), -1);
     for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) {
@@ -52,7 +52,7 @@ std::vector<int> find_parents(const tinygltf::Model& model) {
     return parents;
 }
 
-/// Every node hangs below a root, and the scene lists roots only, each once.
+/// Checks that every node is a root or below one, and that the scene lists only roots, each once.
 void check_hierarchy(const tinygltf::Model& model) {
     const std::vector<int> parents = find_parents(model);
     std::vector<int> reached;
@@ -149,7 +149,7 @@ std::vector<Transform> read_transforms(const tinygltf::Node& node, int index) {
 Camera read_camera(const tinygltf::Camera& source, int index) {
     const bool perspective = source.type == "perspective";
     const double far_plane = perspective ? source.perspective.zfar : source.orthographic.zfar;
-    const bool endless = perspective && far_plane == 0.0;  // how the parser says that a camera has no zfar
+    const bool endless = perspective && far_plane == 0.0;  // TinyGLTF's value if there is no zfar
     Camera camera;
     camera.near_plane =
         static_cast<float>(perspective ? source.perspective.znear : source.orthographic.znear);
@@ -201,7 +201,7 @@ decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int inde
     return light;
 }
 
-/// The light that the node holds, -1 for none.
+/// Index of the node's light; -1 for none.
 int light_of(const tinygltf::Node& node) {
     const auto extension = node.extensions.find(lights_extension);
     return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
@@ -221,7 +221,7 @@ std::string name_of(const tinygltf::Model& model, int index) {
     return fmt::format("node {}", index);
 }
 
-/// Adds what the node holds to its (innermost) entity.
+/// Adds the node's mesh, camera and light to its (innermost) entity.
 void equip(StagedEntity& entity, const tinygltf::Model& model, int index,
            const std::vector<std::shared_ptr<const Mesh>>& meshes) {
     const tinygltf::Node& node = node_at(model, index);
@@ -236,7 +236,7 @@ void equip(StagedEntity& entity, const tinygltf::Model& model, int index,
     }
 }
 
-/// The last of `ahead` is visited next.
+/// Pushes the nodes onto the stack `ahead` so that the first of them is visited next.
 void put_ahead(const std::vector<int>& nodes, std::optional<std::size_t> parent, std::vector<Visit>& ahead) {
     std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { ahead.push_back({node, parent}); });
 }

@@ -13,7 +13,7 @@
 
 namespace candela::gltf {
 
-/// An entity to be: its components, with its parent as an index into the list that holds it.
+/// An entity to create: its components, with `parent` as an index into the list that contains it.
 struct StagedEntity {
     std::optional<std::size_t> parent;
     std::string name;
@@ -23,10 +23,11 @@ struct StagedEntity {
     std::optional<Camera> camera;
 };
 
-/// The nodes of the default scene (the first where none is named), parents before children, siblings in the
-/// file's order. A sheared node makes two entities of its name, the first the second's parent (see
-/// decompose). A node without a name is called after its camera, light or mesh, or else `node N`. Throws
-/// SceneError that names the node, camera or light and the fault: two parents, a cycle, no scene.
+/// The nodes of the default scene (the first scene if no default is given), parents before children, siblings
+/// in the file's order. A sheared node makes two entities with its name, the first the parent of the second
+/// (see decompose). A node without a name gets the name of its camera, light or mesh, or else `node N`.
+/// Throws SceneError, which names the node, camera or light and the problem, such as two parents, a cycle or
+/// no scene.
 [[nodiscard]] std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
                                                    const std::vector<std::shared_ptr<const Mesh>>& meshes);
 

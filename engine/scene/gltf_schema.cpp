@@ -21,13 +21,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What is wrong with a value, put so that it follows the value's name; nothing if it is as it should be.
+/// What is wrong with a value, worded to follow the value's name in a message; nullopt if it is valid.
 using Fault = std::optional<std::string>;
 using Check = std::function<Fault(const Json& value, const Json& document)>;
 
 struct Rule {
-    std::string_view
-        path;  ///< members joined by dots; `[]` stands for each item of an array, `{}` of an object
+    /// Members joined by dots; `[]` means each item of an array, `{}` each member of an object.
+    std::string_view path;
     Check check;
 };
 
@@ -40,9 +40,9 @@ constexpr Range any{};
 constexpr Range unit{.lowest = 0.0, .highest = 1.0};
 constexpr Range not_negative{.lowest = 0.0};
 constexpr Range positive{.lowest = std::numeric_limits<float>::min()};
-// Up to half a turn, short of it by enough that a tangent of the half stays finite in single precision.
+// Radians. Less than pi by enough that tan(fov / 2) stays finite in single precision.
 constexpr Range field_of_view{.lowest = std::numeric_limits<float>::min(), .highest = 3.1415};
-// A quarter turn; files round it up as well as down.
+// Radians. Up to pi/2, with a margin because some files round it up.
 constexpr Range inner_cone{.lowest = 0.0, .highest = 1.570797};
 constexpr Range outer_cone{.lowest = std::numeric_limits<float>::min(), .highest = 1.570797};
 
@@ -147,7 +147,7 @@ Check one_of(std::vector<std::string_view> names) {
     };
 }
 
-/// An index into the array at `path` of the document, called `plural` in messages.
+/// Checks for an index into the array at `path` of the document, which messages call `plural`.
 Check index_into(const char* path, const char* plural) {
     return [pointer = Json::json_pointer(path), plural](const Json& value, const Json& document) -> Fault {
         if (!value.is_number_integer()) {
@@ -278,7 +278,7 @@ std::vector<Rule> rules() {
     };
 }
 
-/// Applies the rule's check to each value below `value` that the rest of the rule's path leads to.
+/// Applies the rule's check to each value that `path`, the rest of the rule's path, leads to from `value`.
 void apply(const Rule& rule, std::string_view path, const Json& value, const std::string& name,
            const Json& document) {
     if (path.empty()) {

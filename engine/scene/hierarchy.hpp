@@ -12,9 +12,9 @@ namespace candela {
 [[nodiscard]] glm::mat4 local_matrix(const Transform& transform);
 
 /// Local-to-world matrix of a live entity: the product of the local matrices from its topmost ancestor down.
-/// An entity without a Transform sits in the world as it is. Linear in the entity's depth, which nothing
-/// bounds. Throws SceneError that names the entity if an ancestor was destroyed or if the entity is its own
-/// ancestor.
+/// An entity without a Transform has the identity. Takes time linear in the entity's depth, which is not
+/// limited. Throws SceneError, which names an entity, if an ancestor was destroyed or if the ancestors form a
+/// cycle.
 [[nodiscard]] glm::mat4 world_matrix(const World& world, Entity entity);
 
 }  // namespace candela

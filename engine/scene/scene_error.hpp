@@ -4,7 +4,8 @@
 
 namespace candela {
 
-/// A fault in a scene or in the file it comes from; `what()` is one line that names the object and the fault.
+/// An error in a scene or in the file it comes from. `what()` is one line that names the object and the
+/// problem.
 class SceneError : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;

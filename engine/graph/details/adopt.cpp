@@ -16,7 +16,7 @@ bool alike(const detail::Slot& a, const detail::Slot& b) {
     return a.kind == b.kind && a.texture == b.texture && a.buffer == b.buffer;
 }
 
-/// Objects that wait for a use. What is taken leaves a slot without an object.
+/// Unused objects that slots can take. A slot of the stock whose object was taken has object 0.
 class Stock {
  public:
     explicit Stock(std::vector<detail::Slot>& slots) : slots_(slots) {
@@ -29,8 +29,8 @@ class Stock {
         }
     }
 
-    /// Gives the slot an object if there is one alike; what was kept under its name comes as large as it has
-    /// grown.
+    /// Gives the slot a matching object if there is one. A persistent object matches by its key (`kept_as`)
+    /// and keeps its current description, which may be larger than declared.
     void provide(detail::Slot& wanted) {
         if (wanted.kept_as.empty()) {
             const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
@@ -88,23 +88,24 @@ void GraphRuntime::adopt(CompiledGraph graph) {
     }
     provide_objects(graph, state, stock);
 
-    // From here on nothing fails. What the graph before had and this one does not use is spared; what was
-    // spared for it until now goes.
+    // Nothing fails from here on. Unused objects of the previous graph go to the free pool; the objects that
+    // were in it before are destroyed, unless they were taken.
     const auto spared = stock.begin() + static_cast<std::ptrdiff_t>(spare_.size());
     std::for_each(stock.begin(), spared, [this](const detail::Slot& slot) { destroy(slot); });
     stock.erase(stock.begin(), spared);
     std::erase_if(stock, [](const detail::Slot& slot) { return slot.object == 0; });
+    // The planned barriers of the new graph do not cover the writes of the previous one.
     if (graph_) {
         carried_ = all_barriers;
-    }  // for whatever the graph before has written
+    }
     spare_ = std::move(stock);
     state_ = std::move(state);
     graph_ = std::move(graph);
     record_.passes = std::move(passes);
 }
 
-/// Objects for the slots that lack one: from the stock, else new. If the back end throws, what was made goes
-/// again.
+/// Gives each owned slot without an object one from the stock, or creates one. If the back end throws,
+/// destroys what was created.
 void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& state,
                                    std::vector<detail::Slot>& stock) {
     Stock available(stock);

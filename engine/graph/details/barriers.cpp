@@ -7,7 +7,7 @@
 namespace candela::detail {
 namespace {
 
-using Time = std::uint64_t;  // counts passes over all frames, from 1; 0 is never
+using Time = std::uint64_t;  // counts passes over all frames, from 1; 0 means never
 
 constexpr std::size_t bit_count = 10;
 
@@ -26,14 +26,14 @@ bool any_incoherent(const Declaration& declared, const Plan& plan) {
     });
 }
 
-/// Follows the accesses of every object through frames that repeat. With a history, the resource and its past
-/// swap objects from frame to frame.
+/// Follows the accesses of every object through repeated frames. A resource and its history swap their two
+/// objects in each frame.
 class Timeline {
  public:
     Timeline(const Declaration& declared, const Plan& plan)
         : declared_(declared), plan_(plan), wrote_(plan.owner.size()), read_(plan.owner.size()) {}
 
-    /// Calls `need(position, time, bit, since)` for each access that must see a barrier issued after `since`.
+    /// Calls `need(position, time, bit, since)` for each access that needs a barrier issued after `since`.
     template <class Need>
     void run_frame(Need need) {
         for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
@@ -88,8 +88,8 @@ class Timeline {
 
     const Declaration& declared_;
     const Plan& plan_;
-    std::vector<Time> wrote_;  // by object: last incoherent write
-    std::vector<Time> read_;   // by object: last read
+    std::vector<Time> wrote_;  // per object: last incoherent write
+    std::vector<Time> read_;   // per object: last read
     Time now_ = 0;
     std::uint32_t frame_ = 0;
 };
@@ -127,19 +127,20 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
         return barriers;
     }
 
-    // A past is overwritten two frames after it was written: two frames bring every hazard into being.
+    // The object of a history is overwritten two frames after it was written, so after two frames every
+    // hazard is known.
     Timeline timeline(declared, plan);
     const auto ignore = [](std::uint32_t, Time, std::size_t, Time) {};
     timeline.run_frame(ignore);
     timeline.run_frame(ignore);
 
-    // One frame planned as if no barrier came before it is right for all frames: issue each as late as
-    // possible.
+    // Plan one frame as if no barrier came before it, and issue each barrier as late as possible. The result
+    // is valid for every frame.
     struct Bit {
         Time issued = 0;
-        std::uint32_t first = none;   // where it is issued first
-        std::uint32_t second = none;  // and next
-        std::uint32_t due = none;     // where it is needed first, if the frame before has issued its barriers
+        std::uint32_t first = none;   // first position that issues it
+        std::uint32_t second = none;  // second position that issues it
+        std::uint32_t due = none;     // first position that needs it after the previous frame's barriers
     };
     std::array<Bit, bit_count> bits;
     timeline.run_frame([&](std::uint32_t position, Time now, std::size_t index, Time since) {
@@ -156,7 +157,7 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
         barriers[position] = barriers[position] | static_cast<Barrier>(1U << index);
     });
 
-    // Only a bit's first barrier can be one too many, where the last one of the frame before serves as well.
+    // Only the first barrier of a bit can be redundant: the last one of the previous frame may serve instead.
     timeline.run_frame([&](std::uint32_t position, Time, std::size_t index, Time since) {
         Bit& bit = bits[index];
         if (bit.issued <= since) {

@@ -6,14 +6,14 @@
 
 namespace candela::detail {
 
-/// What orders an access after incoherent writes (OpenGL 4.5, section 7.13.2).
+/// The barrier bit that orders an access after incoherent writes (OpenGL 4.5, section 7.13.2).
 [[nodiscard]] Barrier barrier_for(ResourceKind kind, Usage usage);
 
-/// Barriers by position, for frames that repeat.
+/// The barriers to issue before each position, for a frame that is repeated in full.
 ///
-/// An access needs its bit between it and every earlier incoherent write of the same object, and an
-/// incoherent write needs its bit between it and every earlier read. One barrier serves all that lie across
-/// it. `plan` must have order and objects.
+/// Between an incoherent write and each later access of the same object there must be a barrier with the bit
+/// of the later access; likewise between a read and each later incoherent write. One barrier serves all such
+/// pairs that it lies between. `plan` must have its order and objects.
 [[nodiscard]] std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan);
 
 }  // namespace candela::detail

@@ -8,17 +8,17 @@
 namespace candela::detail {
 namespace {
 
-/// Tells graphs apart without a process-wide counter: no two live graphs share an address, and no two
-/// successive ones at one address the time. Never 0, which is no graph.
+/// An identity for a graph, without a process-wide counter: a hash of address and time. Two live graphs have
+/// different addresses, and two successive graphs at one address have different times; the hash has 31 bits.
+/// Never 0, which marks a null handle.
 std::uint32_t make_identity(const void* address) {
     const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
     auto bits = static_cast<std::uint64_t>(now) ^ (reinterpret_cast<std::uintptr_t>(address) << 16U);
-    bits *=
-        0x9e37'79b9'7f4a'7c15U;  // 2^64 divided by the golden ratio: spreads the low bits over the high ones
+    bits *= 0x9e37'79b9'7f4a'7c15U;  // 2^64 / golden ratio: spreads the low bits over the high ones
     return static_cast<std::uint32_t>(bits >> 32U) | 1U;
 }
 
-/// Whether some texture or buffer may be used so.
+/// Whether resources of this kind may be read or written with this usage.
 bool allowed(ResourceKind kind, Usage usage, bool write) {
     const bool texture = kind == ResourceKind::texture;
     switch (usage) {

@@ -22,7 +22,7 @@ class Execution;
 
 namespace detail {
 
-/// As indices count.
+/// The size as a 32-bit index.
 template <class T>
 [[nodiscard]] std::uint32_t size_of(const std::vector<T>& list) {
     return static_cast<std::uint32_t>(list.size());
@@ -35,17 +35,17 @@ struct Resource {
     ResourceKind kind = ResourceKind::texture;
     Lifetime lifetime = Lifetime::transient;
     std::uint32_t desc = 0;           // index into the textures, buffers or value types, by kind
-    std::uint32_t versions = 0;       // writes declared so far
-    std::uint32_t reader = none;      // the pass that read it last
-    std::uint32_t writer = none;      // the pass that wrote it last
-    std::uint32_t history_of = none;  // set for the resource that stands for another's past
-    std::uint32_t history = none;     // the resource that stands for this one's past
+    std::uint32_t versions = 0;       // number of writes declared so far
+    std::uint32_t reader = none;      // the pass with the last declared read
+    std::uint32_t writer = none;      // the pass with the last declared write
+    std::uint32_t history_of = none;  // for a history: the resource whose history it is
+    std::uint32_t history = none;     // the resource that is this one's history
 };
 
 struct Access {
     std::uint32_t resource;
-    std::uint32_t version;  // the version read, or made by the write
-    Usage usage;            // meaningless for values
+    std::uint32_t version;  // the version read, or the one that the write produces
+    Usage usage;            // not used for values
     bool write;
 };
 
@@ -73,7 +73,7 @@ struct PassNode {
     bool remembers = false;
 };
 
-/// Owns objects of any type, and text, until it is destroyed. They never move.
+/// Owns objects of any type, and text, until it is destroyed. Their addresses do not change.
 class Arena {
  public:
     Arena() = default;
@@ -112,14 +112,15 @@ class Arena {
     std::vector<Owned> owned_;
 };
 
-/// A write of a version that another pass has overwritten: legal only after that pass.
+/// A write to a version that another pass has already overwritten. Valid only if the pass is declared `after`
+/// the pass that wrote the newest version.
 struct LateWrite {
     std::uint32_t resource;
-    std::uint32_t version;  // the version that was to be overwritten
-    std::uint32_t writer;   // the pass that wrote the newest version by then
+    std::uint32_t version;  // the version of the handle
+    std::uint32_t writer;   // the pass that wrote the newest version at that time
 };
 
-/// Everything that a FrameGraph was told, in flat arrays; names, functions and parameters lie in one arena.
+/// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in one arena.
 class Declaration {
  public:
     Declaration();
@@ -168,7 +169,7 @@ class Declaration {
     std::vector<TextureDesc> textures;
     std::vector<BufferDesc> buffers;
     std::vector<std::type_index> value_types;
-    std::vector<Fault> faults;  // found while declaring
+    std::vector<Fault> faults;  // those found while declaring
 
  private:
     template <class T>

@@ -10,13 +10,13 @@
 
 namespace candela::detail {
 
-/// Finds things by content: an open-addressing table of indices, with room for as many as were announced.
+/// A hash table of indices with open addressing, to find items by content. Holds up to `capacity` indices.
 class IndexTable {
  public:
     explicit IndexTable(std::size_t capacity) : entries_(std::bit_ceil(2 * capacity + 1)) {}
 
-    /// The index filed under `hash` for which `same(index)` holds; if there is none, files `index` and gives
-    /// `none`.
+    /// Returns the stored index under `hash` for which `same(index)` holds. If there is none, inserts `index`
+    /// and returns `none`.
     template <class Same>
     std::uint32_t find_or_insert(std::size_t hash, std::uint32_t index, Same same) {
         Entry& entry = find(hash, same);
@@ -27,7 +27,7 @@ class IndexTable {
         return entry.index;
     }
 
-    /// The same without filing.
+    /// The same without inserting.
     template <class Same>
     [[nodiscard]] std::uint32_t find_index(std::size_t hash, Same same) {
         return find(hash, same).index;
@@ -60,7 +60,8 @@ class IndexTable {
     return std::hash<std::string_view>{}(text);
 }
 
-/// Folds `value` into `hash`, high bits and low. The factor is 2^64 divided by the golden ratio.
+/// Combines `value` with `hash`. The factor is 2^64 divided by the golden ratio; the shift mixes the high
+/// bits into the low ones.
 [[nodiscard]] inline std::size_t mix(std::size_t hash, std::size_t value) {
     hash = (hash ^ value) * 0x9e37'79b9'7f4a'7c15U;
     return hash ^ (hash >> 32U);

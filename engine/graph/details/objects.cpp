@@ -5,7 +5,7 @@
 namespace candela::detail {
 namespace {
 
-/// For each description the index of the first that equals it.
+/// For each description, the index of the first one that is equal.
 template <class Desc>
 std::vector<std::uint32_t> classes_of(const std::vector<Desc>& descs) {
     std::vector<std::uint32_t> classes(descs.size());
@@ -18,7 +18,7 @@ std::vector<std::uint32_t> classes_of(const std::vector<Desc>& descs) {
     return classes;
 }
 
-/// Gives objects away and takes them back; free ones wait in a list for each description.
+/// Allocates objects to resources and takes them back. There is a free list per description.
 class Objects {
  public:
     Objects(const Declaration& declared, Plan& plan)
@@ -87,9 +87,9 @@ class Objects {
     Plan& plan_;
     std::vector<std::uint32_t> texture_class_;
     std::vector<std::uint32_t> buffer_class_;
-    std::vector<std::uint32_t> free_texture_;  // by class: the first free object
+    std::vector<std::uint32_t> free_texture_;  // per class: the first free object, or none
     std::vector<std::uint32_t> free_buffer_;
-    std::vector<std::uint32_t> next_;  // by object: the next free one, or in use
+    std::vector<std::uint32_t> next_;  // per object: the next free one, none, or in_use
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace candela::detail {
 namespace {
 
-/// A writer comes before the readers of its version, and they come before the writer of the next.
+/// The writer of a version runs before its readers, and both run before the writer of the next version.
 std::vector<Edge> edges_of(const Declaration& declared, const Plan& plan) {
     std::vector<Edge> edges;
     edges.reserve(2 * declared.accesses.size());
@@ -37,9 +37,9 @@ std::vector<Edge> edges_of(const Declaration& declared, const Plan& plan) {
     return edges;
 }
 
-/// Edges by the pass that comes first.
+/// Edges grouped by the pass that comes first.
 struct Successors {
-    std::vector<std::uint32_t> first;  // by pass, and one more
+    std::vector<std::uint32_t> first;  // per pass, plus one entry for the end: an index into `pass`
     std::vector<std::uint32_t> pass;
 
     Successors(std::uint32_t passes, const std::vector<Edge>& edges) : first(passes + 1), pass(edges.size()) {
@@ -53,7 +53,7 @@ struct Successors {
     }
 };
 
-/// Takes ready passes one by one: the earliest declared, or any.
+/// The passes that are ready to run. `pop` takes the earliest declared, or with a seed a random one.
 class Ready {
  public:
     explicit Ready(std::optional<std::uint64_t> seed)
@@ -100,7 +100,8 @@ std::string cycle_text(const Declaration& declared, const std::vector<Edge>& cyc
     return fmt::format("passes wait for each other: {} ({})", path, links);
 }
 
-/// Every pass left over waits for another one left over, so that walking back from any ends in a cycle.
+/// Every pass that was not ordered (waits != 0) has a predecessor that was not ordered either, so following
+/// predecessors from any of them ends in a cycle.
 void report_cycles(const Declaration& declared, const std::vector<Edge>& edges,
                    const std::vector<std::uint32_t>& waits, std::vector<Fault>& faults) {
     std::vector<std::uint32_t> back(waits.size(), none);
@@ -109,7 +110,7 @@ void report_cycles(const Declaration& declared, const std::vector<Edge>& edges,
             back[edges[index].after] = index;
         }
     }
-    std::vector<std::uint32_t> walk(waits.size(), none);  // the walk that came by
+    std::vector<std::uint32_t> walk(waits.size(), none);  // the start of the walk that visited the pass
     for (std::uint32_t start = 0; start < waits.size(); ++start) {
         if (waits[start] == 0) {
             continue;
@@ -144,7 +145,7 @@ std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan&
     std::vector<std::uint32_t> order;
     const bool backward =
         std::any_of(afters.begin(), afters.end(), [](const Edge& edge) { return edge.before >= edge.after; });
-    if (!backward && !shuffle_seed) {  // handles flow only forward
+    if (!backward && !shuffle_seed) {  // handles lead only from earlier to later declared passes
         order.resize(declared.pass_count());
         std::iota(order.begin(), order.end(), 0U);
         return order;

@@ -9,15 +9,16 @@
 
 namespace candela::detail {
 
-/// One pass runs before another, because of a resource, or because `after` says so (resource is none).
+/// One pass must run before another, because of a resource or because of `Pass::after` (`resource` is none).
 struct Edge {
     std::uint32_t before;
     std::uint32_t after;
     std::uint32_t resource;
 };
 
-/// All passes in a legal order: that of declaration as far as `afters` allow, or with a seed a random one.
-/// Where passes wait for each other, they are missing, and `faults` gets the cycles.
+/// All passes in a valid order: the order of declaration as far as `afters` allow, or a random order if there
+/// is a seed. Passes of a cycle, and passes that depend on them, are missing; the cycles found are added to
+/// `faults`.
 [[nodiscard]] std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan& plan,
                                                       const std::vector<Edge>& afters,
                                                       std::optional<std::uint64_t> shuffle_seed,

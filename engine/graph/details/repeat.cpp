@@ -5,8 +5,8 @@
 namespace candela::detail {
 namespace {
 
-/// Starts from all that may run again by itself, and takes away what the passes left out forbid, until
-/// nothing more follows.
+/// Starts with all passes that may run again on their own, and excludes those that an excluded pass prevents
+/// from running, until nothing changes.
 class Repetition {
  public:
     explicit Repetition(const State& state)
@@ -31,7 +31,7 @@ class Repetition {
     }
 
  private:
-    /// What a pass that is left out has made stays.
+    /// Protects the outputs of an excluded pass: they must not be overwritten.
     void settle(const Step& step) {
         for (std::uint32_t at = step.first_output; at < (&step + 1)->first_output; ++at) {
             const Output& output = state_.outputs[at];
@@ -75,9 +75,9 @@ class Repetition {
     }
 
     const State& state_;
-    std::vector<std::uint8_t> again_;        // by step
-    std::vector<std::uint8_t> settled_;      // by slot: holds what a pass left out has made
-    std::vector<std::uint8_t> overwritten_;  // by version id: a pass left out has changed it since
+    std::vector<std::uint8_t> again_;        // per step: may run again
+    std::vector<std::uint8_t> settled_;      // per slot: holds an output of an excluded pass
+    std::vector<std::uint8_t> overwritten_;  // per version id: an excluded pass has written the next version
 };
 
 }  // namespace

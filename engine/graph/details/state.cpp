@@ -136,7 +136,7 @@ class StateMaker {
     State state_;
 };
 
-/// Two graphs side by side.
+/// Transfers state from an old graph to a new one (see inherit).
 class Heir {
  public:
     Heir(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before, const State& before)
@@ -183,7 +183,8 @@ class Heir {
         return false;
     }
 
-    /// What is kept or imported goes by kind and name; that GPU objects are bound anew is for the host to do.
+    /// Matches persistent and imported resources by kind and name. The host must bind imported GPU objects
+    /// again.
     void take_slots() {
         const auto known = [](const Resource& resource) {
             return resource.lifetime != Lifetime::transient && resource.history_of == none;
@@ -276,7 +277,7 @@ class Heir {
                    [&](const Access& a, const Access& b) { return same_access(a, pass, b, old); });
     }
 
-    /// Of resources alike, and of content alike where it is an input.
+    /// Whether both access matching resources in the same way, and for inputs also the same content.
     [[nodiscard]] bool same_access(const Access& a, std::uint32_t pass, const Access& b,
                                    std::uint32_t old) const {
         const Resource& resource = declared_.resources[a.resource];
@@ -321,9 +322,8 @@ class Heir {
     const Plan& old_plan_;
     const State& old_;
     std::vector<std::uint8_t> taken_;
-    std::vector<std::uint32_t>
-        old_version_;  // by version id, or none: the old graph's version of the same content
-    std::vector<std::uint32_t> new_version_;  // and back
+    std::vector<std::uint32_t> old_version_;  // per new version id: the old one of the same content, or none
+    std::vector<std::uint32_t> new_version_;  // the inverse: per old version id
     std::vector<std::pair<std::uint32_t, std::uint32_t>> slot_pairs_;
 };
 

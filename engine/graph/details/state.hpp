@@ -19,22 +19,23 @@ class Execution;
 
 namespace detail {
 
-/// Drawn from a counter each time that content changes: equal stamps mean equal content.
+/// A version gets a new stamp from a counter each time its content changes: equal stamps mean equal content.
 using Stamp = std::uint64_t;
 
-/// A texture, a buffer or a value as it is now.
+/// The current state of one object: a texture, a buffer or a value.
 struct Slot {
     ResourceKind kind = ResourceKind::value;
-    bool owned = false;    // by the runtime; false for what is imported, and for values
-    bool changed = false;  // the running pass has set another value
-    bool filled = false;   // written since it was made, or bound by the host
+    bool owned = false;    // created by the runtime; false for imports and for values
+    bool changed = false;  // a value: the running pass may have changed the content of its version
+    bool filled = false;   // written since it was created, or bound by the host
     ObjectId object = 0;
     TextureDesc texture;
     BufferDesc buffer;
     std::shared_ptr<void> value;
-    bool (*equal)(const void*, const void*) = nullptr;  // of values of its type; null if they do not compare
-    std::string
-        kept_as;  // of what outlasts the frame: its name and what was declared; it may have grown since
+    bool (*equal)(const void*, const void*) = nullptr;  // compares values; null if T has no operator==
+    // Key of a persistent object: its name and its declared description. `reserve` may have changed the
+    // actual description. Empty for all others.
+    std::string kept_as;
 };
 
 template <class T>
@@ -59,15 +60,15 @@ void put_value(Slot& slot, T content) {
 /// One version of one resource.
 struct Version {
     Stamp stamp = 0;
-    std::uint32_t producer = 0;  // the step that makes it; the number of steps for what comes from outside
-    bool present = true;         // in its slot, and not about to be overwritten
+    std::uint32_t producer = 0;  // the step that makes it; the number of steps if no step does
+    bool present = true;         // in its slot, and not about to be overwritten in this frame
 };
 
-/// What a version held when it was last made, for verification. The value is shared, not copied: values are
-/// replaced, never changed.
+/// The content of a version when it was last written, for verification. The value is shared, not copied:
+/// values are replaced, never modified.
 struct Content {
     bool known = false;
-    bool drifted = false;  // made again differently by a pass that remembers: its readers have not seen it
+    bool drifted = false;  // may have changed without a new stamp, so its readers have not seen the change
     std::uint64_t digest = 0;
     std::shared_ptr<void> value;
 };
@@ -75,8 +76,8 @@ struct Content {
 struct Output {
     std::uint32_t version;  // id
     std::uint32_t slot;
-    bool value;       // of the CPU
-    bool turns_over;  // begins a new content of a resource with a history, whose past is in the next slot
+    bool value;       // a CPU value, not a texture or buffer
+    bool turns_over;  // first write to a resource with a history, which is in the next slot: swap the two
 };
 
 struct Revision {
@@ -89,7 +90,7 @@ struct Target {
     bool depth;
 };
 
-/// A pass in the order of the graph, ready to run. Its lists end where the next step's begin.
+/// A kept pass, in execution order. Its lists end where those of the next step begin.
 struct Step {
     void (*invoke)(void*, Execution&) = nullptr;
     void* function = nullptr;
@@ -105,35 +106,37 @@ struct Step {
     bool has_run = false;
 };
 
-/// What a frame walks and what it remembers, for one graph. A slot is an object of the plan.
+/// The steps of one graph and the state kept between its frames. Slot i belongs to object i of the plan.
 struct State {
     std::vector<Step> steps;            // and one more, which ends the lists
-    std::vector<std::uint32_t> inputs;  // version ids of what passes read, or change
-    std::vector<Stamp> input_stamps;    // at the pass's last run
+    std::vector<std::uint32_t> inputs;  // version ids that passes read or modify in place
+    std::vector<Stamp> input_stamps;    // per input: its stamp at the pass's last run
     std::vector<Output> outputs;
     std::vector<Revision> revisions;
     std::vector<Target> targets;
-    std::vector<Version> versions;  // by id
+    std::vector<Version> versions;  // per version id
     std::vector<Slot> slots;
-    std::vector<std::uint32_t> holds;    // by slot: the version that was written to it last, or none
-    std::vector<std::uint8_t> turned;    // by slot: has turned over in this frame
+    std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
+    std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
-    std::vector<std::uint8_t> need;      // by step, and one more: scratch of a frame
-    std::vector<Content> contents;       // by version id; empty without verification
+    std::vector<std::uint8_t> need;      // per step, and one more: scratch of a frame
+    std::vector<Content> contents;       // per version id; empty without verification
 
     [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()) - 1; }
 };
 
-/// The state of a graph that has not run, whose slots have no objects yet.
+/// The state of a graph that has not run. The slots have no objects yet.
 [[nodiscard]] State make_state(const CompiledGraph& graph);
 
-/// By step: whether verification may run it again after a frame. Left out are passes with side effects or
-/// imports to write, passes that remember, those that lack something which only a pass left out could make
-/// again, and those that would overwrite what a pass left out has made.
+/// Per step: whether verification may run it again after a frame. Excluded are
+/// - passes with side effects and passes that write imports,
+/// - passes that read a history or have declared Pass::remembers,
+/// - passes with a missing input that only an excluded pass could make again, and
+/// - passes that would overwrite an output of an excluded pass.
 [[nodiscard]] std::vector<std::uint8_t> repeatable_steps(const State& state);
 
-/// Takes over from `before` what both graphs declare alike: slots (objects and values), stamps, and the
-/// records of passes. Gives for each of `before`'s slots whether it was taken.
+/// Takes over from `before` what both graphs declare in the same way: slots (objects and values), stamps, and
+/// the records of passes. Returns, for each slot of `before`, whether it was taken over.
 std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
                                   const State& before);
 
