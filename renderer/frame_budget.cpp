@@ -8,12 +8,12 @@
 namespace candela {
 namespace {
 
-// From the best to the least. Asking fewer VPLs costs hardly any quality, and so comes first.
+// From best to lowest. Interleaving comes first, because it costs hardly any quality.
 constexpr std::array<Quality, 8> qualities{
     {{1.0F, 1}, {1.0F, 8}, {0.8F, 8}, {0.65F, 8}, {0.5F, 8}, {0.4F, 8}, {0.32F, 8}, {0.25F, 8}}};
 
-constexpr double full = 0.9;   // of the budget, to which frames are planned
-constexpr double roomy = 0.7;  // of it, to which better frames than the measured are
+constexpr double full = 0.9;   // share of the budget that a frame of the same or lower quality may take
+constexpr double roomy = 0.7;  // share of the budget that a frame of better quality may take
 
 double pixels_of(const Quality& quality) {
     return static_cast<double>(quality.scale) * static_cast<double>(quality.scale);

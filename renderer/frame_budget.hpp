@@ -10,36 +10,40 @@
 
 namespace candela {
 
-/// What a frame is rendered with where time is short.
+/// How far rendering is reduced to keep a frame within its time budget.
 struct Quality {
-    float scale = 1.0F;            ///< of the target's sides: so much of them is rendered, and scaled up
-    std::uint32_t interleave = 1;  ///< at least: see `interleaving`
+    float scale = 1.0F;            ///< rendered size / target size along each axis; then scaled up
+    std::uint32_t interleave = 1;  ///< least interleave factor n: see `interleaving`
     bool operator==(const Quality&) const = default;
 };
 
-/// What of a frame's time depends on what, in milliseconds.
+/// Time of a frame in milliseconds, by what it grows with.
 struct FrameCost {
-    double gather = 0.0;  ///< on pixels, and on how many VPLs each asks
-    double pixels = 0.0;  ///< on pixels alone
-    double rest = 0.0;    ///< on neither
+    double gather = 0.0;  ///< with rendered pixels times VPLs that each evaluates
+    double pixels = 0.0;  ///< with rendered pixels only
+    double rest = 0.0;    ///< with neither
 };
 
-/// Names of the passes whose time is in proportion to the pixels rendered, but for the gathering of VPLs.
+/// Names of the passes whose time is proportional to the number of rendered pixels. `vpl-gather` is not among
+/// them: its time also depends on the interleave factor.
 [[nodiscard]] std::span<const std::string_view> pixel_passes();
 
-/// Whose passes ran; the time that nobody measured, on the CPU or between passes, is part of the rest.
+/// Splits the times of a measured frame. Only passes that ran count. `rest` is the remainder of the frame's
+/// CPU or GPU time, whichever is longer; it includes time between passes.
 [[nodiscard]] FrameCost cost_of(const FrameReport& frame);
 
-/// What the frame would take with another quality.
+/// Expected time in milliseconds of a frame with quality `wanted`, given the cost of a frame with quality
+/// `measured`: rest + p · (pixels + g² · gather), with p the ratio of the pixel counts (wanted / measured)
+/// and g the ratio of the interleave factors (measured / wanted).
 [[nodiscard]] double expected_ms(const FrameCost& cost, const Quality& measured, const Quality& wanted);
 
-/// The best quality whose frames are expected to keep to the budget, going by a frame that was measured; the
-/// least there is if none is. A better one than the measured is taken only where it leaves room, so that none
-/// is left again at once. `configured`: the interleaving that frames have at least.
+/// The best quality whose expected time fits the budget, based on one measured frame; the lowest quality if
+/// none fits. A better quality than the measured one must fit with a larger margin, so that the choice does
+/// not oscillate. `configured`: the interleave factor that the configuration asks for, a lower bound.
 [[nodiscard]] Quality choose_quality(const FrameCost& cost, const Quality& measured, std::uint32_t configured,
                                      double budget_ms);
 
-/// Pixels that are rendered for a target, at least one.
+/// Size in pixels of the picture that is rendered for a target of size `target`; at least 1 × 1.
 [[nodiscard]] glm::uvec2 rendered_size(glm::uvec2 target, const Quality& quality);
 
 }  // namespace candela

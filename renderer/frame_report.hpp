@@ -6,7 +6,7 @@
 
 namespace candela {
 
-/// GPU and CPU time of one pass in one frame, in milliseconds. A pass that had nothing to do takes none.
+/// CPU and GPU time of one pass in one frame, in milliseconds; 0 if the pass had nothing to do.
 struct PassReport {
     std::string name;
     bool ran = false;
@@ -14,6 +14,8 @@ struct PassReport {
     double gpu_ms = 0.0;
 };
 
+/// Times of one frame, in milliseconds. `index` counts the frames of a renderer from 0; `passes` are in graph
+/// order.
 struct FrameReport {
     std::uint64_t index = 0;
     double cpu_ms = 0.0;

@@ -13,8 +13,8 @@
 
 namespace candela {
 
-/// What the passes of one renderer share: the device, and what they would otherwise make twice. Passes refer
-/// to it while they live.
+/// The GL device of one renderer, with the objects that its passes share. Passes keep references to it; it
+/// must outlive them.
 class Gpu {
  public:
     Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders);
@@ -23,24 +23,27 @@ class Gpu {
     [[nodiscard]] const gl::Device& device() const { return device_; }
     [[nodiscard]] const gl::Functions& gl() const { return device_.gl(); }
 
-    /// The program of these stage files with these words defined, compiled when first asked for and kept.
-    /// Throws gl::ProgramError.
+    /// The program of these stage files with these names defined as 1. Compiled at the first request, then
+    /// cached. The reference is valid as long as the Gpu. Throws gl::ProgramError.
     [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,
                                              const std::vector<std::string>& defined = {});
 
-    /// A vertex array for candela::Vertex and instance indices: see draw_scene.hpp.
+    /// A vertex array for candela::Vertex (binding 0) and instance indices (binding 1): see draw_scene.hpp.
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }
-    /// A vertex array without attributes, for triangles that shaders make up.
+    /// A vertex array without attributes, for geometry that shaders generate.
     [[nodiscard]] const gl::VertexArray& no_vertices() const { return no_vertices_; }
-    /// One white texel, where a material has no image.
+    /// A 1 × 1 white texture, for materials without an image.
     [[nodiscard]] const gl::Texture& white() const { return white_; }
-    /// A framebuffer for passes that draw into single layers; they attach what they need and detach it again.
+    /// A framebuffer for passes that draw into single layers. They attach a layer and detach it again.
     [[nodiscard]] gl::Framebuffer& layer_target() { return layer_target_; }
-    /// Bilinear comparison of reversed depth: lit where the reference is greater or equal.
+    /// Comparison sampler for reversed depth with bilinear filtering: lit where the reference is greater or
+    /// equal.
     [[nodiscard]] const gl::Sampler& shadow_sampler() const { return shadow_sampler_; }
 
+    /// Binds a whole buffer, by GL name, to a shader storage or uniform binding point.
     void bind_storage(GLuint binding, GLuint buffer) const;
     void bind_uniforms(GLuint binding, GLuint buffer) const;
+    /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
     void draw_fullscreen(const gl::Program& program) const;
 
  private:

@@ -9,8 +9,8 @@
 #include "engine/bvh/bvh.hpp"
 #include "shaders/bindings.glsl"
 
-/// The structs that shaders read, byte for byte as std430, or std140 for uniform blocks, lays them out; their
-/// twins, with the meaning and unit of each member, are in shaders/types.glsl.
+/// The structs that shaders read, with the memory layout of std430, or std140 for uniform blocks. Their GLSL
+/// twins in shaders/types.glsl document the meaning and unit of each member.
 namespace candela::gpu {
 
 struct Instance {
@@ -207,7 +207,7 @@ struct FluxAccount {
     float pad4;
 };
 
-/// Arguments of glMultiDrawElementsIndirect, as the GL lays them out.
+/// Arguments of glMultiDrawElementsIndirect, in the layout that OpenGL defines.
 struct DrawCommand {
     std::uint32_t index_count;
     std::uint32_t instance_count;

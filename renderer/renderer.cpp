@@ -23,7 +23,7 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Frames end also where a pass throws.
+/// Ends the timed frame even if a pass throws.
 class TimedFrame {
  public:
     TimedFrame(gl::Timer& timer, std::uint64_t index) : timer_(timer) { timer_.begin_frame(index); }
@@ -43,7 +43,7 @@ FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index
     return report;
 }
 
-/// Standard error of the sum of as many independent terms, per channel.
+/// Standard error of the sum of independent terms, per channel.
 glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
     if (terms.size() < 2) {
         return glm::dvec3(0.0);
@@ -60,7 +60,7 @@ glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
     return glm::sqrt(squares * n / (n - 1.0));
 }
 
-/// A path traces a ray for each of its hits, and one more where it left the scene. What was hit has a normal.
+/// A path traces one ray per hit, and one more if it leaves the scene. A record with a normal is a hit.
 std::uint32_t count_rays(const std::vector<gpu::Path>& paths, const std::vector<gpu::Vpl>& vpls) {
     std::uint32_t rays = 0;
     for (const gpu::Path& path : paths) {
@@ -89,7 +89,7 @@ EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
     return total;
 }
 
-/// Whether both give the same picture, at rest and before it is tone-mapped.
+/// Whether both give the same picture before tone mapping while nothing moves.
 bool same_radiance(Configuration a, const Configuration& b) {
     a.tone_map = b.tone_map;
     a.frame_budget_ms = b.frame_budget_ms;
@@ -145,7 +145,7 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
     }
     runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
-    // A frame that was cut short is not built upon, nor is another world's.
+    // The mean starts over after a frame that threw and for another world.
     if (std::exchange(world_, nullptr) != &world) {
         ++refinement_clock_.epoch;
         refine_ = false;
@@ -175,7 +175,7 @@ void Renderer::render(const World& world, Entity camera, const Target& target, g
     }
 }
 
-/// Milliseconds; 0: none.
+/// Frame budget in milliseconds; 0: no limit.
 double Renderer::budget_ms() const {
     constexpr double on_hardware = 16.0;
     constexpr double on_software = 100.0;
@@ -185,7 +185,7 @@ double Renderer::budget_ms() const {
     return gpu_.device().is_software() ? on_software : on_hardware;
 }
 
-/// Full quality, unless there is a budget and something moved a moment ago.
+/// Full quality, unless there is a frame budget and something moved within the last quarter of a second.
 Quality Renderer::quality_now(const World& world, const ViewRequest& request) {
     constexpr std::chrono::milliseconds settled(250);
     const Clock::time_point now = Clock::now();
@@ -225,7 +225,7 @@ void Renderer::invalidate() {
 
 void Renderer::match_times(const std::vector<gl::FrameTime>& times) {
     for (const gl::FrameTime& time : times) {
-        // A frame that threw has times but no report.
+        // A frame that threw has GPU times but no report.
         if (pending_.empty() || pending_.front().report.index != time.frame) {
             continue;
         }

@@ -18,8 +18,8 @@
 namespace candela {
 namespace {
 
-/// That a blended surface asks where solid ones ask a share each. Of fewer, the pattern of who asks which
-/// would show.
+/// Most VPLs that a blended surface evaluates where solid surfaces are interleaved. With fewer, the pattern
+/// of which pixel evaluates which VPLs would be visible.
 constexpr std::uint32_t most_vpls_of_blended = 1024;
 
 std::optional<TextureHandle> depth_of(const std::optional<VisibleSurfaces>& surfaces) {
@@ -87,11 +87,11 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
                        extent.least_interleave)
             : 1;
 
-    // Without interleaving, too, VPLs are gathered where they are too many for the shading path.
+    // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
     const bool gathers =
         shows_indirect && (frame.interleave > 1 || configuration.vpls.count > most_asked(*vpl_light));
 
-    // The surfaces, as far as they are found before they are shaded.
+    // Visible surfaces that are found before shading.
     const PathParts path = parts_of(configuration.path);
     std::optional<VisibleSurfaces> visible;
     std::optional<Gbuffer> gbuffer;
@@ -118,8 +118,9 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
                       .vpls = vpl_light,
                       .lists = frame.lists,
                       .show = configuration.show};
-    // Blended surfaces have no pixels of their own to gather for, and lie in front of what bounds the lists
-    // in depth.
+    // Blended surfaces evaluate VPLs while they are shaded, because the gathered irradiance is that of the
+    // solid surface at the pixel. They lie in front of the depths that bound the light lists, so they get
+    // lists without depth bounds.
     Lighting of_blended = lighting;
     if (frame.interleave > 1) {
         of_blended.most_vpls = most_vpls_of_blended;

@@ -15,32 +15,33 @@
 
 namespace candela {
 
-/// What the host feeds a frame with, and what a report reads from it.
+/// Handles into the frame graph: values that the renderer sets before each frame, and results that reports
+/// read.
 struct FrameHandles {
     ValueHandle<ViewRequest> request;  ///< imported
-    TextureHandle target;              ///< imported: a framebuffer's name
+    TextureHandle target;              ///< imported: its object is the GL name of a framebuffer
     ValueHandle<SceneMetrics> metrics;
     ValueHandle<LightTable> lights;
     ValueHandle<ShadowPlan> shadows;
     ValueHandle<DrawnShadows> drawn_shadows;
-    std::optional<ValueHandle<std::uint64_t>>
-        epoch;                 ///< imported: see add_scene_motion; none without surfels
-    std::optional<Vpls> vpls;  ///< none without indirect light
+    /// Imported: see add_scene_motion; none without surfels.
+    std::optional<ValueHandle<std::uint64_t>> epoch;
+    std::optional<Vpls> vpls;                                      ///< none without indirect light
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::optional<ValueHandle<Refinement>> refinement;
-    std::uint32_t interleave = 1;           ///< 1: each pixel asks all VPLs as it is shaded
-    std::optional<IndirectLight> indirect;  ///< none where interleave is 1
-    std::optional<LightLists> lists;        ///< none where all surfaces visit all lights
+    std::uint32_t interleave = 1;           ///< n: a pixel evaluates one in n² VPLs; 1: all of them
+    std::optional<IndirectLight> indirect;  ///< none if `interleave` is 1
+    std::optional<LightLists> lists;        ///< none if every surface evaluates all lights
 };
 
-/// What is rendered, in pixels.
+/// Sizes of a frame, in pixels.
 struct FrameExtent {
-    glm::uvec2 size;                     ///< that are shaded
-    glm::uvec2 target;                   ///< to which they are scaled
-    std::uint32_t least_interleave = 1;  ///< where the configuration asks for less
+    glm::uvec2 size;                     ///< of the picture that is shaded
+    glm::uvec2 target;                   ///< of the target, to which that picture is scaled
+    std::uint32_t least_interleave = 1;  ///< lower bound for the interleave factor n
 };
 
-/// Declares the frame that a valid configuration asks for, at one size.
+/// Declares all passes of a frame with a valid configuration and one size. `gpu` must outlive the graph.
 /// Throws gl::ProgramError if a shader does not compile.
 [[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                                        const FrameExtent& extent);

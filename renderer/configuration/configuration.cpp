@@ -43,8 +43,8 @@ struct Range {
     double most;
 };
 
-/// Names every member once, with the range of its values, for reading, writing and validating alike.
-/// `visitor.group(name, members)`, `visitor.member(name, value)`, `visitor.member(name, value, range)`.
+/// Names every member once, with the range of its values. Reading, writing and validating all use it, through
+/// `visitor.group(name, members)`, `visitor.member(name, value)` and `visitor.member(name, value, range)`.
 template <class Config, class Visitor>
 void visit(Config& c, Visitor& visitor) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -106,12 +106,12 @@ class Writer {
     }
 
  private:
-    /// A name that is a number is written as one.
+    /// A name that consists of digits is written as a number.
     static Json as_json(std::string_view name) {
         const bool is_number = name.find_first_not_of("0123456789") == std::string_view::npos;
         return is_number ? Json::parse(name) : Json(name);
     }
-    /// JSON has no infinity; a word stands for it.
+    /// JSON has no infinity; it is written as the string "infinity".
     static void write_float(Json& json, float value) {
         if (std::isinf(value)) {
             json = "infinity";
@@ -122,7 +122,7 @@ class Writer {
     Json* json_;
 };
 
-/// Checks values that are already in place.
+/// Checks the ranges of the values of a configuration.
 class Validator {
  public:
     explicit Validator(std::vector<std::string>& faults) : faults_(&faults) {}
@@ -261,7 +261,7 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     Reader reader(json, result.faults);
     visit(configuration, reader);
     reader.report_unknown();
-    // What was refused above kept its value; this adds what only the values together tell.
+    // Rejected members kept their old values; this adds errors that depend on several values.
     const std::vector<std::string> of_values = validate(configuration);
     result.faults.insert(result.faults.end(), of_values.begin(), of_values.end());
     if (result.faults.empty()) {

@@ -1,4 +1,4 @@
-#define EGL_NO_X11  // no window system's headers: displays are devices or surfaceless
+#define EGL_NO_X11  // no headers of window systems: displays are devices or surfaceless
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 namespace candela {
 namespace {
 
-/// EGL's functions; those of extensions are null where EGL lacks them.
+/// The functions of EGL. Functions of extensions are null where EGL lacks them.
 struct Egl {
     PFNEGLGETPROCADDRESSPROC get_proc = nullptr;
     PFNEGLGETERRORPROC error = nullptr;
@@ -57,7 +57,7 @@ Egl open_egl() {
     return egl;
 }
 
-/// Whether `name` is among the extensions of a list separated by blanks.
+/// Whether `name` is in a space-separated list of extensions, which may be null.
 bool lists(const char* extensions, std::string_view name) {
     return extensions && fmt::format(" {} ", extensions).find(fmt::format(" {} ", name)) != std::string::npos;
 }
@@ -93,7 +93,7 @@ std::string_view error_name(EGLint error) {
     }
 }
 
-/// A place where a context may be made.
+/// An EGL display on which a context may be made.
 struct Candidate {
     std::string name;
     EGLenum platform = EGL_NONE;
@@ -106,7 +106,8 @@ class EglContext final : public HeadlessContext {
         : egl_(egl),
           name_(place.name),
           display_(egl.platform_display(place.platform, place.native, nullptr)) {
-        // Displays belong to the process and are shared: nobody may terminate them for the others.
+        // Never terminated: EGL displays are shared by the whole process, and other contexts may use this
+        // one.
         if (display_ == EGL_NO_DISPLAY || !egl_.initialize(display_, nullptr, nullptr)) fail("no display");
         egl_.bind_api(EGL_OPENGL_API);
         const EGLConfig config = choose_config();
@@ -125,7 +126,8 @@ class EglContext final : public HeadlessContext {
 
     void make_current() override {
         egl_.bind_api(EGL_OPENGL_API);
-        // OSMesa may have taken its place in the driver unseen: bind anew what EGL thinks current.
+        // OSMesa may have replaced the driver's current context without EGL noticing: release the context
+        // first, so that EGL binds it again.
         if (egl_.current_context() == context_) release();
         if (!egl_.make_current(display_, surface_, surface_, context_))
             fail("the context cannot be made current");
@@ -188,7 +190,8 @@ std::vector<EGLDeviceEXT> get_devices(const Egl& egl) {
     return devices;
 }
 
-/// Hardware first, software last; between them Mesa's surfaceless platform, which finds its own device.
+/// Displays to try, in order: hardware devices, Mesa's surfaceless platform (which chooses a device itself),
+/// software devices.
 std::vector<Candidate> get_candidates(const Egl& egl) {
     const char* client = egl.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     std::vector<Candidate> candidates;

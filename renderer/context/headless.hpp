@@ -10,41 +10,43 @@
 
 namespace candela {
 
-/// No context to be had; the message lists in one line all that was tried and why each attempt failed.
+/// No context could be made. The message is one line that lists every attempt and why it failed.
 struct ContextError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The API that makes a headless context.
 enum class ContextKind : std::uint8_t { egl, osmesa };
+/// "egl" or "osmesa".
 [[nodiscard]] std::string_view to_string(ContextKind kind);
 
 struct ContextOptions {
-    bool debug = false;  ///< ask the driver for a debug context, where the kind has such
+    bool debug = false;  ///< ask for a debug context (EGL only; ignored by OSMesa)
 };
 
-/// An OpenGL 4.5 core context without a window and without a default framebuffer worth drawing into. Its
-/// library is opened when the first one is made, never before. Contexts of both kinds may live in one
-/// process; one is current in a thread at a time. Destroying a context that is current leaves none current.
+/// An OpenGL 4.5 core context without a window. Its default framebuffer, if any, is only a few pixels large:
+/// draw into framebuffer objects. The EGL or OSMesa library is loaded when the first context of that kind is
+/// made. Contexts of both kinds may exist in one process; at most one is current per thread. Destroying the
+/// current context leaves no context current.
 class HeadlessContext {
  public:
-    /// EGL: hardware devices, then Mesa's surfaceless platform, then software devices. OSMesa: as it is.
-    /// The context is not yet current. Throws ContextError.
+    /// Makes a context, which is not yet current. EGL tries hardware devices, then Mesa's surfaceless
+    /// platform, then software devices, and takes the first that works. Throws ContextError.
     [[nodiscard]] static std::unique_ptr<HeadlessContext> create(ContextKind kind,
                                                                  const ContextOptions& options = {});
 
-    /// Whether the library was built with contexts of this kind: EGL always, OSMesa where its header was
-    /// there.
+    /// Whether this build supports contexts of this kind: EGL always, OSMesa if GL/osmesa.h was found.
     [[nodiscard]] static bool is_built(ContextKind kind);
 
     HeadlessContext(const HeadlessContext&) = delete;
     HeadlessContext& operator=(const HeadlessContext&) = delete;
     virtual ~HeadlessContext() = default;
 
-    /// In the calling thread. Throws ContextError if the driver refuses.
+    /// Makes the context current in the calling thread. Throws ContextError if the driver refuses.
     virtual void make_current() = 0;
-    /// Valid as long as the process.
+    /// Looks up GL functions, for Renderer. Valid until the process ends.
     [[nodiscard]] virtual gl::GetProc get_proc() const = 0;
-    /// How it was made: "EGL device /dev/dri/card0", "EGL surfaceless", "OSMesa".
+    /// How the context was made: "EGL device /dev/dri/card0", "EGL surfaceless", "OSMesa".
     [[nodiscard]] virtual std::string description() const = 0;
 
  protected:

@@ -15,7 +15,7 @@ Library::Library(std::initializer_list<const char*> names) {
         handle_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
         if (handle_) return;
         if (first_error.empty())
-            first_error = dlerror();  // NOLINT(concurrency-mt-unsafe): glibc keeps one a thread
+            first_error = dlerror();  // NOLINT(concurrency-mt-unsafe): glibc keeps one per thread
     }
     throw ContextError(first_error);
 }

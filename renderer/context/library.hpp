@@ -4,14 +4,15 @@
 
 namespace candela {
 
-/// A shared library opened at run time, so that a machine without it still starts. Never closed: drivers
-/// leave threads and exit handlers behind.
+/// A shared library that is loaded at run time, so that the program also starts on a machine without it. It
+/// is never unloaded, because drivers leave threads and exit handlers behind.
 class Library {
  public:
-    /// The first of `names` that opens. Throws ContextError with the loader's words if none does.
+    /// Loads the first of `names` that can be loaded. Throws ContextError with the loader's message for the
+    /// first name if none can.
     explicit Library(std::initializer_list<const char*> names);
 
-    /// Throws ContextError if the library has no such function.
+    /// Sets `function` to the address of `name`. Throws ContextError if the library has no such function.
     template <class Function>
     void find(const char* name, Function& function) const {
         function = reinterpret_cast<Function>(symbol(name));

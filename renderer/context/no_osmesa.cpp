@@ -1,4 +1,4 @@
-// Takes the place of osmesa.cpp where OSMesa's header is missing: Mesa has been without OSMesa since 25.1.
+// Built in place of osmesa.cpp where GL/osmesa.h is missing: Mesa removed OSMesa in 25.1.
 
 #include "renderer/context/kinds.hpp"
 

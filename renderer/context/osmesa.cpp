@@ -1,7 +1,8 @@
 #include "renderer/context/kinds.hpp"
 #include "renderer/context/library.hpp"
 
-// After glcorearb.h: the gl.h that comes with OSMesa hides types that glcorearb.h would declare later.
+// Include after glcorearb.h: the gl.h that osmesa.h includes hides types that glcorearb.h would declare
+// later.
 #include <GL/osmesa.h>
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@
 namespace candela {
 namespace {
 
-/// OSMesa's functions.
+/// The functions of OSMesa.
 struct OsMesa {
     decltype(&OSMesaCreateContextAttribs) create = nullptr;
     decltype(&OSMesaDestroyContext) destroy = nullptr;
@@ -62,7 +63,7 @@ class OsMesaContext final : public HeadlessContext {
     [[nodiscard]] std::string description() const override { return "OSMesa"; }
 
  private:
-    // OSMesa wants a default framebuffer; nobody draws into it.
+    // OSMesa requires memory for a default framebuffer; nothing is drawn into it.
     static constexpr int side = 4;
     static constexpr std::size_t pixels = 16;
 

@@ -33,7 +33,7 @@ DebugLog::~DebugLog() {
         install(previous_);
         return;
     }
-    // A later log listens through this one: hand it what stood before.
+    // A later log forwards to this one: make it forward to the listener before this one.
     for (; log; log = as_log(log->previous_)) {
         if (as_log(log->previous_) == this) log->previous_ = previous_;
     }

@@ -8,7 +8,7 @@
 
 namespace candela::gl {
 
-/// What the driver said, and how often it said exactly that.
+/// A message of the driver, and how often it occurred with the same id and text.
 struct DebugMessage {
     GLenum type = 0;      ///< GL_DEBUG_TYPE_...
     GLenum severity = 0;  ///< GL_DEBUG_SEVERITY_...
@@ -16,23 +16,23 @@ struct DebugMessage {
     std::string text;
     std::uint64_t times = 1;
 
-    /// An error, undefined behaviour or anything of high severity: never in a correct program.
+    /// Whether it is an error, undefined behaviour or of high severity: never expected in a correct program.
     [[nodiscard]] bool is_fault() const;
 };
 
-/// Listens to the debug output of the current context for as long as it lives, synchronously. A callback that
-/// was there before still receives everything, and is put back together with the enables of debug output at
-/// the end. Several logs may listen to one context, and may end in any order.
+/// Collects the debug output of the current context, synchronously, as long as it lives. A callback that was
+/// installed before still receives every message. The destructor reinstalls it, together with the enable
+/// states of debug output. Several logs may listen to one context, and may be destroyed in any order.
 class DebugLog {
  public:
-    /// `gl` outlives the log. The context is current here and at destruction.
+    /// `gl` must outlive the log. The context must be current here and in the destructor.
     explicit DebugLog(const Functions& gl);
     ~DebugLog();
     DebugLog(const DebugLog&) = delete;
     DebugLog& operator=(const DebugLog&) = delete;
 
-    /// Since the last call, oldest first. Notifications are left out, and so are a shader compiler's words:
-    /// they come with ProgramError.
+    /// Messages since the last call, oldest first. Notifications and the messages of the shader compiler are
+    /// left out; the latter are part of ProgramError.
     [[nodiscard]] std::vector<DebugMessage> take();
 
  private:
@@ -51,7 +51,7 @@ class DebugLog {
     void record(GLenum type, GLuint id, GLenum severity, std::string text);
 
     const Functions* gl_;
-    DebugLog* self_ = this;  ///< what the driver is given: it hands back only const pointers
+    DebugLog* self_ = this;  ///< user pointer given to the driver, which returns it as const
     Listener previous_;
     std::vector<DebugMessage> messages_;
 };

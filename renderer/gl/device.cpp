@@ -14,7 +14,8 @@ std::string get_string(PFNGLGETSTRINGPROC get, GLenum name) {
     return text ? reinterpret_cast<const char*>(text) : "";
 }
 
-/// Ahead of the loader, which would blame a single function where the whole version is too old.
+/// Checked before functions are loaded: otherwise, with too old a version, the error would name a single
+/// missing function.
 void require_version(const GetProc& get_proc) {
     const auto get = reinterpret_cast<PFNGLGETSTRINGPROC>(get_proc("glGetString"));
     const auto get_integer = reinterpret_cast<PFNGLGETINTEGERVPROC>(get_proc("glGetIntegerv"));

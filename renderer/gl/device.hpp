@@ -16,7 +16,7 @@ namespace candela::gl {
 enum class ObjectKind : std::uint8_t { buffer, texture, framebuffer, vertex_array, sampler, query, program };
 inline constexpr std::size_t object_kinds = 7;
 
-/// GL objects alive, by kind, and the bytes of their storage.
+/// Number of live GL objects by kind, and the bytes of their storage.
 struct ObjectCounts {
     std::array<std::uint32_t, object_kinds> objects{};
     std::uint64_t buffer_bytes = 0;
@@ -28,27 +28,26 @@ struct ObjectCounts {
     bool operator==(const ObjectCounts&) const = default;
 };
 
-/// What the driver allows.
+/// The driver's limits.
 struct Limits {
-    std::uint32_t texture_size = 0;              ///< texels along an edge
+    std::uint32_t texture_size = 0;              ///< texels along an edge of a 2D texture
     std::uint32_t texture_layers = 0;            ///< layers of an array texture
     std::uint32_t colour_attachments = 0;        ///< of one framebuffer
     std::uint64_t storage_block_bytes = 0;       ///< of one shader storage block
     std::uint32_t uniform_block_bytes = 0;       ///< of one uniform block
-    std::uint32_t storage_alignment = 1;         ///< bytes, of an offset bound as shader storage
-    std::uint32_t uniform_alignment = 1;         ///< bytes, of an offset bound as a uniform buffer
-    std::array<std::uint32_t, 3> work_groups{};  ///< of one dispatch, in x, y and z
-    float anisotropy = 1.0F;                     ///< 1: none
+    std::uint32_t storage_alignment = 1;         ///< bytes, of the offset of a shader storage range
+    std::uint32_t uniform_alignment = 1;         ///< bytes, of the offset of a uniform buffer range
+    std::array<std::uint32_t, 3> work_groups{};  ///< most work groups of one dispatch in x, y, z
+    float anisotropy = 1.0F;                     ///< largest degree; 1: no anisotropic filtering
 };
 
-/// One GL context as Candela sees it: its functions, limits and debug log, and the account of the objects
-/// made in it. Holds no global state: several devices live side by side, on one context or on several.
-/// Outlives its objects; its context must be current whenever it or one of its objects is made, used or
+/// One GL context: its functions, limits and debug log, and counts of the objects made for it. Holds no
+/// global state: several devices may exist side by side, for one context or for several. It must outlive its
+/// objects, and its context must be current whenever the device or one of its objects is made, used or
 /// destroyed.
 class Device {
  public:
-    /// With the context current. Throws GlError if a function is missing or the context is older than
-    /// OpenGL 4.5.
+    /// The context must be current. Throws GlError if it is older than OpenGL 4.5 or a function is missing.
     explicit Device(const GetProc& get_proc);
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
@@ -56,15 +55,15 @@ class Device {
 
     [[nodiscard]] const Functions& gl() const { return functions_; }
     [[nodiscard]] const Limits& limits() const { return limits_; }
-    [[nodiscard]] const std::string& renderer() const { return renderer_; }  ///< as GL_RENDERER
-    [[nodiscard]] const std::string& version() const { return version_; }    ///< as GL_VERSION
-    [[nodiscard]] bool is_software() const;                                  ///< whether no GPU draws
+    [[nodiscard]] const std::string& renderer() const { return renderer_; }  ///< GL_RENDERER
+    [[nodiscard]] const std::string& version() const { return version_; }    ///< GL_VERSION
+    [[nodiscard]] bool is_software() const;  ///< whether the driver renders on the CPU
     [[nodiscard]] bool has_extension(std::string_view name) const;
 
-    /// What the driver said since the last call, oldest first: see DebugLog::take.
+    /// The driver's messages since the last call, oldest first: see DebugLog::take.
     [[nodiscard]] std::vector<DebugMessage> take_messages() { return log_.take(); }
 
-    /// Objects alive now that were made for this device.
+    /// Objects made for this device that are alive now.
     [[nodiscard]] const ObjectCounts& live() const { return live_; }
 
  private:

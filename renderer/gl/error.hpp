@@ -4,13 +4,13 @@
 
 namespace candela::gl {
 
-/// What the driver lacks or refuses; the message names the object and the fault.
+/// Something that the driver lacks or refuses. The message names the object and the error.
 struct GlError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A shader that cannot be found, assembled, compiled or linked. Each line of the message starts with
-/// "shaders/FILE:LINE: " where the line is known.
+/// A shader that cannot be found, assembled, compiled or linked. Lines of the message that refer to a known
+/// source line start with "shaders/FILE:LINE: ".
 struct ProgramError : GlError {
     using GlError::GlError;
 };

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-/// The functions of OpenGL 4.5 core that Candela calls: X(name without "gl", the same in capitals).
+/// The functions of OpenGL 4.5 core that are loaded: X(name without "gl", the same in capitals).
 // clang-format off
 #define CANDELA_GL_FUNCTIONS(X) \
     /* state */ \
@@ -237,20 +237,20 @@
 
 namespace candela::gl {
 
-/// How a host looks up a GL function ("glDrawArrays"); null if there is none. Called with the context
-/// current. glfwGetProcAddress, eglGetProcAddress and OSMesaGetProcAddress are of this form.
+/// Looks up a GL function by name ("glDrawArrays"); returns null if there is none. Called with the context
+/// current. glfwGetProcAddress, eglGetProcAddress and OSMesaGetProcAddress have this form.
 using GetProc = std::function<void (*(const char* name))()>;
 
-/// Entry points of one context. `functions.DrawArrays(...)` is glDrawArrays.
+/// Function pointers of one context. `functions.DrawArrays(...)` calls glDrawArrays.
 struct Functions {
-    // NOLINTBEGIN(readability-identifier-naming): named as OpenGL has them
+    // NOLINTBEGIN(readability-identifier-naming): named as in OpenGL
 #define CANDELA_GL_MEMBER(name, capitals) PFNGL##capitals##PROC name = nullptr;
     CANDELA_GL_FUNCTIONS(CANDELA_GL_MEMBER)
 #undef CANDELA_GL_MEMBER
     // NOLINTEND(readability-identifier-naming)
 };
 
-/// Looks up every function. Throws GlError that names the first one missing.
+/// Looks up every function. Throws GlError that names the first missing one.
 [[nodiscard]] Functions load_functions(const GetProc& get_proc);
 
 }  // namespace candela::gl

@@ -46,7 +46,7 @@ ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& de
 }
 
 void GraphBackend::destroy_texture(ObjectId texture) {
-    // Framebuffers would keep the storage alive, and a later texture may get the same name.
+    // A framebuffer would keep the storage alive, and a later texture may get the same name.
     std::erase_if(framebuffers_,
                   [&](const auto& entry) { return std::ranges::count(entry.first, texture) > 0; });
     textures_.erase(texture);
@@ -70,8 +70,8 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
     gl.Disable(GL_DEPTH_TEST);
     gl.Disable(GL_CULL_FACE);
     gl.Disable(GL_BLEND);
-    gl.BlendFunc(GL_ONE,
-                 GL_ZERO);  // Mesa refuses several targets while a second source is set up, used or not
+    // Mesa rejects draws to several targets while dual-source blend factors are set, even with blending off.
+    gl.BlendFunc(GL_ONE, GL_ZERO);
     gl.FrontFace(GL_CCW);
     gl.DepthFunc(GL_GREATER);
     gl.DepthMask(GL_TRUE);

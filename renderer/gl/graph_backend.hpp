@@ -13,13 +13,13 @@
 
 namespace candela::gl {
 
-/// Gives the resources of a frame graph their GL objects; an ObjectId is the object's GL name. Before each
-/// pass it binds the pass's attachments and puts the state that passes change back to what they start from:
-/// no depth test (where a pass turns it on, the greater of the reversed depths wins), no culling, no
-/// blending, depth and colour written, viewport of the attachments.
+/// Implements the frame graph's back end in OpenGL. An ObjectId is the object's GL name. Before each pass it
+/// binds the pass's attachments and resets the state that passes may change: depth test, culling and blending
+/// off, front faces counter-clockwise, depth function GL_GREATER (reversed depth), depth writes on, and a
+/// viewport of the attachments' size.
 class GraphBackend final : public Backend {
  public:
-    /// The device outlives the back end.
+    /// The device must outlive the back end.
     explicit GraphBackend(Device& device) : device_(&device), timer_(device) {}
 
     ObjectId create_texture(std::string_view name, const TextureDesc& desc) override;
@@ -32,15 +32,16 @@ class GraphBackend final : public Backend {
     std::uint64_t texture_digest(ObjectId texture) override;
     std::uint64_t buffer_digest(ObjectId buffer) override;
 
-    /// GPU times of the passes between `begin_frame` and `end_frame` of its frames.
+    /// GPU times of passes. The owner calls the timer's begin_frame and end_frame around each frame.
     [[nodiscard]] Timer& timer() { return timer_; }
 
-    /// For reports and tests: what stands behind an id that this back end gave out.
+    /// For reports and tests: the object of an id that this back end returned. Throws std::out_of_range for
+    /// other ids.
     [[nodiscard]] const Buffer& buffer(ObjectId id) const { return buffers_.at(id); }
     [[nodiscard]] const Texture& texture(ObjectId id) const { return textures_.at(id); }
 
  private:
-    /// The attachments' names: the colours, then the depth (0: none).
+    /// GL names of the attachments: the colours, then depth (0: none).
     using Attachments = std::vector<ObjectId>;
     void bind_targets(const PassTargets& targets);
 
@@ -51,7 +52,7 @@ class GraphBackend final : public Backend {
     std::map<Attachments, Framebuffer> framebuffers_;
 };
 
-/// The glMemoryBarrier bits of a planned barrier.
+/// The bits of glMemoryBarrier for a barrier of the frame graph.
 [[nodiscard]] GLbitfield barrier_bits(Barrier barrier);
 
 }  // namespace candela::gl

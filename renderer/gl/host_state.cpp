@@ -5,13 +5,13 @@
 namespace candela::gl {
 namespace {
 
-// What a host may have enabled that would change the picture.
+// Capabilities that would change the picture if the host had enabled them.
 constexpr std::array<GLenum, 17> capabilities{
     GL_BLEND, GL_COLOR_LOGIC_OP, GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DEPTH_TEST, GL_FRAMEBUFFER_SRGB,
     GL_MULTISAMPLE, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART, GL_PRIMITIVE_RESTART_FIXED_INDEX,
     GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_SCISSOR_TEST,
     GL_STENCIL_TEST,
-    // Seamless filtering would compare one face's depth with another's.
+    // Seamless filtering would compare depths across two faces of a cube shadow map.
     GL_TEXTURE_CUBE_MAP_SEAMLESS};
 
 }  // namespace

@@ -7,10 +7,11 @@
 
 namespace candela::gl {
 
-/// Puts the host's state aside and sets what rendering assumes: depth in [0, 1] (glClipControl), and nothing
-/// enabled that a host may have turned on. At its end the host finds its framebuffers, program, vertex array,
-/// viewport, enables, depth, blending, culling, polygon, colour and clip state as they were. Texture units,
-/// samplers, indexed buffers and the indirect buffers that rendering used are left unbound.
+/// Saves the host's GL state and sets what rendering assumes: clip-space depth in [0, 1] (glClipControl), and
+/// none of the capabilities enabled that would change the picture. The destructor restores framebuffers,
+/// program, vertex array, active texture unit, viewport, capabilities, and depth, blend, cull, polygon,
+/// colour-mask, clear and clip-control state. Texture units, samplers, image units, indexed buffer bindings
+/// and indirect buffers that rendering uses are left unbound.
 class HostState {
  public:
     explicit HostState(const Functions& gl);
@@ -32,11 +33,11 @@ class HostState {
     GLint cull_face_;
     GLint clip_origin_;
     GLint clip_depth_;
-    std::array<GLint, 2> blend_equation_;  // of colour, of alpha
-    std::array<GLint, 4> blend_factors_;   // source and destination of colour, then of alpha
+    std::array<GLint, 2> blend_equation_;  // RGB, alpha
+    std::array<GLint, 4> blend_factors_;   // source RGB, destination RGB, source alpha, destination alpha
     GLboolean depth_mask_ = GL_TRUE;
     std::array<GLint, 4> viewport_{};
-    std::array<GLint, 2> polygon_mode_{};  // one of both faces; some drivers write two values
+    std::array<GLint, 2> polygon_mode_{};  // only [0] is used; some drivers write two values
     std::array<GLboolean, 4> colour_mask_{};
     std::array<GLfloat, 2> depth_range_{};
     std::array<GLfloat, 4> clear_colour_{};

@@ -88,7 +88,7 @@ Object::Object(Device& device, ObjectKind kind, GLuint name, std::string_view la
     : device_(&device), kind_(kind), name_(name) {
     if (name == 0) throw GlError(fmt::format("the driver gives no object for \"{}\"", label));
     ++device.live_.objects[static_cast<std::size_t>(kind)];
-    const std::string_view shown = label.substr(0, 255);  // what every driver takes
+    const std::string_view shown = label.substr(0, 255);  // the longest label that every driver accepts
     gl().ObjectLabel(label_namespace(kind), name, static_cast<GLsizei>(shown.size()), shown.data());
 }
 
@@ -134,8 +134,8 @@ Buffer::Buffer(Device& device, std::string_view label, std::uint64_t size)
         throw GlError(fmt::format("buffer \"{}\": no memory for {} bytes", label, size));
     };
     if (size > static_cast<std::uint64_t>(PTRDIFF_MAX)) fail();
-    const auto stored =
-        static_cast<GLsizeiptr>(std::max<std::uint64_t>(size, 4));  // the GL has no empty storage
+    // OpenGL does not allow storage of size 0.
+    const auto stored = static_cast<GLsizeiptr>(std::max<std::uint64_t>(size, 4));
     gl().NamedBufferStorage(name(), stored, nullptr, GL_DYNAMIC_STORAGE_BIT);
     if (gl().GetError() == GL_OUT_OF_MEMORY) fail();
     set_bytes(size);

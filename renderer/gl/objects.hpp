@@ -12,8 +12,8 @@
 
 namespace candela::gl {
 
-/// Owner of one GL name: moves, never copies, deletes the object with itself. Empty when default-constructed
-/// or moved from; an empty object has name 0. The device outlives it.
+/// Owns one GL object: can be moved, not copied, and deletes the object in its destructor. A
+/// default-constructed or moved-from instance is empty and has name 0. The device must outlive it.
 class Object {
  public:
     Object() = default;
@@ -25,15 +25,15 @@ class Object {
 
     [[nodiscard]] GLuint name() const { return name_; }
     [[nodiscard]] explicit operator bool() const { return name_ != 0; }
-    /// Storage as asked for, in bytes; 0 for objects without any of their own.
+    /// Size of the requested storage in bytes; 0 for kinds of objects without storage.
     [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
 
  protected:
-    /// Takes over `name` and gives it `label` in debuggers. `name` 0 throws GlError.
+    /// Takes ownership of `name` and sets `label` as its debug label. Throws GlError if `name` is 0.
     Object(Device& device, ObjectKind kind, GLuint name, std::string_view label);
     [[nodiscard]] const Functions& gl() const { return device_->gl(); }
     [[nodiscard]] const Device& device() const { return *device_; }
-    /// Enters the storage into the device's account.
+    /// Records the size of the storage in the device's counts.
     void set_bytes(std::uint64_t bytes);
 
  private:
@@ -49,19 +49,19 @@ class Object {
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-/// Arrays, vectors and spans of them.
+/// Arrays, vectors and spans of such types.
 template <class R>
 concept PlainRange = std::ranges::contiguous_range<R> && Plain<std::ranges::range_value_t<R>>;
 
-/// A buffer of fixed size that the CPU may upload to. For vertices, indices, uniforms, storage and arguments
-/// alike.
+/// A buffer of fixed size that the CPU can upload to, for vertices, indices, uniforms, storage or indirect
+/// arguments.
 class Buffer : public Object {
  public:
     Buffer() = default;
-    /// `size` bytes of undefined content. Of size 0 it still is a buffer that can be bound. Throws GlError if
-    /// the driver has no memory left.
+    /// `size` bytes with undefined content. A buffer of size 0 can still be bound. Throws GlError if there is
+    /// not enough memory.
     Buffer(Device& device, std::string_view label, std::uint64_t size);
-    /// A copy of `data`.
+    /// A buffer filled with a copy of `data`.
     template <PlainRange R>
     Buffer(Device& device, std::string_view label, const R& data)
         : Buffer(device, label, std::span(data).size_bytes()) {
@@ -78,8 +78,8 @@ class Buffer : public Object {
         write(std::as_bytes(std::span<const T>(&value, 1)), offset);
     }
 
-    /// The whole content, after all that the GPU was told so far; waits for it. A remainder smaller than a T
-    /// is left out. For tests and reports.
+    /// Reads back the whole content, after all GPU commands issued so far; waits for the GPU. A remainder
+    /// smaller than one T is left out. For tests and reports.
     template <Plain T>
     [[nodiscard]] std::vector<T> download() const {
         std::vector<T> content(static_cast<std::size_t>(bytes() / sizeof(T)));
@@ -101,9 +101,8 @@ struct SamplerDesc {
     GLint mag_filter = GL_LINEAR;
     GLint wrap_u = GL_CLAMP_TO_EDGE;
     GLint wrap_v = GL_CLAMP_TO_EDGE;
-    GLint compare =
-        GL_NONE;  ///< comparison of a depth texture against the reference, GL_LEQUAL, ...; GL_NONE: none
-    float anisotropy = 1.0F;  ///< capped by what the driver offers
+    GLint compare = GL_NONE;  ///< depth comparison with the reference: GL_LEQUAL, ...; GL_NONE: none
+    float anisotropy = 1.0F;  ///< clamped to the driver's limit
     bool operator==(const SamplerDesc&) const = default;
 };
 
@@ -114,46 +113,47 @@ class Sampler : public Object {
     void bind(GLuint unit) const;
 };
 
-/// Attachments to draw into. Holds no textures: they outlive its use.
+/// A framebuffer. It does not own its textures: they must stay alive while it is used.
 class Framebuffer : public Object {
  public:
     Framebuffer() = default;
     Framebuffer(Device& device, std::string_view label);
 
-    /// Whole textures (all layers of arrays, for layered drawing). Texture 0 detaches.
+    /// Attaches a whole texture level, with all layers of arrays for layered rendering. Texture 0 detaches.
     void attach_colour(std::uint32_t index, GLuint texture, std::uint32_t level = 0);
     void attach_depth(GLuint texture, std::uint32_t level = 0);
-    /// Single layers; for cube arrays, faces.
+    /// Attaches a single layer; for cube arrays a face.
     void attach_colour_layer(std::uint32_t index, GLuint texture, std::uint32_t layer,
                              std::uint32_t level = 0);
     void attach_depth_layer(GLuint texture, std::uint32_t layer, std::uint32_t level = 0);
-    /// Draws into attachments 0 .. count - 1. 0: depth only.
+    /// Sets attachments 0 .. count - 1 as draw buffers. 0: depth only.
     void draw_buffers(std::uint32_t count);
 
-    /// Throws GlError that states why, unless the attachments can be drawn into.
+    /// Throws GlError with the reason if the framebuffer is incomplete.
     void check() const;
-    /// Binds for drawing; the viewport is the caller's.
+    /// Binds it for drawing. Does not change the viewport.
     void bind() const;
 };
 
-/// Where vertices come from. Holds no buffers: they outlive its use.
+/// A vertex array. It does not own its buffers: they must stay alive while it is used.
 class VertexArray : public Object {
  public:
     VertexArray() = default;
     VertexArray(Device& device, std::string_view label);
 
-    /// Buffer behind attributes of `binding`; `offset` and `stride` in bytes.
+    /// Sets the buffer of vertex binding `binding`; `offset` and `stride` in bytes.
     void vertex_buffer(GLuint buffer, std::uint32_t stride, std::uint64_t offset = 0, GLuint binding = 0);
     void index_buffer(GLuint buffer);
-    /// Enables an attribute of `components` values at `offset` bytes within a vertex, read as floats.
+    /// Enables an attribute of `components` values at `offset` bytes within a vertex, converted to float
+    /// without normalisation.
     void attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset, GLuint binding = 0);
-    /// The same, read as integers.
+    /// The same for integer attributes, without conversion.
     void integer_attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
                            GLuint binding = 0);
     void bind() const;
 };
 
-/// A query object, of GL_TIMESTAMP, GL_SAMPLES_PASSED, ...
+/// A query object; `target` is GL_TIMESTAMP, GL_SAMPLES_PASSED, ...
 class Query : public Object {
  public:
     Query() = default;

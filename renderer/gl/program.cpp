@@ -30,7 +30,7 @@ std::string info_log(Length get_parameter, Log get_log, GLuint object) {
     return log;
 }
 
-/// A compiled stage.
+/// A shader object of one stage.
 class Shader {
  public:
     Shader(const Functions& gl, GLenum stage, const ShaderSource& source)
@@ -45,7 +45,7 @@ class Shader {
     Shader& operator=(const Shader&) = delete;
 
     [[nodiscard]] GLuint name() const { return name_; }
-    /// The driver's messages where it did not compile.
+    /// The driver's messages if it did not compile.
     [[nodiscard]] std::optional<std::string> failure() const {
         GLint compiled = GL_FALSE;
         gl_.GetShaderiv(name_, GL_COMPILE_STATUS, &compiled);
@@ -88,7 +88,7 @@ void Program::find_uniforms() {
         gl().GetProgramResourceName(name(), GL_UNIFORM, i, longest, &length, uniform.data());
         uniform.resize(static_cast<std::size_t>(length));
         const GLint location = gl().GetProgramResourceLocation(name(), GL_UNIFORM, uniform.c_str());
-        if (location < 0) continue;  // a member of a block
+        if (location < 0) continue;  // a member of a uniform block
         if (uniform.ends_with("[0]")) uniform.resize(uniform.size() - 3);
         locations_.emplace(std::move(uniform), location);
     }

@@ -18,18 +18,19 @@
 
 namespace candela::gl {
 
-/// A linked program. Uniforms are set by name, whether or not the program is in use. A name that the program
-/// has no active uniform for is ignored, at the price of one look-up: drivers drop uniforms that a variant
-/// does not need. Arrays go by their name without "[0]", and are set from their first element.
+/// A linked program. Uniforms are set by name, whether or not the program is in use. Names without an active
+/// uniform are ignored, because drivers remove uniforms that a variant does not use. An array is set by its
+/// name without "[0]", starting with its first element.
 class Program : public Object {
  public:
     Program() = default;
-    /// Links compiled shaders, which stay the caller's. Throws ProgramError with the linker's messages.
+    /// Links compiled shaders; the caller keeps their ownership. Throws ProgramError with the linker's
+    /// messages.
     Program(Device& device, std::string_view label, std::span<const GLuint> shaders);
 
     void use() const;
 
-    /// Whether `name` is an active uniform outside of blocks.
+    /// Whether `uniform` is an active uniform outside of uniform blocks.
     [[nodiscard]] bool has(std::string_view uniform) const { return locations_.contains(uniform); }
 
     void set(std::string_view uniform, bool value) const;
@@ -53,14 +54,14 @@ class Program : public Object {
  private:
     void link(std::string_view label, std::span<const GLuint> shaders) const;
     void find_uniforms();
-    /// -1, which the GL ignores, for names that are not active.
+    /// -1, which OpenGL ignores, for names without an active uniform.
     [[nodiscard]] GLint location(std::string_view uniform) const;
 
     std::map<std::string, GLint, std::less<>> locations_;
 };
 
-/// Compiles and links the stage files, whose extensions say what they are: .vert, .frag, .geom or .comp.
-/// `compile(device, library, {"gbuffer.vert", "gbuffer.frag"}, {{"VPL_VISIBILITY", "0"}})`.
+/// Compiles and links shader files. The file extension gives the stage: .vert, .frag, .geom or .comp.
+/// `compile(device, library, {"mesh_surface.vert", "gbuffer.frag"}, {{"MASKED", "1"}})`.
 /// Throws ProgramError with the driver's messages, by file and line.
 [[nodiscard]] Program compile(Device& device, const ShaderLibrary& library,
                               const std::vector<std::string>& stages,

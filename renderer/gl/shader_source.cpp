@@ -13,7 +13,7 @@
 namespace candela::gl {
 namespace {
 
-// Each takes something off the front of `text`; false where it does not start so.
+// Each of these functions removes something from the front of `text`, or returns false if it is not there.
 
 bool take(std::string_view& text, std::string_view literal) {
     if (!text.starts_with(literal)) return false;
@@ -33,7 +33,7 @@ bool take_blanks(std::string_view& text) {
     return true;
 }
 
-/// File named by an include line; none on other lines.
+/// The file that an #include line names; none for other lines.
 std::optional<std::string> included_file(std::string_view line) {
     const bool is_include = take_blanks(line) && take(line, "#") && take_blanks(line) &&
                             take(line, "include") && take_blanks(line) && take(line, "\"");
@@ -42,7 +42,7 @@ std::optional<std::string> included_file(std::string_view line) {
     return std::string(line.substr(0, end));
 }
 
-/// Where in which file a driver's message points, and what it says.
+/// A driver's message: the number of the file, the line, and the text.
 struct Remark {
     std::size_t file = 0;
     std::size_t line = 0;
@@ -79,7 +79,7 @@ class Assembler {
  public:
     explicit Assembler(const ShaderLibrary& library) : library_(library) {}
 
-    /// Appends a file and, in their places, the files it includes.
+    /// Appends a file; each file that it includes takes the place of its #include line.
     void append(const std::string& name) {
         const std::size_t number = source_.files.size();
         source_.files.push_back(name);

@@ -11,7 +11,8 @@
 namespace candela::gl {
 namespace {
 
-/// Tightly packed transfers from and to CPU memory, whatever the host set up; puts the host's state back.
+/// Sets tightly packed transfers between textures and CPU memory, whatever the host has set, and restores the
+/// host's state in the destructor.
 class PackedTransfers {
  public:
     explicit PackedTransfers(const Functions& gl) : gl_(gl) {
@@ -56,7 +57,7 @@ class PackedTransfers {
     GLint pack_buffer_ = 0;
 };
 
-/// Why a driver of these limits cannot have it; empty if it can.
+/// Why a texture cannot be made within these limits; empty if it can.
 std::string fault(const TextureDesc& desc, const Limits& limits) {
     const std::uint32_t longest = std::max(desc.size.x, desc.size.y);
     if (std::min(desc.size.x, desc.size.y) == 0) return "a side has no texels";

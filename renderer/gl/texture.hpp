@@ -12,37 +12,38 @@
 
 namespace candela::gl {
 
-/// How a format is stored and how its texels travel.
+/// OpenGL constants of a Format: for its storage, and for texels on the CPU.
 struct FormatInfo {
     GLenum internal = 0;  ///< sized internal format
     GLenum layout = 0;    ///< of texels on the CPU: GL_RGBA, ...
-    GLenum type = 0;      ///< of their components, as stored: GL_UNSIGNED_BYTE, ...
+    GLenum type = 0;      ///< of the components on the CPU, as stored: GL_UNSIGNED_BYTE, ...
     std::uint32_t components = 0;
 };
 [[nodiscard]] FormatInfo format_info(Format format);
 [[nodiscard]] GLenum texture_target(TextureShape shape);
 
-/// Immutable texture storage. Layers of cube arrays are faces, in the GL's order.
+/// A texture with immutable storage. The layers of a cube array are faces, in the order of OpenGL.
 class Texture : public Object {
  public:
     Texture() = default;
-    /// Undefined content; filters without mip maps and clamps to the edge until told otherwise. Throws
-    /// GlError if the driver's limits forbid it or there is no memory left.
+    /// Undefined content. Wraps by clamping to the edge. Filters linearly, between mip levels too if there
+    /// are several; Format::r32ui filters to the nearest. Throws GlError if the driver's limits do not allow
+    /// the texture or there is not enough memory.
     Texture(Device& device, std::string_view label, const TextureDesc& desc);
 
     [[nodiscard]] const TextureDesc& desc() const { return desc_; }
     [[nodiscard]] GLenum target() const { return texture_target(desc_.shape); }
-    /// Texels of one level, in each direction.
+    /// Size of a mip level in texels.
     [[nodiscard]] glm::uvec2 level_size(std::uint32_t level) const;
 
-    /// Replaces one layer of one level. Texels are as stored (halves for 16-bit floats), tightly packed, the
-    /// row at v = 0 first. Throws GlError if the count of bytes differs. Regardless of the host's pixel-store
-    /// state.
+    /// Replaces one layer of one level. Texels are in the stored type (half floats for 16-bit float formats),
+    /// tightly packed, the row at v = 0 first. Independent of the host's pixel-store state. Throws GlError if
+    /// the number of bytes does not match or the level or layer does not exist.
     void upload(std::span<const std::byte> texels, std::uint32_t level = 0, std::uint32_t layer = 0);
-    /// Fills the levels above 0 from level 0.
+    /// Computes mip levels 1 and up from level 0.
     void generate_mips();
 
-    /// One layer of one level as stored, or all components as floats; waits for the GPU. For tests and
+    /// Reads back one layer of one level, in the stored type or as floats; waits for the GPU. For tests and
     /// captures.
     [[nodiscard]] std::vector<std::byte> read(std::uint32_t level = 0, std::uint32_t layer = 0) const;
     [[nodiscard]] std::vector<float> read_floats(std::uint32_t level = 0, std::uint32_t layer = 0) const;

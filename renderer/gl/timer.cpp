@@ -6,7 +6,7 @@ namespace candela::gl {
 namespace {
 
 double milliseconds(std::uint64_t begin, std::uint64_t end) {
-    return end > begin ? static_cast<double>(end - begin) * 1e-6 : 0.0;  // timestamps count nanoseconds
+    return end > begin ? static_cast<double>(end - begin) * 1e-6 : 0.0;  // timestamps are in nanoseconds
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ Query Timer::stamp() {
 }
 
 bool Timer::arrived(const Frame& frame) const {
-    // The GL makes queries of one kind available in the order they were issued: the last one speaks for all.
+    // Results of queries of one type become available in the order of issue: checking the last one is enough.
     GLint available = GL_FALSE;
     device_->gl().GetQueryObjectiv(frame.end.name(), GL_QUERY_RESULT_AVAILABLE, &available);
     return available == GL_TRUE;

@@ -10,37 +10,38 @@
 
 namespace candela::gl {
 
+/// GPU time of one pass in milliseconds; `pass` is the index given to begin_pass.
 struct PassTime {
     std::uint32_t pass = 0;
     double ms = 0.0;
 };
 
-/// GPU times of one frame; `ms` spans its first to its last timestamp, `passes` are in the order of their
-/// begins.
+/// GPU times of one frame in milliseconds. `ms` is from the first to the last timestamp of the frame;
+/// `passes` are in the order in which they began.
 struct FrameTime {
     std::uint64_t frame = 0;
     double ms = 0.0;
     std::vector<PassTime> passes;
 };
 
-/// Measures GPU time by timestamps that are read only once the driver has them: nothing ever waits, but for
-/// `finish`. Frames in flight are as many as the driver lags behind; their queries are used again.
+/// Measures GPU time by timestamp queries. Results are read only when they are available, so that only
+/// `finish` waits. Query objects are reused.
 class Timer {
  public:
     explicit Timer(Device& device) : device_(&device) {}
 
-    /// A frame that has begun but not ended is dropped.
+    /// Starts a frame; `frame` is returned as FrameTime::frame. Drops a frame that has not ended.
     void begin_frame(std::uint64_t frame);
-    /// Passes are timed one after the other, not nested; outside of a frame they are not timed.
+    /// Passes must not be nested. Outside of a frame, passes are not timed.
     void begin_pass(std::uint32_t pass);
     void end_pass();
     void end_frame();
 
-    /// Frames whose times have arrived since the last call, in order.
+    /// Frames whose times have arrived since the last call, oldest first. Does not wait.
     [[nodiscard]] std::vector<FrameTime> collect();
-    /// All frames ended so far that were not collected yet; waits for the GPU.
+    /// All ended frames that were not collected yet, oldest first; waits for the GPU.
     [[nodiscard]] std::vector<FrameTime> finish();
-    /// Frames ended whose times were not collected yet.
+    /// Number of ended frames whose times were not collected yet.
     [[nodiscard]] std::size_t pending() const { return pending_.size(); }
 
  private:

@@ -6,8 +6,10 @@
 
 namespace candela {
 
-/// Node `accumulate`: the mean radiance of all sets of VPLs since set 0, kept from frame to frame. With set k
-/// the mean m becomes m + (x - m) / (k + 1), x being the frame's radiance; with set 0 it is x, bit for bit.
+/// Adds node `accumulate` (raster): the mean radiance of all frames since set 0 of the refinement, kept from
+/// frame to frame. With set k the mean m becomes m + (x - m) / (k + 1), where x is the frame's radiance; with
+/// set 0, and where the history is invalid, it is x bit for bit. Depends on `radiance` and `refinement`.
+/// Returns the mean, rgba32f, `size` pixels.
 [[nodiscard]] TextureHandle add_accumulate(FrameGraph& graph, Gpu& gpu, TextureHandle radiance,
                                            ValueHandle<Refinement> refinement, glm::uvec2 size);
 

@@ -11,7 +11,7 @@
 namespace candela {
 namespace {
 
-constexpr float rebuild_above = 1.5F;  // times the cost at which the topology was made
+constexpr float rebuild_above = 1.5F;  // times the SAH cost at the last build
 
 std::vector<const Primitive*> primitives_of(const SceneLayout& layout) {
     std::vector<const Primitive*> primitives;

@@ -6,8 +6,8 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t tile_size =
-    16;  // pixels along an edge of what a work group shades: shaders/deferred.comp
+// Pixels along an edge of the block that a work group shades: PIXEL_BLOCK in shaders/bindings.glsl.
+constexpr std::uint32_t tile_size = 16;
 
 }  // namespace
 

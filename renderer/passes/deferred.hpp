@@ -8,7 +8,10 @@
 
 namespace candela {
 
-/// Node `deferred`: shades the G-buffer in one dispatch over all lights. Gives radiance, rgba32f.
+/// Adds node `deferred` (compute): shades the G-buffer with the evaluator in shaders/lighting.glsl, by all
+/// lights or by the light list of each pixel's cell. Takes several dispatches if lists are longer than
+/// `most_visited`. Depends on the G-buffer, the lighting and the view. Returns reflected radiance, rgba32f,
+/// `size` pixels, alpha 1 where there is a surface.
 [[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer,
                                          const Lighting& lighting, const FrameView& view, glm::uvec2 size);
 

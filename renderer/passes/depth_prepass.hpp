@@ -7,13 +7,14 @@
 
 namespace candela {
 
-/// The surfaces that the view sees, without what they are made of.
+/// Depth and normals of the visible solid surfaces.
 struct VisibleSurfaces {
-    TextureHandle depth;   ///< depth32f, reversed; 0 where there is nothing
-    TextureHandle normal;  ///< rg32f, octahedral, world space
+    TextureHandle depth;   ///< depth32f, reversed; 0 where there is no surface
+    TextureHandle normal;  ///< rg32f, octahedral encoding, world space
 };
 
-/// Node `depth-prepass`: depth and normals of the solid surfaces.
+/// Adds node `depth-prepass` (raster): depth and normals of the opaque and masked surfaces, without holes of
+/// masks. Depends on meshes, materials and view. Textures of `size` pixels.
 [[nodiscard]] VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                                 const FrameView& view, glm::uvec2 size);
 

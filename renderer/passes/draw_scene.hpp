@@ -9,15 +9,15 @@
 
 namespace candela {
 
-// For the passes that rasterise the scene.
+// Helpers for passes that rasterise the scene.
 
-/// Declares what drawing the meshes reads.
+/// Declares the reads that drawing the meshes needs.
 void read_meshes(Pass& pass, const SceneData& scene);
 
-/// Declares what their surfaces, shaded or masked, read besides.
+/// Declares the additional reads that shaded or masked surfaces need.
 void read_materials(Pass& pass, const SceneData& scene);
 
-/// Whether any of it has changed since the running pass drew last.
+/// Whether any of these inputs has changed since the running pass last ran.
 [[nodiscard]] bool meshes_changed(const Execution& run, const SceneData& scene);
 [[nodiscard]] bool materials_changed(const Execution& run, const SceneData& scene);
 
@@ -25,27 +25,29 @@ void read_materials(Pass& pass, const SceneData& scene);
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);
 void bind_materials(const Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws all opaque surfaces at once with the bound program, which needs the meshes and no materials.
+/// Draws all opaque surfaces in one call with the bound program. Requires bind_meshes; needs no materials.
 void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws the masked surfaces with the bound program, which needs meshes and materials; binds their images.
+/// Draws the masked surfaces with the bound program. Requires bind_meshes and bind_materials; binds the
+/// images.
 void draw_masked_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws one group with the bound program; binds its image and sets which side is the front.
+/// Draws one group with the bound program. Binds its image and sets the winding of its front faces.
 void draw_group(const Gpu& gpu, const SceneLayout::Group& group);
 
-/// Clears the bound targets, colour to 0 and reversed depth to "nothing", and turns the depth test on.
+/// Clears the bound targets, colour to 0 and depth to 0 (reversed: infinitely far), and turns the depth test
+/// on.
 void begin_surfaces(const Gpu& gpu);
 
-/// For targets whose depth a pre-pass has filled: clears colour, and lets only those surfaces through that
-/// are seen.
+/// For targets whose depth a pre-pass has filled: clears colour, and tests for equal depth without writing
+/// it, so that only visible surfaces are shaded.
 void begin_visible_surfaces(const Gpu& gpu);
 
-/// For surfaces that are drawn once more: adds to the colour of those that are seen.
+/// For drawing the same surfaces again: adds to the colour of the visible ones. Alpha is replaced, not added.
 void begin_adding(const Gpu& gpu);
 
-/// A program for opaque surfaces, and the same for masked ones, which drops fragments in holes. Owned by the
-/// Gpu.
+/// A program for opaque surfaces, and its variant for masked surfaces, which discards fragments in holes.
+/// Owned by the Gpu.
 struct SurfacePrograms {
     const gl::Program* opaque;
     const gl::Program* masked;
@@ -58,12 +60,13 @@ struct SurfacePrograms {
     }
 };
 
-/// Programs of this fragment stage over meshes, with these words defined.
+/// Both variants of a program from mesh_surface.vert and `fragment_stage`, with the names in `defined`
+/// defined.
 [[nodiscard]] SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
                                                std::vector<std::string> defined = {});
 
-/// Draws all opaque and masked surfaces with their materials; the backs of single-sided ones are culled.
-/// Binds what it needs.
+/// Draws all opaque and masked surfaces, grouped by image. Culls the back faces of single-sided surfaces.
+/// Binds meshes, materials and images.
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs);
 
 }  // namespace candela

@@ -7,14 +7,16 @@
 
 namespace candela {
 
-/// The surfaces that the view sees.
+/// Material, normal and depth of the visible solid surfaces.
 struct Gbuffer {
     TextureHandle albedo;  ///< rgba16f, linear
-    TextureHandle normal;  ///< rg32f, octahedral, world space
-    TextureHandle depth;   ///< depth32f, reversed; 0 where there is nothing
+    TextureHandle normal;  ///< rg32f, octahedral encoding, world space
+    TextureHandle depth;   ///< depth32f, reversed; 0 where there is no surface
 };
 
-/// Node `gbuffer`.
+/// Adds node `gbuffer` (raster): the opaque and masked surfaces, without holes of masks. Depends on meshes,
+/// materials and view. Textures of `size` pixels. The octahedral encoding of normals is that of Cigolle et
+/// al. (2014): shaders/maths.glsl.
 [[nodiscard]] Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
                                   glm::uvec2 size);
 

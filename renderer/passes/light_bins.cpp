@@ -8,14 +8,14 @@
 namespace candela {
 namespace {
 
-/// A sphere around all that a light reaches, in view space.
+/// Bounding sphere of a light's reach, in view space.
 struct Reach {
     glm::vec3 centre;
     float radius;
 };
 
-/// Spots: the sphere around a cone with its spherical cap, which for narrow cones is smaller than the light's
-/// own.
+/// For narrow spots (less than 45 degrees), the bounding sphere of the cone with its spherical cap: it is
+/// smaller than the sphere of radius `range` around the light.
 Reach reach_of(const gpu::Light& light, const CameraView& view) {
     glm::vec3 centre = light.position;
     float radius = light.range;
@@ -24,11 +24,11 @@ Reach reach_of(const gpu::Light& light, const CameraView& view) {
         centre += light.direction * radius;
     }
     const glm::vec3 in_view(view.view_from_world * glm::vec4(centre, 1.0F));
-    // Widened by what rounding may move it.
+    // Enlarged by a bound on the rounding error of the centre.
     return {in_view, radius * 1.0001F + 1e-6F * (glm::length(in_view) + glm::length(view.eye))};
 }
 
-/// Cells [lower, upper) in x, y and z; empty where they meet.
+/// Cells [lower, upper) in x, y and z; empty where they are equal.
 struct CellRange {
     glm::uvec3 lower{0};
     glm::uvec3 upper{0};
@@ -39,7 +39,7 @@ struct CellRange {
     }
 };
 
-/// Tiles between two window coordinates, a pixel of slack on either side.
+/// Range of tiles between two window coordinates in pixels, enlarged by a pixel on each side.
 void to_tiles(float from, float to, std::uint32_t tile_size, std::uint32_t tiles, std::uint32_t& lower,
               std::uint32_t& upper) {
     const auto size = static_cast<float>(tile_size);
@@ -49,7 +49,7 @@ void to_tiles(float from, float to, std::uint32_t tile_size, std::uint32_t tiles
     upper = std::max(lower, upper);
 }
 
-/// Slice in which a depth lies; every depth lies in one.
+/// Slice that contains a depth in metres. Depths before the first or behind the last slice are clamped to it.
 std::uint32_t slice_of(const CellGrid& grid, float depth) {
     if (!(depth > grid.first_depth)) {
         return 0;
@@ -58,7 +58,7 @@ std::uint32_t slice_of(const CellGrid& grid, float depth) {
     return static_cast<std::uint32_t>(std::min(slice, static_cast<float>(grid.slices - 1)));
 }
 
-/// The cells that the box around a sphere touches.
+/// The cells that the bounding box of a sphere touches.
 CellRange touched(const Reach& reach, const CameraView& view, const CellGrid& grid) {
     CellRange all{glm::uvec3(0), {grid.tiles, grid.slices}};
     const float depth = -reach.centre.z;
@@ -73,21 +73,20 @@ CellRange touched(const Reach& reach, const CameraView& view, const CellGrid& gr
 
     CellRange range = all;
     if (grid.slices > 1) {
-        // A slice of slack on either side: shaders round the logarithm their own way.
+        // One more slice on each side: shaders round the logarithm differently.
         range.lower.z = slice_of(grid, nearest);
         range.lower.z -= range.lower.z > 0 ? 1 : 0;
         range.upper.z = std::min(slice_of(grid, farthest) + 2, grid.slices);
     }
     if (nearest <= 0.0F && !view.orthographic) {
         return range;
-    }  // around the eye's plane: all of the screen
+    }  // the sphere crosses the eye's plane: the whole screen
 
     const glm::mat4& clip = view.clip_from_view;
     for (int axis = 0; axis < 2; ++axis) {
         const float low = reach.centre[axis] - reach.radius;
         const float high = reach.centre[axis] + reach.radius;
-        // Window coordinate of x at depth d: scale·x / d + shift in perspective, scale·x + shift
-        // orthographic.
+        // NDC of x at depth d: scale·x / d + shift in perspective, scale·x + shift in an orthographic view.
         float from = clip[axis][axis] * low;
         float to = clip[axis][axis] * high;
         float shift = clip[3][axis];
@@ -115,9 +114,9 @@ void each_cell(const CellRange& range, const CellGrid& grid, Visit visit) {
     }
 }
 
-/// Which lights every cell visits: those without a range, and the widest of the rest until the others'
-/// entries fit. However wide a light is, an entry in a list costs less than the pixels that it may be found
-/// not to reach.
+/// Chooses the lights that every cell visits: lights without a range and, until the entries of the others fit
+/// into `most_list_entries`, the lights with the most cells. Wide lights stay in lists as long as possible:
+/// one list entry costs less than evaluating a light at pixels that it does not reach.
 std::vector<bool> choose_global(const LightTable& lights, const std::vector<CellRange>& ranges) {
     std::vector<bool> global(ranges.size(), false);
     std::vector<std::uint32_t> listed;
@@ -162,7 +161,8 @@ LightBins bin_lights(const LightTable& lights, const CameraView& view, const Cel
     }
     bins.global_count = static_cast<std::uint32_t>(bins.entries.size());
 
-    // Counting sort by cell: counts, their running sum, then each light into the next place of its cells.
+    // Counting sort by cell: count, prefix sum, then write each light to the next position of each of its
+    // cells.
     std::vector<std::uint32_t> next(grid.cells() + 1, 0);
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
         if (!global[i]) {

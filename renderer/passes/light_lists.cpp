@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-constexpr std::uint32_t cells_a_group = 64;  // as in shaders/light_cells.glsl
+constexpr std::uint32_t cells_a_group = 64;  // as in shaders/light_cull.glsl
 
 gpu::CellConstants cell_constants(const CellGrid& grid) {
     return {.tiles = grid.tiles,
@@ -20,7 +20,7 @@ gpu::CellConstants cell_constants(const CellGrid& grid) {
             .depth_ratio = grid.depth_ratio};
 }
 
-/// `declare(Pass&)` states what `make_grid(Execution&)` reads.
+/// `declare(Pass&)` declares the inputs of `make_grid(Execution&)`.
 template <class Declare, class MakeGrid>
 LightGrid add_light_grid(FrameGraph& graph, const Gpu& gpu, Declare declare, MakeGrid make_grid) {
     return graph.add("light-grid", [&](Pass& pass) {
@@ -46,8 +46,8 @@ void bind_light_grid(const Gpu& gpu, Execution& run, const LightGrid& grid) {
     gpu.bind_uniforms(UNIFORMS_CELLS, run.object(grid.constants));
 }
 
-/// Node that sorts the lights into cells on the CPU and uploads them. `declare(Pass&)` states what
-/// `is_wanted(Execution&)` reads, which tells whether anybody will look at the lists.
+/// Adds node `NAME-bins` (CPU): sorts the lights into cells and uploads them. `declare(Pass&)` declares the
+/// inputs of `is_wanted(Execution&)`; if that returns false, the lists stay empty.
 template <class Declare, class IsWanted>
 BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
                           ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
@@ -84,7 +84,7 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         graph, gpu, name, lights, camera, cells, [](Pass&) {}, [](Execution&) { return true; });
 }
 
-/// As many dispatches as it takes for none to walk through too much of a list: see `most_asked`.
+/// Culls in as many dispatches as needed to bound the loop of each invocation: see `most_asked`.
 void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const LightBins& bins) {
     constexpr std::uint32_t most = 32768;
     std::uint32_t longest = 0;
@@ -102,7 +102,7 @@ void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const
     }
 }
 
-/// Node that culls the bins in place: each cell keeps, in order, the lights that reach it.
+/// Adds node `NAME` (compute): culls the bins in place. Each cell keeps, in order, the lights that reach it.
 LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
                        LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
                        const FrameView& view, const LightGrid& grid,
@@ -186,7 +186,7 @@ LightGrid add_cluster_grid(FrameGraph& graph, const Gpu& gpu, ValueHandle<Camera
         const SceneMetrics& scene = run.value(metrics);
         const float distance = glm::length(scene.centre() - run.value(camera).eye);
         const float farthest = std::max(distance + scene.radius(), 1e-6F);
-        // Nearer than a thousandth of the scene one slice is enough.
+        // One slice is enough for depths below a thousandth of the farthest.
         const float nearest = std::max(distance - scene.radius(), 1e-3F * farthest);
         return cluster_grid(size, settings, nearest, farthest);
     };

@@ -7,25 +7,26 @@
 
 namespace candela {
 
-/// Which lights a pixel visits.
+/// Which lights a pixel evaluates: all, those of its screen tile, or those of its cluster.
 enum class LightList : std::uint8_t { all, tile, cluster };
 
-/// The cells that lights are listed by.
+/// The cells of the light lists, for the CPU and for shaders.
 struct LightGrid {
     ValueHandle<CellGrid> cells;
     BufferHandle<gpu::CellConstants> constants;
 };
 
-/// Node `light-grid`: tiles of pixels.
+/// Adds node `light-grid` (CPU): a grid of screen tiles. Depends on no other node.
 [[nodiscard]] LightGrid add_tile_grid(FrameGraph& graph, const Gpu& gpu, glm::uvec2 size,
                                       const ListSettings& settings);
 
-/// Node `light-grid`: tiles of pixels, cut into slices of depth.
+/// Adds node `light-grid` (CPU): a grid of clusters, whose slices cover the depths of the scene's bounding
+/// sphere. Depends on the camera and the scene's metrics.
 [[nodiscard]] LightGrid add_cluster_grid(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
                                          ValueHandle<SceneMetrics> metrics, glm::uvec2 size,
                                          const ListSettings& settings);
 
-/// Light lists of the cells of a view, culled to what truly reaches them.
+/// Light lists by cell, culled by exact tests.
 struct LightLists {
     LightList kind = LightList::tile;
     LightGrid grid;
@@ -33,29 +34,34 @@ struct LightLists {
     ValueHandle<LightBins> bins;
     BufferHandle<std::uint32_t> first;  ///< by cell: where its list begins
     BufferHandle<std::uint32_t> count;  ///< by cell: its length
-    BufferHandle<std::uint32_t>
-        entries;  ///< indices of lights, ascending within a list; the global ones come first
+    /// Indices of lights: global lights, then list after list; ascending within each.
+    BufferHandle<std::uint32_t> entries;
 };
 
-/// Node `light-tiles`. With a depth texture, tiles are bound by the nearest and the farthest surface in them,
-/// and by a mask of 32 slices between the two (Harada et al., "A 2.5D Culling for Forward+", 2012), which the
-/// node `tile-depths` finds.
+/// Adds nodes `light-tiles-bins` (CPU) and `light-tiles` (compute): light lists of screen tiles (tiled
+/// shading: Olsson and Assarsson, "Tiled Shading", 2011). With a depth texture, node `tile-depths` (compute)
+/// finds the nearest and the farthest surface of each tile and a mask of the 32 depth slices between them
+/// that contain surfaces, and lists are culled by both (Harada et al., "A 2.5D Culling for Forward+", 2012).
+/// They depend on lights, view, grid and depth.
 [[nodiscard]] LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                                          BufferHandle<gpu::Light> light_buffer, const FrameView& view,
                                          const LightGrid& grid, std::optional<TextureHandle> depth);
 
-/// Node `blended-light-tiles`: tiles without bounds in depth, for the blended surfaces in front of what
-/// bounds the others. Its lists are empty while the scene has none.
+/// Adds nodes `blended-light-tiles-bins` (CPU) and `blended-light-tiles` (compute): light lists of tiles
+/// without depth bounds, for blended surfaces, which lie in front of the surfaces that bound the other lists.
+/// They depend on lights, view, grid and layout. The lists are empty while the scene has no blended surfaces.
 [[nodiscard]] LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                                                  BufferHandle<gpu::Light> light_buffer, const FrameView& view,
                                                  const LightGrid& grid, ValueHandle<SceneLayout> layout);
 
-/// Node `light-clusters`, of clusters.
+/// Adds nodes `light-clusters-bins` (CPU) and `light-clusters` (compute): light lists of clusters (Olsson et
+/// al., "Clustered Deferred and Forward Shading", 2012). They depend on lights, view and grid.
 [[nodiscard]] LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
                                             BufferHandle<gpu::Light> light_buffer, const FrameView& view,
                                             const LightGrid& grid);
 
-/// For a pass that shades by lists: declares its reads, and binds them and sets its uniforms when it runs.
+/// For a pass that shades with light lists: `read_light_lists` declares its reads; `bind_light_lists` binds
+/// them and sets the uniforms of shaders/light_list.glsl while the pass runs.
 void read_light_lists(Pass& pass, const LightLists& lists);
 void bind_light_lists(const Gpu& gpu, Execution& run, const gl::Program& program, const LightLists& lists);
 

@@ -14,7 +14,8 @@ std::uint32_t shown_lights(const Execution& run, const Lighting& lighting) {
     return lighting.show == Show::indirect ? 0U : static_cast<std::uint32_t>(lights);
 }
 
-/// Odd, as paths often have an even number of VPLs, whose bounces are to be asked alike.
+/// Stride at which VPLs are evaluated if they are too many. Odd, so that all bounces are evaluated equally
+/// often: paths often have an even number of VPLs.
 std::uint32_t vpl_stride(std::uint32_t vpl_count, std::uint32_t most) {
     return vpl_count <= most ? 1 : (vpl_count + most - 1) / most | 1U;
 }

@@ -15,43 +15,49 @@
 
 namespace candela {
 
-/// Which part of the light goes into the picture.
+/// Which part of the light the picture shows.
 enum class Show : std::uint8_t { total, direct, indirect };
 
-/// The lights on the GPU, with the shadows that each has.
+/// The lights on the GPU, in the order of the LightTable, and their shadow maps.
 struct LightBuffers {
     BufferHandle<gpu::Light> lights;
     BufferHandle<gpu::Shadow> shadows;
 };
 
-/// Node `light-upload`.
+/// Adds node `light-upload` (CPU, then upload): the lights, each with the index of its shadow. Depends on the
+/// lights and the shadow plan.
 [[nodiscard]] LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
                                             ValueHandle<ShadowPlan> plan);
 
-/// All that the evaluator in shaders/lighting.glsl reads.
+/// Everything that the evaluator in shaders/lighting.glsl reads.
 struct Lighting {
     ValueHandle<LightTable> lights;
     LightBuffers buffers;
     ShadowMaps shadows;
-    std::optional<VplLight> vpls{};  ///< that every surface asks; none: no indirect light, or gathered before
-    std::optional<TextureHandle> indirect{};  ///< what was gathered before: see add_vpl_reconstruct
-    std::optional<LightLists> lists{};        ///< none: every surface visits every light
-    std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();  ///< a surface asks no more of them
+    /// VPLs that are evaluated while shading; none: no indirect light, or it was gathered before.
+    std::optional<VplLight> vpls{};
+    std::optional<TextureHandle> indirect{};  ///< irradiance gathered before: see GatheredVpls, IndirectLight
+    std::optional<LightLists> lists{};        ///< none: every surface evaluates every light
+    /// Most VPLs that a surface evaluates. If there are more, every k-th is evaluated and weighted by k.
+    std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();
     Show show = Show::total;
 };
 
-/// How many entries of its light list a surface may visit in one dispatch or draw: see `most_asked`. Four
-/// surfaces share an invocation.
+/// Most entries of its light list that a surface evaluates in one dispatch or draw. An invocation shades up
+/// to four surfaces, so this keeps its loops within the limit described at `most_asked`.
 inline constexpr std::uint32_t most_visited = 8192;
 
-/// Words to define in shaders that include lighting.glsl.
+/// Names to define in shaders that include lighting.glsl.
 [[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
 
-/// For a pass that shades: declares its reads, and binds them and sets its uniforms when it runs.
+/// For a pass that shades: `read_lighting` declares its reads; `bind_lighting` binds them and sets the
+/// uniforms of shaders/lighting.glsl while the pass runs.
 void read_lighting(Pass& pass, const Lighting& lighting);
 void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, const Lighting& lighting);
 
-/// In how many parts a pass dispatches or draws, each of which adds the light of `most_visited` lights.
+/// Number of dispatches or draws that a shading pass needs, at least 1. Each adds the light of up to
+/// `most_visited` entries of the light lists; the first one also adds the indirect light.
+/// `begin_lighting_part` sets the uniforms of a part.
 [[nodiscard]] std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting);
 void begin_lighting_part(const gl::Program& program, std::uint32_t part);
 

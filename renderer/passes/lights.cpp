@@ -22,7 +22,7 @@ glm::vec3 position_of(const glm::mat4& world) {
     return glm::vec3(world[3]);
 }
 
-/// The way the light travels: its local -Z.
+/// Direction in which the light travels: its local -Z axis.
 glm::vec3 direction_of(const glm::mat4& world) {
     const glm::vec3 axis(world[2]);
     const float length = glm::length(axis);
@@ -40,12 +40,13 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
             .casts_shadow = light.casts_shadow};
 }
 
-/// Inside the inner cone the intensity is full; from there to the outer one it falls with the square of a
-/// linear ramp in the cosine (KHR_lights_punctual). Its integral over the sphere is 2π ((1 - cᵢ) + (cᵢ - cₒ)
-/// / 3).
+/// The intensity is constant inside the inner cone. From there to the outer cone it falls with the square of
+/// a linear ramp in the cosine (KHR_lights_punctual). Its integral over the sphere is
+/// 2π ((1 - cᵢ) + (cᵢ - cₒ) / 3), with the cosines cᵢ and cₒ of the inner and outer cone.
 LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::mat4& world) {
     const float cos_outer = std::cos(light.outer_cone);
-    // A hard edge keeps a ramp of a thousandth of the cone, as the extension suggests.
+    // The ramp is at least a thousandth of the cone, which avoids a division by zero as the extension
+    // suggests.
     const float ramp = std::max(std::cos(light.inner_cone) - cos_outer, 1e-3F * (1.0F - cos_outer));
     const float cos_inner = cos_outer + ramp;
     const glm::vec3 intensity = light.colour * light.intensity;
@@ -62,7 +63,8 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
             .casts_shadow = light.casts_shadow};
 }
 
-/// The footprint is the rectangle around the scene's box as the light sees it, put in front of the scene.
+/// The footprint is the bounding rectangle of the scene's box as seen by the light, placed in front of the
+/// scene.
 LightTable::Entry directional_entry(Entity entity, const DirectionalLight& light, const glm::mat4& world,
                                     const SceneMetrics& metrics) {
     const glm::vec3 direction = direction_of(world);
@@ -72,7 +74,7 @@ LightTable::Entry directional_entry(Entity entity, const DirectionalLight& light
     const glm::vec2 shape(half_extent(tangent), half_extent(bitangent));
     const glm::vec3 illuminance = light.colour * light.illuminance;
     return {.entity = entity,
-            // A hundredth of slack keeps the scene's foremost points from lying in the footprint itself.
+            // One percent of slack, so that the scene's foremost points do not lie in the footprint.
             .light = {.position = metrics.centre() - direction * (1.01F * half_extent(direction)),
                       .kind = gpu::LightKind::directional,
                       .direction = direction,

@@ -9,13 +9,14 @@
 
 namespace candela {
 
-/// The lights of the world as shading sees them, their shadows still open.
+/// The lights of the world in the form that shaders read. `gpu::Light::shadow` is not yet set:
+/// add_light_upload does that.
 struct LightTable {
     struct Entry {
         Entity entity;
         gpu::Light light;
-        glm::vec3 flux{
-            0.0F};  ///< emitted, lm or W as the intensity has it; directional: through its footprint
+        /// Emitted, in lm for intensities in cd (or W for W/sr). Directional: through its footprint.
+        glm::vec3 flux{0.0F};
         bool casts_shadow = true;
         bool operator==(const Entry&) const = default;
     };
@@ -23,12 +24,13 @@ struct LightTable {
     bool operator==(const LightTable&) const = default;
 };
 
-/// Node `lights` (CPU): gathers the light components, points, then spots, then directional ones. Lights that
-/// emit nothing are left out.
+/// Adds node `lights` (CPU): gathers the light components: point lights, then spot lights, then directional
+/// lights. Lights that emit nothing are left out. Depends on the light components, Transform and the scene's
+/// metrics.
 [[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics);
 
-/// Orthonormal basis around a unit vector, as shaders/maths.glsl has it: Duff et al., "Building an
-/// Orthonormal Basis, Revisited" (2017), eq. 3.
+/// Two unit vectors that form an orthonormal basis with the unit vector n, as in shaders/maths.glsl: Duff et
+/// al., "Building an Orthonormal Basis, Revisited" (2017), eq. 3.
 struct Basis {
     glm::vec3 tangent;
     glm::vec3 bitangent;

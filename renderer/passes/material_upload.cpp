@@ -12,7 +12,7 @@
 namespace candela {
 namespace {
 
-// Texels along the longer side of an image as traced rays see it: a diffuse bounce blurs what is finer.
+// Most texels along the longer side of an image for traced rays: a diffuse bounce blurs finer detail.
 constexpr std::uint32_t traced_image_size = 256;
 
 GLint wrap_mode(Wrap wrap) {
@@ -43,8 +43,8 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
     return std::make_shared<const MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
 }
 
-/// The image scaled down, if need be, to what tracing reads. Alpha is linear and weights nothing: most
-/// materials ignore it.
+/// Scales an image down to `traced_image_size` if it is larger. Alpha is filtered linearly and does not
+/// weight the colours, because most materials ignore it.
 Image reduce(const Image& image) {
     const std::uint32_t longer = std::max(image.width, image.height);
     if (longer <= traced_image_size) {
@@ -78,7 +78,7 @@ bool is_masked(const Material& material) {
     return material.alpha_mode == AlphaMode::mask;
 }
 
-/// IEC 61966-2-1.
+/// sRGB decoding: IEC 61966-2-1.
 float srgb_decode(std::uint8_t encoded) {
     const float c = static_cast<float>(encoded) / 255.0F;
     return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);

@@ -9,42 +9,45 @@
 
 namespace candela {
 
-/// Averaging of frames while nothing moves, each with VPLs, and with a sample of the pixels, of its own.
+/// Refinement: while nothing moves, frames are averaged. Each has its own sample position in the pixels and
+/// its own VPLs on paths; surfels change every frames_a_surfel_set frames.
 struct RefinementSettings {
     bool enabled = false;
-    std::uint32_t frames = 1024;  ///< after so many the picture stands; without VPLs after 64 at most
+    std::uint32_t frames = 1024;  ///< frames to average, at least 1; without VPLs at most 64 are averaged
     bool operator==(const RefinementSettings&) const = default;
 };
 
-/// What the host tells of time.
+/// Set by the renderer before each frame to control the refinement.
 struct RefinementClock {
-    std::uint64_t epoch = 0;  ///< another one than before: the mean begins anew
-    std::uint64_t round = 0;  ///< another one than before: another set of VPLs is due
+    std::uint64_t epoch = 0;  ///< a new value starts the mean over
+    std::uint64_t round = 0;  ///< a new value asks for the next set
     bool operator==(const RefinementClock&) const = default;
 };
 
-/// Frames in the mean that share a set of surfels, which costs some times as much as a frame does; until the
-/// first next one is due a host that moves something waits for none.
+/// Averaged frames that share one set of surfels, because a new set takes several times as long as a frame.
+/// Moving something during the first frames of a mean never has to wait for a new set.
 inline constexpr std::uint32_t frames_a_surfel_set = 8;
 
-/// Which set of VPLs a frame is lit by. Set 0 is that of a frame without refinement; set k has the seed
-/// `VplSettings::seed` + k, of surfels + k / frames_a_surfel_set, and is seen at sample k of the pixels: see
-/// pixel_sample. When something moves, paths fall back to set 0. Surfels go on from the set that they are, so
-/// that none of them has to be looked at anew.
+/// The samples that a frame is rendered with. Set 0 is that of a frame without refinement. Set k is seen at
+/// sample k of the pixels: see pixel_sample. VPLs on paths then have the seed VplSettings::seed + k; surfels
+/// have the seed VplSettings::seed + surfel_set. Any movement returns to set 0 but keeps surfel_set, so that
+/// the visibility between surfels remains valid.
 struct Refinement {
-    std::uint32_t set = 0;         ///< so many sets are in the mean already
-    std::uint32_t surfel_set = 0;  ///< of surfels: where something moves they stay what they are
-    std::uint64_t epoch = 0;
+    std::uint32_t set = 0;         ///< k; also the number of frames in the mean before this one
+    std::uint32_t surfel_set = 0;  ///< advances by 1 every frames_a_surfel_set sets of a mean
+    std::uint64_t epoch = 0;       ///< RefinementClock::epoch
     bool operator==(const Refinement&) const = default;
 };
 
-/// Node `refinement` (CPU): goes on to the next set in each round in which the scene, its lights and the view
-/// are what they were, and else back to set 0 at once; surfels stay the set that they are.
+/// Adds node `refinement` (CPU): advances to the next set if the scene, the lights and the view are
+/// unchanged, and otherwise returns to set 0. Depends on the clock, the scene's layout and placement, the
+/// lights and the view, and on its own last result.
 [[nodiscard]] ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
                                                      const SceneData& scene, ValueHandle<LightTable> lights,
                                                      ValueHandle<CameraView> view);
 
-/// Node `refined-view` (CPU): the requested view, its samples moved to where this set of VPLs is seen.
+/// Adds node `refined-view` (CPU): the requested view with the samples moved to pixel_sample of the current
+/// set. Depends on the request, Camera, Transform and the refinement.
 [[nodiscard]] ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,
                                                        ValueHandle<Refinement> refinement);
 

@@ -17,7 +17,7 @@ Box placed(const Box& box, const glm::mat4& world) {
     return around;
 }
 
-/// Around what stops light of the items that moved, as they were and as they are.
+/// World-space boxes around the solid drawables of the items that moved, at their old and new places.
 std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& before,
                              const ScenePlacement& now) {
     std::vector<Box> boxes;
@@ -32,7 +32,7 @@ std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& be
     return boxes;
 }
 
-/// One box around all where they are too many.
+/// The boxes, or one box around all of them if there are more than `most`.
 std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
     if (boxes.size() <= most) {
         return boxes;

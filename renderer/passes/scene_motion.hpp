@@ -11,26 +11,29 @@
 
 namespace candela {
 
-/// What has moved since the frame in which something moved before.
+/// What moved in the last frame in which anything moved. Such a frame is called a step.
 struct SceneMotion {
-    std::uint64_t step = 0;   ///< counts the frames in which something moved
-    bool everything = true;   ///< meshes came, went or changed; `boxes` is empty then
-    std::vector<Box> boxes;   ///< world space, around what moved, as it was and as it is
-    std::uint64_t epoch = 0;  ///< of the host's: see add_scene_motion
-    SceneGeometry geometry;   ///< at the end of the step
-    ScenePlacement placement;
+    std::uint64_t step = 0;    ///< counts the steps
+    bool everything = true;    ///< anything may have changed, such as meshes; `boxes` is empty then
+    std::vector<Box> boxes;    ///< world space, around what moved, at its old and new place
+    std::uint64_t epoch = 0;   ///< the input of the same name: see add_scene_motion
+    SceneGeometry geometry;    ///< after the step
+    ScenePlacement placement;  ///< after the step
     bool operator==(const SceneMotion&) const = default;
 };
 
-/// Node `scene-motion` (CPU). Another `epoch` than before: everything is as if it had changed.
+/// Adds node `scene-motion` (CPU): compares the scene with that of its last run. A new value of `epoch` marks
+/// everything as changed. Depends on the scene's layout and placement, `epoch`, and its own last result.
 [[nodiscard]] ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene,
                                                         ValueHandle<std::uint64_t> epoch);
 
-/// Outside of which boxes all is as it was after the step `done`: at most MOST_CHANGED_BOXES of them, none
-/// where nothing moved. Nothing: anything may have changed.
+/// World-space boxes that enclose everything that changed after step number `done`: at most
+/// MOST_CHANGED_BOXES, none if nothing moved. Returns nullopt if anything may have changed, also if more than
+/// one step has followed.
 [[nodiscard]] std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::uint64_t done);
 
-/// Sets the uniforms of shaders/changed_boxes.glsl; `slack` metres are added on all sides.
+/// Sets the uniforms of shaders/changed_boxes.glsl. Each box is enlarged by `slack` metres on all sides.
+/// `boxes`: result of changed_boxes.
 void set_changed_boxes(const gl::Program& program, const std::optional<std::vector<Box>>& boxes, float slack);
 
 }  // namespace candela

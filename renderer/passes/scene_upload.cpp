@@ -51,8 +51,7 @@ Box bounds_of(const Primitive& primitive) {
     return bounds;
 }
 
-/// Indices of the drawables in drawing order: grouped by alpha mode, image, sidedness and winding, otherwise
-/// as they were.
+/// Indices 0 .. count - 1, sorted by `key`; equal keys keep their order.
 template <class Key>
 std::vector<std::uint32_t> stable_order(std::size_t count, Key key) {
     std::vector<std::uint32_t> order(count);
@@ -62,7 +61,7 @@ std::vector<std::uint32_t> stable_order(std::size_t count, Key key) {
     return order;
 }
 
-/// The meshes of a scene as the vertex, index and draw buffers hold them.
+/// The content of the vertex, index and draw buffers.
 struct PackedMeshes {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
@@ -118,7 +117,7 @@ bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
            a.double_sided == b.double_sided && a.mirrored == b.mirrored;
 }
 
-/// Of drawables in drawing order, how many have at most this alpha mode.
+/// Number of drawables whose alpha mode is at most `last`, in the order of the enum.
 std::uint32_t count_until(const std::vector<SceneLayout::Drawable>& drawables, AlphaMode last) {
     return static_cast<std::uint32_t>(std::ranges::count_if(
         drawables, [&](const auto& drawable) { return drawable.primitive->material->alpha_mode <= last; }));

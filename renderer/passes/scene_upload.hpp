@@ -13,40 +13,40 @@
 
 namespace candela {
 
-/// What is placed in the world, in the order of the world's view.
+/// The meshes of the world: one item per MeshInstance, in the order of the world's view.
 struct SceneGeometry {
     struct Item {
         std::shared_ptr<const Mesh> mesh;
-        bool mirrored = false;  ///< the placement turns its triangles inside out
+        bool mirrored = false;  ///< the world matrix reverses the winding of its triangles
         bool operator==(const Item&) const = default;
     };
     std::vector<Item> items;
     bool operator==(const SceneGeometry&) const = default;
 };
 
-/// Where each item of the geometry is: local to world, metres.
+/// Local-to-world matrix of each item, by index; metres.
 struct ScenePlacement {
     std::vector<glm::mat4> world;
     bool operator==(const ScenePlacement&) const = default;
 };
 
-/// A base-colour image on the GPU, with its mip maps and wrap modes.
+/// A base-colour image on the GPU, with mip levels; the sampler has its wrap modes.
 struct MaterialTexture {
     gl::Texture texture;
     gl::Sampler sampler;
 };
 
-/// How the geometry lies in the buffers.
+/// What the GPU buffers of the scene contain.
 struct SceneLayout {
-    /// One primitive of one item: one draw, one record of the instance buffer.
+    /// One primitive of one item. It has one draw command and one record in the instance buffer.
     struct Drawable {
         std::uint32_t item;
         const Primitive* primitive;  ///< kept alive by `geometry`
         std::uint32_t material;      ///< index into `materials`
-        Box bounds;                  ///< of the primitive, local space
+        Box bounds;                  ///< bounding box of the primitive, local space
     };
-    /// Consecutive draws that differ in nothing but their geometry. Blended draws have a group each, so that
-    /// they can be sorted.
+    /// Consecutive draws that share all render state. Each blended draw has its own group, so that they can
+    /// be sorted.
     struct Group {
         std::uint32_t first_draw;
         std::uint32_t draw_count;
@@ -54,15 +54,15 @@ struct SceneLayout {
         std::shared_ptr<const MaterialTexture> texture;  ///< null: none
         bool double_sided;
         bool mirrored;
-        glm::vec3 centre{0.0F};  ///< of the bounds of a blended draw, local space
+        glm::vec3 centre{0.0F};  ///< blended draws: centre of the bounding box, local space
     };
     SceneGeometry geometry;
-    std::vector<Drawable> drawables;      ///< the opaque ones first, then the masked, then the blended ones
-    std::vector<gpu::DrawCommand> draws;  ///< of the drawables
-    std::vector<Group> groups;            ///< in the order of the drawables
+    std::vector<Drawable> drawables;      ///< in drawing order: opaque, then masked, then blended
+    std::vector<gpu::DrawCommand> draws;  ///< by drawable
+    std::vector<Group> groups;            ///< in drawing order
     std::vector<std::shared_ptr<const Material>> materials;
-    std::uint32_t opaque_count = 0;  ///< of drawables
-    std::uint32_t solid_count = 0;   ///< of drawables, opaque and masked: those that stop light
+    std::uint32_t opaque_count = 0;  ///< number of opaque drawables
+    std::uint32_t solid_count = 0;   ///< number of opaque and masked drawables: they stop light
 
     /// The groups of one alpha mode.
     [[nodiscard]] std::span<const Group> groups_of(AlphaMode alpha) const;
@@ -70,22 +70,23 @@ struct SceneLayout {
     [[nodiscard]] std::span<const Drawable> solids() const { return std::span(drawables).first(solid_count); }
 };
 
-/// The scene on the GPU.
+/// The scene on the GPU, with its description on the CPU.
 struct SceneData {
     ValueHandle<ScenePlacement> placement;
     ValueHandle<SceneLayout> layout;
     BufferHandle<Vertex> vertices;
-    BufferHandle<std::uint32_t> indices;
-    BufferHandle<std::uint32_t>
-        instance_ids;  ///< 0, 1, 2, ...: fetched per instance, from the draw's base instance on
-    BufferHandle<gpu::DrawCommand> draws;
+    BufferHandle<std::uint32_t> indices;  ///< relative to the draw's base vertex
+    /// 0, 1, 2, ...: a per-instance vertex attribute, which gives shaders the draw's base instance.
+    BufferHandle<std::uint32_t> instance_ids;
+    BufferHandle<gpu::DrawCommand> draws;  ///< by drawable
     BufferHandle<gpu::Material> materials;
-    BufferHandle<std::uint32_t> texels;  ///< reduced base-colour images, for tracing
-    BufferHandle<gpu::Instance> instances;
+    BufferHandle<std::uint32_t> texels;     ///< reduced base-colour images, for tracing
+    BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
 };
 
-/// Nodes `scene-gather` (CPU: what is where), `scene-upload` (meshes and materials, when what is there
-/// changes) and `instance-upload` (matrices, when something moves).
+/// Adds nodes `scene-gather` (CPU: items and their world matrices, from MeshInstance and Transform),
+/// `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes) and
+/// `instance-upload` (CPU, then upload: world matrices, when something moves).
 [[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
 
 }  // namespace candela

@@ -18,14 +18,16 @@ namespace {
 
 constexpr std::uint32_t cube_faces = 6;
 constexpr std::uint32_t most_layers = 2048;  // of an array texture, on every driver (OpenGL 4.5, table 23.53)
-constexpr float slope_offset = 1.0F;         // texels: shaders/shadow.glsl counts on it
+constexpr float slope_offset = 1.0F;         // texels: shaders/shadow.glsl relies on it
 constexpr std::uint64_t bytes_per_depth = 4;
-// Beyond this half angle a flat map wastes most of its texels on the rim.
+// Widest half angle of a spot light with a flat map. Beyond it, most texels would cover the rim of the cone.
 constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
-// Perspective depth starts here, relative to the scene's radius; nearer geometry is clamped to it, not cut.
+// Near plane of perspective maps, relative to the scene's radius. Nearer geometry is clamped to it, not
+// clipped.
 constexpr float relative_near_plane = 1e-3F;
 
-/// Reversed perspective without a far plane: depth = near / distance. `tangent` is that of the half angle.
+/// Projection with reversed depth and no far plane: depth = near / distance. `tangent` is the tangent of the
+/// half angle.
 glm::mat4 reversed_perspective(float tangent, float near_plane) {
     glm::mat4 m(0.0F);
     m[0][0] = m[1][1] = 1.0F / tangent;
@@ -34,7 +36,7 @@ glm::mat4 reversed_perspective(float tangent, float near_plane) {
     return m;
 }
 
-/// Reversed orthographic depth: 1 at the viewer, 0 at `depth` in front of it.
+/// Orthographic projection with reversed depth: 1 at the viewer, 0 at `depth` metres in front of it.
 glm::mat4 reversed_orthographic(glm::vec2 half_extent, float depth) {
     glm::mat4 m(1.0F);
     m[0][0] = 1.0F / half_extent.x;
@@ -48,7 +50,7 @@ glm::mat4 look_along(glm::vec3 position, glm::vec3 direction, glm::vec3 up) {
     return glm::lookAt(position, position + direction, up);
 }
 
-/// Viewing direction and up vector of a cube's face, in the GL's order (OpenGL 4.5, table 8.19).
+/// Viewing direction and up vector of a cube face, in the order of OpenGL (OpenGL 4.5, table 8.19).
 struct Face {
     glm::vec3 direction;
     glm::vec3 up;
@@ -81,7 +83,7 @@ void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::
 void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metrics, float near_plane,
              std::uint32_t resolution) {
     const auto texels = static_cast<float>(resolution);
-    const float margin = 1.0F + 4.0F / texels;  // two texels all around, for the filter
+    const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
     const glm::mat4 view =
         look_along(light.position, light.direction, basis_around(light.direction).bitangent);
     gpu::Shadow shadow{.axis = light.direction, .near_plane = near_plane, .layer = plan.maps};
@@ -92,7 +94,7 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metr
         shadow.from_world = reversed_perspective(tangent, near_plane) * view;
     } else {
         const glm::vec2 half = glm::max(light.shape * margin, glm::vec2(near_plane));
-        // The footprint lies in front of the scene; this reaches as far behind it.
+        // The light is in front of the scene; the map reaches as far behind its centre.
         const float depth = std::max(2.0F * glm::length(metrics.centre() - light.position), near_plane);
         // look_along's x axis is cross(direction, up) = ± tangent; its extent is that of the tangent.
         shadow.kind = gpu::ShadowKind::orthographic;
@@ -104,7 +106,7 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metr
     ++plan.maps;
 }
 
-/// Light indices, the strongest flux first; equals stay in order.
+/// Light indices by decreasing flux; lights of equal flux keep their order.
 std::vector<std::uint32_t> by_importance(const LightTable& lights) {
     std::vector<std::uint32_t> order(lights.entries.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -139,14 +141,14 @@ void draw_view(const Gpu& gpu, Execution& run, const SceneData& scene, const Sha
     draw_masked_depth(gpu, run, scene);
 }
 
-/// Gives the texture its description; says whether it keeps its content.
+/// Gives the texture this description. Returns whether it keeps its content.
 bool reserve(Execution& run, TextureHandle texture, const TextureDesc& desc) {
     const bool kept = run.desc(texture) == desc;
     run.reserve(texture, desc);
     return kept;
 }
 
-/// The views that do not show already what they are to show.
+/// The views of the plan whose shadow maps are missing or outdated.
 std::vector<ShadowPlan::View> due_views(Execution& run, const SceneData& scene, const ShadowMaps& out,
                                         const ShadowSettings& settings) {
     const ShadowPlan& plan = run.value(out.plan);
@@ -183,7 +185,7 @@ void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const Shad
     gl.Enable(GL_DEPTH_TEST);
     gl.Enable(GL_DEPTH_CLAMP);
     gl.Enable(GL_POLYGON_OFFSET_FILL);
-    gl.PolygonOffset(-slope_offset, 0.0F);  // away from the light, as depth is reversed
+    gl.PolygonOffset(-slope_offset, 0.0F);  // away from the light, because depth is reversed
     gl.Disable(GL_CULL_FACE);
     gl::Framebuffer& target = gpu.layer_target();
     for (const ShadowPlan::View& view : due) {

@@ -10,55 +10,59 @@
 
 namespace candela {
 
-/// Sizes of shadow maps, in texels along an edge, and the memory that they may take together.
+/// Resolutions of shadow maps, in texels along an edge, and their memory budget.
 struct ShadowSettings {
     bool enabled = true;
-    std::uint32_t cube_resolution = 512;  ///< of each face: point lights, and spots wider than a map can hold
-    std::uint32_t map_resolution = 1024;  ///< spot and directional lights
-    std::uint32_t budget_mib = 256;
+    std::uint32_t cube_resolution = 512;  ///< cube faces: point lights, and spots of more than 60° half angle
+    std::uint32_t map_resolution = 1024;  ///< flat maps: other spot lights, and directional lights
+    std::uint32_t budget_mib = 256;       ///< MiB for all maps together
     bool operator==(const ShadowSettings&) const = default;
 };
 
-/// Which lights get a map, and how each is rendered.
+/// Which lights get a shadow map, and the views to render for them.
 struct ShadowPlan {
-    /// One rendering of the scene's depth: a map, or a face of a cube.
+    /// One rendering of scene depth: a flat map, or a face of a cube map.
     struct View {
-        glm::mat4 clip_from_world;
+        glm::mat4 clip_from_world;  ///< metres to clip space with reversed depth in [0, 1]
         bool cube = false;
-        std::uint32_t layer = 0;  ///< of the cube array (face 0 to 5 of cube layer / 6) or of the map array
+        std::uint32_t layer = 0;  ///< of the cube array (face layer % 6 of cube layer / 6) or the map array
         bool operator==(const View&) const = default;
     };
-    std::vector<std::int32_t> shadow_of_light;  ///< for each light of the table; -1: none
+    std::vector<std::int32_t> shadow_of_light;  ///< by light of the table: index into `shadows`; -1: none
     std::vector<gpu::Shadow> shadows;
     std::vector<View> views;
     std::uint32_t cubes = 0;
     std::uint32_t maps = 0;
-    std::uint32_t lights_without = 0;  ///< that should cast shadows and were left out by the budget
+    std::uint32_t lights_without = 0;  ///< should cast shadows, but exceed the budget or the layer limit
     bool operator==(const ShadowPlan&) const = default;
 };
 
-/// What the maps show. Does not compare: how much of it a frame had to draw depends on what was there.
+/// The views that the maps contain. Has no operator==, because `newly_drawn` depends on what the maps
+/// contained before.
 struct DrawnShadows {
     std::vector<ShadowPlan::View> views;
-    std::uint32_t newly_drawn = 0;  ///< of the views, when the maps last changed
+    std::uint32_t newly_drawn = 0;  ///< number of views drawn in the last run of the node
 };
 
+/// The shadow maps of all lights.
 struct ShadowMaps {
     ValueHandle<ShadowPlan> plan;
-    TextureHandle cubes;  ///< cube array, depth32f, reversed
-    TextureHandle maps;   ///< array, depth32f, reversed
+    TextureHandle cubes;  ///< cube array, depth32f, reversed: 1 at the near plane
+    TextureHandle maps;   ///< 2D array, depth32f, reversed
     ValueHandle<DrawnShadows> drawn;
 };
 
-/// Gives maps to the lights that cast shadows, the strongest flux first, as far as the budget goes.
+/// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts.
 [[nodiscard]] ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                                       const ShadowSettings& settings);
 
-/// Nodes `shadow-plan` (CPU) and `shadow-maps`: depth of the scene from every light that has a map, all
-/// triangles from both sides, less the holes of masks and what is blended. Views that show already what they
-/// are to show are kept: where a light moves its own are drawn, where a mesh moves all. A point light looks
-/// through the six faces of a cube, a spot through its cone, a directional light through the rectangle that
-/// the scene covers.
+/// Adds nodes `shadow-plan` (CPU: plan_shadows) and `shadow-maps` (raster): depth of the scene as seen from
+/// every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on Curved Surfaces", 1978).
+/// A point light has the six faces of a cube, a spot light the cone or a cube, a directional light the
+/// rectangle that the scene covers. Both sides of all triangles are drawn, without holes of masks and without
+/// blended surfaces. Views whose content is unchanged are kept: if a light moves, only its views are drawn;
+/// if a mesh moves, all are. Depends on meshes, materials, lights and the scene's metrics.
+/// shaders/shadow.glsl derives the bias.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

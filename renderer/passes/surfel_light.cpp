@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-/// Points of the cells, lit by the lights, and the cells as wholes.
+/// Light of the real lights at the points of the cells, and summed over each cell.
 struct DirectLight {
     BufferHandle<gpu::DirectPoint> points;
     BufferHandle<gpu::CellLight> cells;
@@ -23,8 +23,8 @@ std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
     return run.value(surfels.plan).vpl_count;
 }
 
-/// Up to which step of the scene's motion, for which set of surfels, by rays how far off surfaces, and in
-/// which buffers visibility is known.
+/// Identifies stored visibility: the set of surfels, the step of scene motion up to which it is current, the
+/// ray offset in metres, and the GL names of the buffers that hold it.
 struct KnownVisibility {
     std::uint64_t set = 0;
     std::uint64_t step = 0;
@@ -40,7 +40,7 @@ struct KnownVisibility {
     }
 };
 
-/// `surfel_count` and what follows from it: shaders/surfel.glsl.
+/// Sets `surfel_count` and the uniforms that follow from it: shaders/surfel.glsl.
 void set_count(const gl::Program& program, std::uint32_t count) {
     const SurfelColumns columns = surfel_columns(count);
     program.set("surfel_count", count);
@@ -70,7 +70,7 @@ void find_cover(const gl::Functions& gl, const gl::Program& program, std::uint32
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-/// Even, so that the last one's scales are in the first half of the rows.
+/// Last round of scaling. Even, so that its results are in the first half of the rows.
 constexpr std::uint32_t last_round = 4;
 
 void scale_rows(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
@@ -94,7 +94,8 @@ struct BouncePrograms {
     const gl::Program* account;
 };
 
-/// To the last bounce, or until the account finds that little is left.
+/// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
+/// is little, the remaining dispatches return at once.
 void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std::uint32_t count,
                     std::uint32_t bounces) {
     constexpr std::uint32_t bounces_an_account = 4;
@@ -109,8 +110,8 @@ void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std
     }
 }
 
-/// A shadow ray walks through a tree, and software drivers end all loops of an invocation together after
-/// 65,535 turns.
+/// Most shadow rays of an invocation in one dispatch. Each ray loops over nodes of the BVH, and software
+/// drivers stop all loops of an invocation after 65,535 iterations in total.
 constexpr std::uint32_t most_shadow_rays = 64;
 
 void light_points(const gl::Functions& gl, const gl::Program& program, std::uint32_t points,

@@ -26,15 +26,15 @@ struct Side {
     std::uint32_t item;
 };
 
-/// A point of a cell, and the item that it is on.
+/// A point of a cell, with the item that it lies on.
 struct PlacedPoint : gpu::CellPoint {
     std::uint32_t item = 0;
 };
 
-/// All sides that reflect.
+/// All sides that reflect light: both sides of double-sided triangles.
 struct Sides {
     std::vector<Side> sides;
-    std::vector<double> area_before;  // m², of the sides before each one; one more for all of them
+    std::vector<double> area_before;  // by side: area of all sides before it, m²; then the total
 };
 
 Sides sides_of(const SurfelGround& ground) {
@@ -66,7 +66,8 @@ std::uint32_t hash(std::uint32_t x) {
     return x ^ (x >> 16U);
 }
 
-/// Point `index` of the sequence R2 in a triangle, folded from the square: weights of b and c.
+/// Barycentric weights of b and c of point `index` in a triangle: the R2 sequence, with the upper half of the
+/// unit square folded onto the lower.
 glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
     constexpr double unit = 1.0 / 4294967296.0;
     const glm::dvec2 start(hash(seed) * unit, hash(seed ^ 0x9e3779b9U) * unit);
@@ -77,7 +78,7 @@ glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
     return glm::vec2(point);
 }
 
-/// `count` points, even in area.
+/// `count` points, distributed evenly by area.
 std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, std::uint32_t seed) {
     std::vector<PlacedPoint> points;
     const double share = all.area_before.back() / count;
@@ -105,7 +106,7 @@ std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, st
     return points;
 }
 
-/// Surfels by where they are, for finding those nearby.
+/// A hash grid of surfels, for finding nearby ones.
 class SurfelGrid {
  public:
     explicit SurfelGrid(float cell) : cell_(cell) {}
@@ -118,8 +119,9 @@ class SurfelGrid {
 
     [[nodiscard]] const std::vector<PlacedPoint>& surfels() const { return surfels_; }
 
-    /// The nearest one within about a cell whose surface is the point's: with a normal at least so like its
-    /// own, and a plane no farther off than that share of a cell. -1: none.
+    /// Index of the nearest surfel on the surface of `point`, within about the size of a grid cell; -1: none.
+    /// The surfel must be on the same item, the cosine between the normals at least `least_cosine`, and the
+    /// distance of the point from the surfel's plane at most `off_plane` grid cells.
     [[nodiscard]] int nearest_like(const PlacedPoint& point, float least_cosine, float off_plane) const {
         const glm::ivec3 centre = coordinates(point.position);
         float best = std::numeric_limits<float>::infinity();
@@ -148,7 +150,7 @@ class SurfelGrid {
     [[nodiscard]] glm::ivec3 coordinates(glm::vec3 position) const {
         return glm::ivec3(glm::floor(position / cell_));
     }
-    /// Keys may coincide: what is found is compared.
+    /// Different cells may have the same key: callers check what they find.
     static std::uint64_t key(glm::ivec3 at, std::uint32_t item) {
         const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0xffffU; };
         return part(at.x) | part(at.y) << 16U | part(at.z) << 32U | std::uint64_t{item} << 48U;
@@ -159,7 +161,7 @@ class SurfelGrid {
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
 
-/// Which surfel each point belongs to. Points that are like none become surfels.
+/// Assigns each point to a surfel. A point without a matching surfel becomes a surfel.
 std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<PlacedPoint>& points) {
     std::vector<std::uint32_t> owners;
     owners.reserve(points.size());
@@ -177,8 +179,8 @@ std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<PlacedPoin
     return owners;
 }
 
-/// The point of each cell that is nearest to the middle of it, which spreads the surfels more evenly (Lloyd,
-/// "Least squares quantization in PCM", 1982).
+/// The point of each cell that is nearest to its centroid: one step of Lloyd relaxation, which distributes
+/// the surfels more evenly (Lloyd, "Least squares quantization in PCM", 1982).
 std::vector<PlacedPoint> middles(const std::vector<PlacedPoint>& points,
                                  const std::vector<std::uint32_t>& owners,
                                  const std::vector<PlacedPoint>& surfels) {
@@ -207,7 +209,7 @@ SurfelGrid grid_of(const std::vector<PlacedPoint>& surfels, float cell) {
     return grid;
 }
 
-/// Sorts the points by cell. Cells without points are left out.
+/// Sorts the points by cell. Surfels without points are left out.
 SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points,
                   const std::vector<std::uint32_t>& owners) {
     std::vector<std::uint32_t> order(points.size());
@@ -263,7 +265,8 @@ VplPlan plan_of(const SurfelSet& set) {
     return plan;
 }
 
-/// What surfels are spread by. Items are in spaces of their own, that of their shapes.
+/// Everything that the placement of surfels depends on. Each item is in its own space, transformed only by
+/// its shape matrix: see shape_of.
 struct SurfelKey {
     SceneGeometry geometry;
     std::vector<glm::mat3> shapes;
@@ -272,7 +275,7 @@ struct SurfelKey {
     bool operator==(const SurfelKey&) const = default;
 };
 
-/// Surfels as they were spread last.
+/// The last placement of the surfels, in the items' shape spaces. `number` changes with each placement.
 struct SpreadSurfels {
     SurfelKey key;
     std::shared_ptr<const SurfelSet> set;
@@ -318,8 +321,8 @@ SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const
     return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
 }
 
-/// From the space of an item's shape to the world: a rotation, a translation, and what the shape was rounded
-/// by.
+/// Transform from an item's shape space to the world: a rotation, a translation, and the rounding error of
+/// the shape matrix.
 glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
     return world * glm::mat4(glm::inverse(shape));
 }
@@ -376,7 +379,7 @@ ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
 glm::mat3 shape_of(const glm::mat4& world) {
     const glm::dmat3 m(world);
     const glm::dmat3 gram = glm::transpose(m) * m;
-    glm::dmat3 u(0.0);  // column by column
+    glm::dmat3 u(0.0);  // column-major: u[column][row]
     u[0][0] = std::sqrt(gram[0][0]);
     u[1][0] = gram[1][0] / u[0][0];
     u[2][0] = gram[2][0] / u[0][0];
@@ -392,7 +395,7 @@ glm::mat3 shape_of(const glm::mat4& world) {
     const double step = std::exp2(std::floor(std::log2(largest) + 0.3) - 14.0);
     const glm::dmat3 rounded(step * glm::round(u[0] / step), step * glm::round(u[1] / step),
                              step * glm::round(u[2] / step));
-    // A flat item has no inverse, and is taken as it is.
+    // A flat item has no inverse; its matrix is used unchanged.
     const bool is_flat = !(std::abs(glm::determinant(rounded)) > 1e-12 * largest * largest * largest);
     return is_flat ? glm::mat3(world) : glm::mat3(rounded);
 }

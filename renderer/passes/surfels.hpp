@@ -14,43 +14,50 @@
 
 namespace candela {
 
-/// Points on the scene's surfaces at which light is gathered and sent on, each with a cell of the surface
-/// around it.
+/// Surfels: points on the scene's surfaces that gather light and reflect it. Each represents a cell, the part
+/// of the surface around it, which is described by sample points.
 struct SurfelSet {
-    std::vector<gpu::Vpl> surfels;       ///< without light
-    std::vector<gpu::CellPoint> points;  ///< of the cells, in the surfels' order
-    std::vector<std::uint32_t> item_of;  ///< by surfel: which item of the scene's geometry it is on
+    std::vector<gpu::Vpl> surfels;       ///< with flux 0
+    std::vector<gpu::CellPoint> points;  ///< of the cells, in the order of the surfels
+    std::vector<std::uint32_t> item_of;  ///< by surfel: index into SceneGeometry::items
 };
 
-/// Points of a cell, in the mean.
+/// Average number of points per cell.
 inline constexpr std::uint32_t points_a_surfel = 16;
 
-/// The triangles that surfels are spread over.
+/// The triangles on which surfels are placed.
 struct SurfelGround {
     std::vector<gpu::TraceTriangle> triangles;
-    std::vector<std::uint32_t> item_of;  ///< by triangle: the item that it is of
-    std::vector<bool> double_sided;      ///< by material
+    std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
+    std::vector<bool> double_sided;      ///< by material index
 };
 
-/// Spreads about `count` surfels evenly in area over the triangles, on both sides of those whose material is
-/// double-sided, and cells of `points_a_surfel` points each, in the mean, around them. A cell lies on one
-/// side of one item, which hardly bends there; where no surfel is like a point, the point becomes one.
+/// Places about `count` surfels evenly by area on the triangles, on both sides where the material is
+/// double-sided. Each has a cell of `points_a_surfel` points on average. A cell lies on one side of one item,
+/// where the surface is nearly flat; a point that fits no surfel becomes a surfel of its own. The points
+/// follow the R2 sequence; the surfels are relaxed by Lloyd's algorithm (1982). Equal arguments give equal
+/// results.
 [[nodiscard]] SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::uint32_t seed);
 
-/// An item's matrix without its rotation and translation: what remains is the same, bit for bit, however it
-/// is turned. The upper triangular factor of its Gram matrix (Cholesky), rounded to some four digits.
+/// The shape of an item: its local-to-world matrix without rotation and translation. It is the upper
+/// triangular Cholesky factor of the Gram matrix MᵀM, rounded to about four digits, so that it stays the
+/// same, bit for bit, while the item rotates. The first row is negated for mirrored items. For flat items,
+/// which have no inverse, it is the upper left 3 × 3 part of `world`.
 [[nodiscard]] glm::mat3 shape_of(const glm::mat4& world);
 
+/// The surfels in world space.
 struct Surfels {
-    ValueHandle<VplPlan> plan;       ///< how many there are
-    ValueHandle<std::uint64_t> set;  ///< another one where they have been spread anew, not just moved
-    BufferHandle<gpu::Vpl> surfels;  ///< without light
+    ValueHandle<VplPlan> plan;       ///< numbers of surfels and points
+    ValueHandle<std::uint64_t> set;  ///< changes when surfels are placed again, not when they only move
+    BufferHandle<gpu::Vpl> surfels;  ///< with flux 0
     BufferHandle<gpu::CellPoint> points;
 };
 
-/// Nodes `surfel-spread` (CPU: where they are on their items, with refinement those of the set which is due)
-/// and `surfels` (CPU: where they are in the world). They belong to the items of the scene and move with
-/// them; they are spread anew where an item comes, goes or changes its size.
+/// Adds nodes `surfel-spread` (CPU: places surfels on the items; with refinement, those of the current surfel
+/// set) and `surfels` (CPU, then upload: their positions in the world). Surfels belong to the items of the
+/// scene and move with them; all are placed again when an item is added, removed or changes its shape. They
+/// depend on the scene's layout and placement and on the refinement; `surfel-spread` also on its own last
+/// result.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                   std::optional<ValueHandle<Refinement>> refinement,
                                   const VplSettings& settings);

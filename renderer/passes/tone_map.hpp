@@ -5,19 +5,22 @@
 
 namespace candela {
 
+/// How radiance becomes the colours of the target.
 struct ToneMapSettings {
-    bool enabled = true;       ///< off: linear radiance goes out
-    float exposure_ev = 0.0F;  ///< stops: radiance is multiplied by 2^exposure
+    bool enabled = true;       ///< off: linear radiance without exposure; alpha 1 where there is a surface
+    float exposure_ev = 0.0F;  ///< in stops, from -32 to 32: radiance is multiplied by 2^exposure_ev
     bool operator==(const ToneMapSettings&) const = default;
 };
 
-/// Node `tone-map`: brings radiance into the host's target through a filmic curve, sRGB-encoded. The target
-/// stands for a framebuffer, and the object bound to it is that framebuffer's name.
+/// Adds node `tone-map` (raster): writes radiance to the host's target through a filmic curve (Narkowicz,
+/// "ACES Filmic Tone Mapping Curve", 2015), sRGB-encoded by the shader, alpha 1. `target` is an imported
+/// texture whose object is the GL name of a framebuffer of `size` pixels. Depends on `radiance`.
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, TextureHandle target, glm::uvec2 size,
                   const ToneMapSettings& settings);
 
-/// What the node does, for images that come from elsewhere: `radiance` is a texture, drawn to the lower left
-/// of `framebuffer`, scaled to `size` pixels if it has others.
+/// Does the work of the node, for pictures from elsewhere. `radiance` is the GL name of a texture. It is
+/// drawn to the lower left `size` pixels of `framebuffer`, with bilinear scaling if its size differs. Changes
+/// the draw framebuffer and the viewport.
 void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuint framebuffer,
               glm::uvec2 size, const ToneMapSettings& settings);
 [[nodiscard]] const gl::Program& tone_map_program(Gpu& gpu);

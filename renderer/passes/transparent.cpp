@@ -26,8 +26,8 @@ std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePla
     return sorted;
 }
 
-/// The shader weights the radiance by alpha itself and tells what it leaves of what is behind as the second
-/// source.
+/// The shader multiplies radiance by alpha. Its second output (dual-source blending) is the share of what is
+/// behind that the surface covers.
 void begin_blending(const gl::Functions& gl) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthMask(GL_FALSE);
@@ -37,7 +37,8 @@ void begin_blending(const gl::Functions& gl) {
     gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
 }
 
-/// Blended surfaces cannot be shaded in parts: what is in front covers the sum.
+/// Most lights of a scene with blended surfaces. These cannot be shaded in several draws, because each draw
+/// would cover what the draws before it have added.
 constexpr std::uint32_t most_lights = 16384;
 
 void check_lights(std::size_t lights) {

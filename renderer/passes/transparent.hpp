@@ -9,16 +9,17 @@
 
 namespace candela {
 
-/// Node `transparent`: draws the blended surfaces over what is there, in every shading path alike: radiance =
-/// alpha · lit + (1 - alpha) · behind, where alpha is the base colour's and `lit` is what `forward` gives for
-/// an opaque surface. They are hidden by what `surfaces.depth` holds and hide nothing themselves. Gives the
-/// radiance on.
+/// Adds node `transparent` (raster): draws the blended surfaces over the solid ones: radiance = alpha · lit +
+/// (1 - alpha) · behind (Porter and Duff's "over" operator, 1984), where alpha is that of the base colour and
+/// `lit` the radiance that `forward` gives for an opaque surface. It is the same in every shading path.
+/// Blended surfaces are tested against `surfaces.depth` and do not write depth. Returns the radiance with
+/// them. Depends on meshes, placement, materials, lighting, view and `surfaces`.
 ///
-/// Drawables are drawn one after another, the farthest first, by the depth of their bounds' centre in view
-/// space; those as far as each other in an order that does not change. Of a double-sided one the back faces
-/// are drawn before the front faces. That is right for drawables that are convex and do not reach through
-/// each other; the triangles of others are drawn in the mesh's order. Blended surfaces receive light, direct
-/// and indirect, and shadows, but neither cast shadows nor place VPLs.
+/// Drawables are drawn one by one, from far to near by the view-space depth of the centre of their bounding
+/// box; equal depths keep their order. The back faces of a double-sided drawable are drawn before its front
+/// faces. That is correct for convex drawables that do not intersect; in others, triangles are drawn in the
+/// order of the mesh. Blended surfaces receive direct and indirect light and shadows, but cast no shadows and
+/// place no VPLs. While the scene has any, gl::GlError is thrown for more than 16,384 lights.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                             const Lighting& lighting, const FrameView& view,
                                             const ShadedSurfaces& surfaces);

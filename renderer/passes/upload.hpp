@@ -8,8 +8,8 @@
 
 namespace candela {
 
-/// Makes `data` the content of a persistent buffer that the running pass writes with Usage::copy. The buffer
-/// holds at least one element, so that it can always be bound.
+/// Uploads `data` as the whole content of a persistent buffer that the running pass writes with Usage::copy.
+/// The buffer gets at least one element, so that it can always be bound.
 template <class T>
 void upload(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, std::span<const T> data) {
     run.reserve(buffer, std::max<std::size_t>(data.size(), 1));
@@ -20,7 +20,7 @@ void upload(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, std::span<co
                                 data.data());
 }
 
-/// The same of a buffer that holds one element.
+/// The same for a single element.
 template <class T>
 void upload_one(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, const T& element) {
     upload<T>(gpu, run, buffer, {&element, 1});

@@ -13,8 +13,9 @@
 namespace candela {
 namespace {
 
-/// Reversed depth in [0, 1]: near / z without a far plane, otherwise the usual rational (or, orthographic,
-/// linear) map of [near, far] to [1, 0].
+/// Projection with reversed depth. Without a far plane it is near / z; otherwise depth falls from 1 at the
+/// near plane to 0 at the far plane, by the usual rational function or, in orthographic projections,
+/// linearly.
 glm::mat4 projection(const Camera& camera, float aspect) {
     const float n = camera.near_plane;
     const float f = camera.far_plane;
@@ -37,7 +38,7 @@ glm::mat4 projection(const Camera& camera, float aspect) {
     return m;
 }
 
-/// The camera's pose without its scale.
+/// The camera-to-world matrix without its scale.
 glm::mat4 rigid(const glm::mat4& world_from_camera) {
     const glm::vec3 z = glm::normalize(glm::vec3(world_from_camera[2]));
     const glm::vec3 x = glm::normalize(glm::cross(glm::vec3(world_from_camera[1]), z));
@@ -63,7 +64,8 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, c
     glm::mat4 jittered(1.0F);
     jittered[3] = glm::vec4(-2.0F * request.jitter / size, 0.0F, 1.0F);
     const glm::mat4 pose = rigid(world_from_camera);
-    // In doubles: the inverse of a view from far away loses the digits that shading needs.
+    // In double precision: for a camera far from the origin, the inverse in floats would lose digits that
+    // shading needs.
     const glm::dmat4 view_from_world = glm::inverse(glm::dmat4(pose));
     const glm::dmat4 clip_from_view = glm::dmat4(jittered) * glm::dmat4(projection(camera, size.x / size.y));
     const glm::dmat4 clip_from_world = clip_from_view * view_from_world;

@@ -12,16 +12,16 @@
 
 namespace candela {
 
-/// What the host asks of a frame.
+/// The view that the host asks for.
 struct ViewRequest {
     Entity camera;           ///< an entity with a Camera
-    glm::uvec2 size{1};      ///< pixels
-    glm::vec2 jitter{0.0F};  ///< pixels by which samples move off their pixels' centres, +x right, +y up
+    glm::uvec2 size{1};      ///< of the rendered picture, pixels
+    glm::vec2 jitter{0.0F};  ///< pixels by which samples move off the pixel centres, +x right, +y up
     bool operator==(const ViewRequest&) const = default;
 };
 
-/// Matrices of the viewpoint. Clip space is the GL's with depth in [0, 1], reversed: 1 at the near plane.
-/// View space has the eye at its origin and looks along -z; "depth" in metres is -z there.
+/// Matrices of a view. Clip space is that of OpenGL with reversed depth in [0, 1]: 1 at the near plane. View
+/// space has the eye at its origin and looks along -z; a depth in metres is -z in view space.
 struct CameraView {
     glm::mat4 clip_from_world{1.0F};
     glm::mat4 world_from_clip{1.0F};
@@ -32,34 +32,38 @@ struct CameraView {
     bool operator==(const CameraView&) const = default;
 };
 
-/// View of the camera with this local-to-world matrix. An infinite far plane is one.
+/// The view of a camera with this local-to-world matrix, whose scale is ignored. If Camera::far_plane is
+/// infinite, the projection has no far plane.
 [[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera,
                                    const ViewRequest& request);
 
-/// View that the host asks for. Throws EntityError if the requested camera is none.
+/// The view that the host asks for. Throws EntityError if `request.camera` is not alive or has no Camera, and
+/// SceneError if its parents form a cycle or were destroyed.
 [[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
-/// What a pass reads that calls it.
+/// Declares the reads of a pass that calls requested_view.
 void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 
-/// Sample i within a pixel, in pixels from its centre, within [-0.5, 0.5]. Sample 0 is the centre; 2k - 1 and
-/// 2k lie opposite each other, at point k of the sequence R2, so that a mean over samples does not shift the
-/// picture.
+/// Position of sample i, as an offset from the pixel centre in pixels, in [-0.5, 0.5]². Sample 0 is the
+/// centre. Samples 2k - 1 and 2k are point k of the R2 sequence and its mirror image, so that a mean over
+/// samples does not shift the picture.
 [[nodiscard]] glm::vec2 pixel_sample(std::uint32_t i);
 
-/// Node `view` (CPU).
+/// Adds node `view` (CPU): the requested view. Depends on the request, Camera and Transform.
 [[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
 
-/// The view that a frame is drawn for.
+/// The view of a frame, for the CPU and for shaders.
 struct FrameView {
     ValueHandle<CameraView> camera;
     BufferHandle<gpu::ViewConstants> constants;
 };
 
-/// Node `view-upload`: the view for shaders, with a target of `size` pixels.
+/// Adds node `view-upload` (CPU, then upload): the constants in shaders/view.glsl, for a picture of `size`
+/// pixels. Depends on `camera`.
 [[nodiscard]] FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
                                         glm::uvec2 size);
 
-/// For a pass whose shader includes view.glsl: declares what that reads, and binds it when the pass runs.
+/// For a pass whose shader includes view.glsl: `read_view` declares the read; `bind_view` binds it while the
+/// pass runs.
 void read_view(Pass& pass, const FrameView& view);
 void bind_view(const Gpu& gpu, Execution& run, const FrameView& view);
 

@@ -9,9 +9,11 @@
 namespace candela {
 namespace {
 
-constexpr float rounding = 1e-4F;  // of clip coordinates: far more than that of the products that give them
+// Relative slack of clip coordinates, far above the rounding error of the matrix products.
+constexpr float rounding = 1e-4F;
 
-/// Signed distances of a point in clip space to the six planes, times w; below 0 it is beyond one.
+/// Signed distances from the six planes of the view volume of a point in clip space, times w; negative:
+/// outside.
 std::array<float, 6> plane_distances(const glm::vec4& clip) {
     return {clip.w + clip.x, clip.w - clip.x, clip.w + clip.y, clip.w - clip.y, clip.z, clip.w - clip.z};
 }

@@ -11,16 +11,18 @@
 
 namespace candela {
 
-/// Whether nothing of a box can be in the view: all its corners lie beyond one of the six planes.
+/// Whether a box is certainly outside the view: all its corners lie outside one of the six planes of the view
+/// volume.
 [[nodiscard]] bool is_outside(const Box& box, const glm::mat4& clip_from_box);
 
-/// The layout's draws, those of primitives outside the view without an instance.
+/// The draws of the layout; the instance count is 0 for those outside the view.
 [[nodiscard]] std::vector<gpu::DrawCommand> visible_draws(const SceneLayout& layout,
                                                           const ScenePlacement& placement,
                                                           const CameraView& view);
 
-/// Node `view-cull` (CPU). Gives the scene for passes that draw what the camera sees; what lights see is the
-/// whole scene's.
+/// Adds node `view-cull` (CPU, then upload): frustum culling of draws by bounding boxes. Returns the scene
+/// for passes that draw what the camera sees; passes that draw for lights use the whole scene. Depends on the
+/// scene's layout and placement and on the camera.
 [[nodiscard]] SceneData add_view_cull(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                       ValueHandle<CameraView> camera);
 

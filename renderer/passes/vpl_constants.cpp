@@ -11,8 +11,8 @@
 namespace candela {
 namespace {
 
-// Layers hold some hundred small tiles or some few large ones: little is left over in the last, and the
-// layers are few enough for any driver.
+// Least size of an atlas layer, in texels and in slots along a side. Layers then hold many small slots or a
+// few large ones: little of the last layer is wasted, and the layers are few enough for any driver.
 constexpr std::uint32_t least_side = 512;
 constexpr std::uint32_t least_tiles = 4;
 

@@ -10,10 +10,11 @@
 namespace candela {
 namespace {
 
-// VPLs that each class of pixels asks at least under Interleave::automatic. Pixels at edges, some of whose
-// classes have no neighbour on the same surface, would be noisy with fewer.
+// Least number of VPLs per class of pixels for Interleave::automatic. With fewer, pixels at edges would be
+// noisy, because some of their classes have no neighbour on the same surface.
 constexpr std::uint32_t least_share = 8;
-// Times n, pixels of a picture's height: across n pixels the light near an edge should hardly change.
+// Least height of the picture in pixels, divided by n: across n pixels, the light near an edge should hardly
+// change.
 constexpr std::uint32_t least_rows = 60;
 
 BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> paths) {
@@ -28,12 +29,13 @@ BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, Valu
     });
 }
 
-/// Blocks of pixels that hold all `pixels` along an edge.
+/// Number of blocks of pixels that cover `pixels` along an edge.
 std::uint32_t blocks(std::uint32_t pixels) {
     return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
 }
 
-/// As many dispatches as it takes for none to ask too many VPLs. Each adds to the sum of those before.
+/// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
+/// the sum of the ones before.
 void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::uvec2 size,
                      std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t most) {
     const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
@@ -65,7 +67,7 @@ std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::
 
 namespace {
 
-/// Surfels lie in the order of the surfaces: those of a share are spread over all of them.
+/// Surfels are ordered by surface. This order makes each share contain surfels from all surfaces.
 std::vector<std::uint32_t> deal_surfels(std::uint32_t count) {
     constexpr std::uint32_t most_shares = 64;
     std::vector<std::uint32_t> order;
@@ -90,7 +92,8 @@ std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
             ++sizes[{path.light, bounce}];
         }
     }
-    std::vector<std::pair<double, std::uint32_t>> dealt;  // place within its group, from 0 to 1, and VPL
+    // Relative position of the VPL in its group, from 0 to 1, and its index.
+    std::vector<std::pair<double, std::uint32_t>> dealt;
     dealt.reserve(plan.vpl_count);
     std::map<Group, std::uint32_t> seen;
     for (const gpu::Path& path : plan.paths) {

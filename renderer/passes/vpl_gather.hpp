@@ -11,28 +11,33 @@
 
 namespace candela {
 
-/// How many VPLs a pixel asks: with n, pixels fall into n × n classes by their place modulo n, each class
-/// asks one n²-th of the VPLs, and a pixel takes from its neighbours what it has not asked. Names as in JSON,
-/// on the command line and in the panel: auto, 1, 2, 4, 8.
+/// Interleaved sampling with factor n: pixels fall into n × n classes by their coordinates modulo n. Each
+/// class evaluates its share, 1/n², of the VPLs; add_vpl_reconstruct combines the results of neighbouring
+/// pixels. Names in JSON, on the command line and in the panel: auto, 1, 2, 4, 8.
 enum class Interleave : std::uint8_t { automatic, one, two, four, eight };
 
-/// The n that is meant for so many VPLs and a picture of so many pixels; `automatic` is the largest that
-/// leaves each class eight VPLs, and of which the picture's height has sixty.
+/// The factor n for `vpl_count` VPLs and a picture of `size` pixels. `automatic` gives the largest n of 8, 4,
+/// 2, 1 with at least eight VPLs per class and a picture height of at least 60 · n pixels.
 [[nodiscard]] std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size);
 
-/// The order in which VPLs are dealt: every stretch of it holds as many of each light and bounce as is in
-/// proportion, and of these ones that follow each other in the light's sequence, which is spread evenly.
+/// The order of VPLs, as indices, from which classes of pixels take consecutive ranges as their shares. Each
+/// range contains VPLs of each light and bounce in proportion. Within these, they are consecutive points of
+/// the light's low-discrepancy sequence, which are evenly distributed. Surfels are ordered so that each range
+/// contains surfels from all surfaces.
 [[nodiscard]] std::vector<std::uint32_t> deal_vpls(const VplPlan& paths);
 
+/// What each pixel has gathered from its share of the VPLs.
 struct GatheredVpls {
-    /// rgba32f: π times the irradiance, in lux or W/m² as the lights have it, that all VPLs would give if
-    /// they were like those that the pixel asked; alpha 1 where there is a surface.
+    /// rgba32f: estimate of π times the irradiance from all VPLs, extrapolated from the share of the pixel's
+    /// class; in lux or W/m², by the unit of the lights. Alpha is 1 where there is a surface, else 0.
     TextureHandle irradiance;
-    BufferHandle<std::uint32_t> order;  ///< `deal_vpls`
+    BufferHandle<std::uint32_t> order;  ///< result of `deal_vpls`
 };
 
-/// Node `vpl-deal` (CPU): the order of the VPLs. Node `vpl-gather` (compute): each pixel asks the VPLs of its
-/// class's share. Wald et al., "Interactive Global Illumination using Fast Ray Tracing" (2002).
+/// Adds nodes `vpl-deal` (CPU, then upload: deal_vpls) and `vpl-gather` (compute): each pixel sums the light
+/// of the VPLs in the share of its class (Wald et al., "Interactive Global Illumination using Fast Ray
+/// Tracing", 2002; Segovia et al., "Non-interleaved Deferred Shading of Interleaved Sample Patterns", 2006).
+/// Depends on the VPLs, the visible surfaces and the view. `interleave`: n. `size`: of the picture in pixels.
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                                           const VplLight& light, const FrameView& view,
                                           std::uint32_t interleave, glm::uvec2 size);

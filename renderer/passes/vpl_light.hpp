@@ -12,23 +12,23 @@
 
 namespace candela {
 
-/// All that shaders/vpl_light.glsl reads.
+/// Everything that shaders/vpl_light.glsl reads.
 struct VplLight {
     Vpls vpls;
     VplCommon common;
-    std::optional<TextureHandle> maps{};  ///< where VPLs are looked up; none: not in maps
-    std::optional<Tracing> rays{};        ///< what rays to the VPLs are traced against; none: no rays
+    std::optional<TextureHandle> maps{};  ///< depth maps of the VPLs, if visibility is found by maps
+    std::optional<Tracing> rays{};        ///< BVH for shadow rays, if visibility is found by rays
 };
 
-/// How many VPLs an invocation may ask in one dispatch. Software drivers end all loops of an invocation
-/// together after 65,535 turns, without a word; a ray may take a thousand of them.
+/// Most VPLs that an invocation may evaluate in one dispatch or draw. Software drivers silently stop all
+/// loops of an invocation after 65,535 iterations in total; a ray may take a thousand of them.
 [[nodiscard]] std::uint32_t most_asked(const VplLight& light);
 
-/// Words to define in shaders that include vpl_light.glsl.
+/// Names to define in shaders that include vpl_light.glsl.
 [[nodiscard]] std::vector<std::string> vpl_light_variant(const VplLight& light);
 
-/// For a pass whose shader includes it: declares its reads, and binds them and sets its uniforms when it
-/// runs.
+/// For a pass whose shader includes vpl_light.glsl: `read_vpl_light` declares its reads; `bind_vpl_light`
+/// binds them and sets its uniforms while the pass runs.
 void read_vpl_light(Pass& pass, const VplLight& light);
 void bind_vpl_light(const Gpu& gpu, Execution& run, const gl::Program& program, const VplLight& light);
 

@@ -12,7 +12,8 @@ TextureDesc atlas_desc(const VplAtlas& atlas) {
     return {{atlas.side, atlas.side}, Format::depth32f, TextureShape::array, atlas.layers};
 }
 
-/// Where maps have been drawn, of which set of VPLs, and as of which step of the scene's motion.
+/// Identifies the stored maps: the atlas and its GL texture, the set of surfels, and the step of scene motion
+/// up to which the maps are current.
 struct DrawnAtlas {
     VplAtlas atlas;
     ObjectId object = 0;
@@ -21,7 +22,7 @@ struct DrawnAtlas {
     bool operator==(const DrawnAtlas&) const = default;
 };
 
-/// What the node is made of.
+/// Resources of the node.
 struct MapNode {
     Tracing tracing;
     MappedVpls vpls;
@@ -31,7 +32,8 @@ struct MapNode {
     const gl::Program* program;
 };
 
-/// `changed`: see changed_boxes.
+/// Draws the texels whose rays pass through the boxes in `changed`; all texels without a value: see
+/// changed_boxes.
 void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const DrawnAtlas& target,
                const std::optional<std::vector<Box>>& changed) {
     const gl::Functions& gl = gpu.gl();
@@ -48,7 +50,7 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const DrawnAtlas& 
     bind_vpl_constants(gpu, run, node.common);
     set_changed_boxes(*node.program, changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
     gpu.bind_storage(BINDING_VPLS, run.object(node.vpls.vpls));
-    gl.Enable(GL_DEPTH_TEST);  // depth is written only with it
+    gl.Enable(GL_DEPTH_TEST);  // without the depth test, depth is not written
     gl.DepthFunc(GL_ALWAYS);
     node.program->use();
     gpu.no_vertices().bind();

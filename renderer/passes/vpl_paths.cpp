@@ -14,15 +14,15 @@ double power(const LightTable::Entry& entry) {
            static_cast<double>(entry.flux.b);
 }
 
-/// Paths of one light.
+/// Number of paths of one light.
 struct Share {
     std::uint32_t light;
     std::uint32_t paths;
-    double expected;  ///< the share before rounding
+    double expected;  ///< number of paths before rounding
 };
 
-/// Shares `count` paths out by systematic sampling of the lights' cumulative flux: each gets its expected
-/// share, rounded up or down, and the sum is right.
+/// Distributes `count` paths by systematic sampling of the cumulative flux of the lights: each light gets its
+/// expected number, rounded up or down, and the sum is exactly `count`.
 std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
     const double total = std::accumulate(lights.entries.begin(), lights.entries.end(), 0.0,
                                          [](double sum, const auto& entry) { return sum + power(entry); });
@@ -43,14 +43,15 @@ std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
     return shares;
 }
 
-/// Where between 0 and 1 a light's first path lies on the ladder of survival, so that the lights of one path
-/// each differ in how far they get.
+/// Offset, between 0 and 1, of the first path of a light in the stratified survival test (see bounces_of). It
+/// differs from light to light, so that lights with a single path each make different numbers of bounces.
 double ladder_offset(std::uint32_t light) {
     constexpr double golden = 0.6180339887498949;
     return std::fmod((light + 0.5) * golden, 1.0);
 }
 
-/// Bounces of path `j` of `paths`: one, and one more for each k with (j + offset) / paths < ρᵏ.
+/// Number of bounces of a path at `position` = (j + offset) / paths: one, and one more for each k ≥ 1 with
+/// position < ρᵏ, at most `limit`. ρ is `albedo`.
 std::uint32_t bounces_of(double position, double albedo, std::uint32_t limit) {
     std::uint32_t bounces = 1;
     for (double survival = albedo; bounces < limit && position < survival; survival *= albedo) {
@@ -61,7 +62,7 @@ std::uint32_t bounces_of(double position, double albedo, std::uint32_t limit) {
 
 std::uint32_t hashed(std::uint32_t seed, std::uint32_t value) {
     std::uint64_t x = (static_cast<std::uint64_t>(seed) << 32U | value) + 0x9e3779b97f4a7c15U;
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;  // the finalizer of SplitMix64 (Steele et al., 2014)
+    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;  // finalizer of SplitMix64 (Steele et al., 2014)
     x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
     return static_cast<std::uint32_t>(x >> 32U);
 }
@@ -90,13 +91,14 @@ std::uint32_t vpls_of(const std::vector<gpu::Path>& paths) {
     return paths.empty() ? 0 : paths.back().first_vpl + paths.back().vpl_count;
 }
 
-/// Share of its light's flux that each path starts with. A light whose share is below one path carries the
-/// flux of others like it.
+/// Share of the light's flux that each of its paths starts with. Of the lights whose expected number of paths
+/// is below 1 only some get a path; their weight 1 / expected makes them carry the flux of similar lights
+/// that get none.
 double start_weight(const Share& share) {
     return 1.0 / (share.expected >= 1.0 ? share.paths : share.expected);
 }
 
-/// Paths that make more than i bounces, for each i, up to and with none.
+/// By i from 0 to max_bounces: number of paths that make more than i bounces.
 std::vector<std::uint32_t> count_reach(const VplPlan& plan) {
     std::vector<std::uint32_t> reach(plan.max_bounces + 1, 0);
     for (const gpu::Path& path : plan.paths) {
@@ -107,7 +109,8 @@ std::vector<std::uint32_t> count_reach(const VplPlan& plan) {
     return reach;
 }
 
-/// Those paths that go on from a bounce carry what those that do not would have carried on.
+/// Weights of Russian roulette: paths that continue from a bounce also carry the flux of those that end
+/// there.
 std::vector<float> make_weights(const VplPlan& plan, const std::vector<Share>& shares) {
     const std::vector<std::uint32_t> reach = count_reach(plan);
     std::vector<float> weights;
@@ -137,7 +140,7 @@ VplPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSetting
     for (std::uint32_t k = 0; k < settings.bounces && survival > 1e-6; ++k, survival *= albedo) {
         vpls_per_path += survival;
     }
-    // The ladder of survival rounds, light by light; take as many paths as fit.
+    // Numbers of bounces are rounded for each light: search for the largest number of paths that fits.
     auto count = static_cast<std::uint32_t>(settings.count / vpls_per_path) + 1;
     plan.paths = make_paths(lights, albedo, count, settings);
     while (count > 1 && vpls_of(plan.paths) > settings.count) {
@@ -146,7 +149,7 @@ VplPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSetting
         count -= std::clamp(fewer, 1U, count - 1);
         plan.paths = make_paths(lights, albedo, count, settings);
     }
-    // A single path may be too long.
+    // A single path may still be too long.
     plan.paths.back().vpl_count = std::min(plan.paths.back().vpl_count, settings.count);
     plan.vpl_count = vpls_of(plan.paths);
     for (const gpu::Path& path : plan.paths) {

@@ -12,40 +12,45 @@
 
 namespace candela {
 
-/// Where VPLs are.
+/// How VPLs are placed. Names in JSON: paths, surfels.
 enum class VplPlacement : std::uint8_t {
-    paths,   ///< where paths of light from the lights meet surfaces: Keller, "Instant Radiosity" (1997)
-    surfels  ///< evenly on all surfaces, whatever the lights do; they gather their light
+    paths,   ///< where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997)
+    surfels  ///< evenly on all surfaces, independent of the lights; they gather their light
 };
 
-/// With VplPlacement::surfels. What they see of each other then takes some 256 MiB.
+/// Largest VplSettings::count with VplPlacement::surfels. The form factors between them then take 256 MiB.
 inline constexpr std::uint32_t most_surfels = 65536;
 
+/// Number and placement of VPLs.
 struct VplSettings {
     VplPlacement placement = VplPlacement::surfels;
-    std::uint32_t count = 512;  ///< at most so many are placed on paths, about so many surfels
-    /// At most; 1: light → surface → seen surface. Surfels end where less than 0.1 % is left.
+    std::uint32_t count = 512;  ///< with paths: most VPLs, up to 2^20; with surfels: about so many
+    /// Most bounces, up to 64. 1: light → surface → visible surface; 0: no indirect light. Surfels stop when
+    /// less than 0.1 % of the first reflected light is left.
     std::uint32_t bounces = 64;
-    std::uint32_t seed = 0;
+    std::uint32_t seed = 0;  ///< of the pseudo-random placement
     bool operator==(const VplSettings&) const = default;
 };
 
-/// The VPLs of a frame, and with VplPlacement::paths the paths of light that place them.
+/// The VPLs of a frame. Paths, weights and bounces are set only with VplPlacement::paths, points only with
+/// surfels.
 struct VplPlan {
     std::vector<gpu::Path> paths;
-    std::vector<float> weights;   ///< share of its light's flux that a path carries into each of its bounces
-    std::uint32_t vpl_count = 0;  ///< at most; some paths end early
+    std::vector<float> weights;     ///< by VPL: share of its light's flux on its path, without albedos
+    std::uint32_t vpl_count = 0;    ///< records of VPLs; some are empty, where paths left the scene
     std::uint32_t max_bounces = 0;  ///< of the longest path
-    std::uint32_t point_count = 0;  ///< of the surfels' cells
+    std::uint32_t point_count = 0;  ///< points of all cells of surfels
     bool operator==(const VplPlan&) const = default;
 };
 
-/// Shares the VPLs out. Lights get paths in proportion to their flux; of a light's n paths the first n·ρᵏ go
-/// on to bounce k + 1, ρ being the scene's mean albedo, so that all VPLs carry about the same flux: Keller,
-/// "Instant Radiosity" (1997), section 3.1. Path j of a light always is point j of that light's sequence.
+/// Plans the light paths of a frame. Lights get paths in proportion to their flux. Of the n paths of a light,
+/// about the first n·ρᵏ continue to bounce k + 1, where ρ is the mean albedo of the scene; so all VPLs carry
+/// about the same flux (Keller, "Instant Radiosity", 1997, section 3.1). Path j of a light always uses point
+/// j of that light's sequence.
 [[nodiscard]] VplPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings);
 
-/// Node `vpl-paths` (CPU): the plan, with refinement that of the set which is due.
+/// Adds node `vpl-paths` (CPU): plan_paths, with refinement for the current set. Depends on the lights, the
+/// scene's metrics and the refinement.
 [[nodiscard]] ValueHandle<VplPlan> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
                                                  ValueHandle<LightTable> lights,
                                                  std::optional<ValueHandle<Refinement>> refinement,

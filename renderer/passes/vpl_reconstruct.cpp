@@ -5,7 +5,7 @@
 namespace candela {
 namespace {
 
-/// What all nodes read of the surfaces, and where they write.
+/// Inputs of all nodes.
 struct Pixels {
     VisibleSurfaces surfaces;
     FrameView view;
@@ -55,10 +55,10 @@ TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, Textur
 
 struct Columns {
     TextureHandle irradiance;
-    BufferHandle<std::uint32_t> lacking_mask;  ///< a bit a pixel, `row_words` words a row
+    BufferHandle<std::uint32_t> lacking_mask;  ///< one bit per pixel, `row_words` words per row
 };
 
-/// Words of 32 pixels, in whole work groups.
+/// Words of the mask per row of pixels: 32 pixels per word, rounded up to whole work groups.
 std::uint32_t row_words(glm::uvec2 size) {
     return groups_of_row(size) * (RECONSTRUCT_GROUP / 32);
 }
@@ -105,7 +105,8 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
     });
 }
 
-/// As many dispatches as it takes for none to ask too many VPLs. Each adds to the sum of those before.
+/// Evaluates in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
+/// the sum of the ones before.
 void dispatch_fill(const gl::Functions& gl, const gl::Program& program, std::uint32_t vpl_count,
                    std::uint32_t most) {
     program.set("asked_now", most);

@@ -12,14 +12,16 @@ namespace {
 constexpr std::uint32_t paths_a_group = 32;  // as in shaders/vpl_trace.comp and vpl_write.comp
 constexpr std::uint32_t vpls_a_group = 16;   // as in shaders/vpl_edges.comp
 
-/// Paths on their way.
+/// Input and intermediate result of the path tracer.
 struct PathBuffers {
     BufferHandle<gpu::Path> paths;
     BufferHandle<float> weights;
-    BufferHandle<gpu::VplRecord> records;  ///< bounces as they were traced
+    BufferHandle<gpu::VplRecord> records;  ///< hits of the paths, without flux
 };
 
-/// Four times the mean distance between VPLs: farther off hardly any sinks, as shaders/vpl_light.glsl has it.
+/// Distance in metres within which the edges of a VPL's surface are searched: four times the mean spacing of
+/// VPLs. For receivers farther away, the disc of the VPL is hardly displaced behind its surface
+/// (shaders/disc.glsl), so that edges do not matter.
 float edge_reach(float area, std::uint32_t vpl_count) {
     return 4.0F * std::sqrt(area / static_cast<float>(vpl_count));
 }
@@ -28,8 +30,8 @@ std::uint32_t groups(std::uint32_t count, std::uint32_t a_group) {
     return (count + a_group - 1) / a_group;
 }
 
-/// Segment by segment. A longer loop would reach the bound that software drivers set to all loops of an
-/// invocation together, and end there without a word.
+/// Traces one segment per dispatch. A longer loop would reach the number of iterations after which software
+/// drivers silently stop all loops of an invocation.
 void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
                     const VplPlan& plan) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());

@@ -9,15 +9,17 @@
 
 namespace candela {
 
+/// The VPLs of a frame with their light, placed by paths or by surfels.
 struct Vpls {
     ValueHandle<VplPlan> plan;
-    BufferHandle<gpu::Vpl> vpls;  ///< `VplPlan::vpl_count` of them, in the order of paths, then bounces
-    BufferHandle<gpu::FluxAccount> flux;                  ///< one a path, or one of all surfels
-    std::optional<BufferHandle<gpu::LitPoint>> points{};  ///< of surfels' cells; none: VPLs were traced
+    BufferHandle<gpu::Vpl> vpls;          ///< VplPlan::vpl_count; with paths ordered by path, then bounce
+    BufferHandle<gpu::FluxAccount> flux;  ///< one per path, or one for all surfels
+    std::optional<BufferHandle<gpu::LitPoint>> points{};  ///< points of the surfels' cells; none with paths
 };
 
-/// Node `vpl-trace` (compute): traces the paths, leaves a VPL at every bounce, and finds the edges of the
-/// surfaces that they sit on.
+/// Adds node `vpl-trace` (compute): traces the light paths through the BVH, places a VPL at every bounce
+/// (Keller, "Instant Radiosity", 1997), and finds the edges of the surfaces that the VPLs lie on
+/// (shaders/vpl_edges.comp). Depends on the plan, the BVH and the lights.
 [[nodiscard]] Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                  ValueHandle<VplPlan> plan, BufferHandle<gpu::Light> lights);
 

@@ -7,7 +7,7 @@ glm::vec3 transformed(const glm::mat4& matrix, glm::vec3 point) {
     return glm::vec3(matrix * glm::vec4(point, 1.0F));
 }
 
-/// The indices of a triangle's corners, counter-clockwise in the world.
+/// Vertex indices of a triangle, counter-clockwise in world space.
 glm::uvec3 corners(const SceneLayout& layout, const Origin& origin) {
     const SceneLayout::Drawable& drawable = layout.drawables[origin.drawable];
     const auto& indices = drawable.primitive->indices;
