@@ -35,8 +35,7 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
       mesh_vertices_(make_mesh_vertices(device_)),
       no_vertices_(device_, "no vertices"),
       white_(make_white(device_)),
-      layer_target_(device_, "layer target"),
-      shadow_sampler_(device_, "shadow sampler", {.compare = GL_GEQUAL}) {
+      layer_target_(device_, "layer target") {
     layer_target_.draw_buffers(0);
 }
 
@@ -49,18 +48,12 @@ const gl::Program& Gpu::program(const std::vector<std::string>& stages,
     }
     std::vector<gl::Define> defines;
     defines.reserve(defined.size());
-    for (const std::string& name : defined) {
-        defines.push_back({.name = name, .value = "1"});
+    for (const std::string& word : defined) {
+        const std::size_t equals = word.find('=');
+        defines.push_back({.name = word.substr(0, equals),
+                           .value = equals == std::string::npos ? "1" : word.substr(equals + 1)});
     }
     return programs_.emplace(std::move(key), gl::compile(device_, shaders_, stages, defines)).first->second;
-}
-
-void Gpu::bind_storage(GLuint binding, GLuint buffer) const {
-    gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
-}
-
-void Gpu::bind_uniforms(GLuint binding, GLuint buffer) const {
-    gl().BindBufferBase(GL_UNIFORM_BUFFER, binding, buffer);
 }
 
 void Gpu::draw_fullscreen(const gl::Program& program) const {

@@ -23,8 +23,8 @@ class Gpu {
     [[nodiscard]] const gl::Device& device() const { return device_; }
     [[nodiscard]] const gl::Functions& gl() const { return device_.gl(); }
 
-    /// The program of these stage files with these names defined as 1. Compiled at the first request, then
-    /// cached. The reference is valid as long as the Gpu. Throws gl::ProgramError.
+    /// The program of these stage files with these names defined: NAME as 1, or NAME=VALUE. Compiled at the
+    /// first request, then cached. The reference is valid as long as the Gpu. Throws gl::ProgramError.
     [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,
                                              const std::vector<std::string>& defined = {});
 
@@ -36,13 +36,7 @@ class Gpu {
     [[nodiscard]] const gl::Texture& white() const { return white_; }
     /// A framebuffer for passes that draw into single layers. They attach a layer and detach it again.
     [[nodiscard]] gl::Framebuffer& layer_target() { return layer_target_; }
-    /// Comparison sampler for reversed depth with bilinear filtering: lit where the reference is greater or
-    /// equal.
-    [[nodiscard]] const gl::Sampler& shadow_sampler() const { return shadow_sampler_; }
 
-    /// Binds a whole buffer, by GL name, to a shader storage or uniform binding point.
-    void bind_storage(GLuint binding, GLuint buffer) const;
-    void bind_uniforms(GLuint binding, GLuint buffer) const;
     /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
     void draw_fullscreen(const gl::Program& program) const;
 
@@ -55,7 +49,6 @@ class Gpu {
     gl::VertexArray no_vertices_;
     gl::Texture white_;
     gl::Framebuffer layer_target_;
-    gl::Sampler shadow_sampler_;
 };
 
 }  // namespace candela

@@ -50,6 +50,13 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
+struct LightConstants {
+    std::uint32_t count;
+    std::uint32_t pad0 = 0;
+    std::uint32_t pad1 = 0;
+    std::uint32_t pad2 = 0;
+};
+
 enum class ShadowKind : std::uint32_t { cube, perspective, orthographic };
 
 struct Shadow {

@@ -260,8 +260,8 @@ void Renderer::tone_map(const std::vector<glm::vec3>& radiance, const Target& ta
         texels.emplace_back(pixel, 1.0F);
     }
     texture.upload(std::as_bytes(std::span(texels)));
-    candela::tone_map(gpu_, tone_map_program(gpu_), texture.name(), target.framebuffer, target.size,
-                      configuration_.tone_map);
+    texture.bind(UNIT_RADIANCE);
+    draw_tone_mapped(gpu_, tone_map_program(gpu_), target.framebuffer, target.size, configuration_.tone_map);
 }
 
 std::string Renderer::describe(GraphFormat format) const {

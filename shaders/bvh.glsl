@@ -15,8 +15,6 @@ struct Hit {
 
 const uint NO_TRIANGLE = 0xffffffffu;
 
-uniform uint triangle_count;
-
 // Distance at which the ray enters the box, or infinity. Kay and Kajiya's slabs.
 float enter_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_direction, float t_min, float t_max) {
     vec3 t0 = (lower - origin) * inverse_direction;
@@ -58,7 +56,6 @@ void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, in
 // A triangle with t in (t_min, t_max), whichever side it shows: the nearest, or with `any` the first that turns up.
 Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
     Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE);
-    if (triangle_count == 0u) return hit;
     vec3 inverse_direction = safe_inverse(direction);
     uint stack[BVH_STACK_SIZE];
     uint depth = 0u;

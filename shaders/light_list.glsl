@@ -1,9 +1,10 @@
 // Which lights a surface visits: all of them, or the list of its cell (LIGHT_LIST_CELLS).
 #include "bindings.glsl"
 #include "light_cells.glsl"
+#include "types.glsl"
 #include "view.glsl"
 
-uniform uint light_count;  // in all; 0: none is shown
+layout(std140, binding = UNIFORMS_LIGHTS) uniform LightsInCommon { LightConstants light_constants; };
 
 #ifdef LIGHT_LIST_CELLS
 
@@ -11,7 +12,8 @@ layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst 
 layout(std430, binding = BINDING_LIST_COUNT) readonly restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) readonly restrict buffer ListEntries { uint list_entries[]; };
 
-uniform uint global_light_count;  // entries at the start that every cell visits
+// Entries at the start that every cell visits: the list of the first cell comes after them.
+uint global_light_count() { return list_first[0]; }
 
 struct LightListRange {
     uint first;
@@ -22,11 +24,11 @@ struct LightListRange {
 LightListRange light_list_at(uvec2 pixel, vec3 position) {
     float depth = grid.slices > 1u ? -(view.view_from_world * vec4(position, 1.0)).z : 0.0;
     uint cell = cell_index(pixel / grid.tile_size, grid.slices > 1u ? slice_of(depth) : 0u);
-    return LightListRange(list_first[cell], light_count == 0u ? 0u : global_light_count + list_count[cell]);
+    return LightListRange(list_first[cell], light_constants.count == 0u ? 0u : global_light_count() + list_count[cell]);
 }
 
 uint light_list_entry(LightListRange list, uint i) {
-    return list_entries[i < global_light_count ? i : list.first + i - global_light_count];
+    return list_entries[i < global_light_count() ? i : list.first + i - global_light_count()];
 }
 
 #else
@@ -35,7 +37,7 @@ struct LightListRange {
     uint size;
 };
 
-LightListRange light_list_at(uvec2 pixel, vec3 position) { return LightListRange(light_count); }
+LightListRange light_list_at(uvec2 pixel, vec3 position) { return LightListRange(light_constants.count); }
 uint light_list_entry(LightListRange list, uint i) { return i; }
 
 #endif

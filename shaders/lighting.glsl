@@ -57,13 +57,12 @@ void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout v
 
 #include "vpl_light.glsl"
 
-uniform uint vpl_stride;  // 1: surfaces ask all VPLs; 0: none
-
 // π times the irradiance from the VPLs. All surfaces visit all of them: a VPL reaches everything in front of it. Where they
 // are too many, every vpl_stride-th of them stands for all, and for pixels side by side not the same ones.
 void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
-    if (vpl_stride == 0u) return;
-    for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < vpl_constants.count; i += vpl_stride) {
+    uint count = vpl_constants.count;
+    uint vpl_stride = count <= uint(MOST_VPLS) ? 1u : (count + uint(MOST_VPLS) - 1u) / uint(MOST_VPLS) | 1u;
+    for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < count; i += vpl_stride) {
         Vpl vpl = vpls[i];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
     }

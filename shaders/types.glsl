@@ -38,6 +38,14 @@ struct Light {
     float cos_outer;
 };
 
+// What all lights have in common. A uniform block: shaders/light_list.glsl.
+struct LightConstants {
+    uint count;  // of lights that are shown
+    uint pad0;
+    uint pad1;
+    uint pad2;
+};
+
 #define LIGHT_POINT 0u
 #define LIGHT_SPOT 1u
 #define LIGHT_DIRECTIONAL 2u

@@ -60,6 +60,11 @@ class Backend {
     /// valid until end_pass.
     virtual void begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) = 0;
     virtual void end_pass() = 0;
+    /// Binds an object for the shaders of the pass that has begun, as its declaration says (see Binding).
+    /// Called after begin_pass, and again if the pass replaces the object by `reserve`. A buffer with
+    /// Usage::indirect becomes the source of draw and dispatch arguments.
+    virtual void bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) = 0;
+    virtual void bind_buffer(ObjectId buffer, Binding binding) = 0;
     /// A hash of the whole content of an object that this back end created: equal for equal content, and
     /// almost certainly different for different content. Used by verification, outside of passes; may wait
     /// for the GPU.

@@ -209,6 +209,7 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
     begin_pass(execution.position_);
     {
         const OnExit end([this] { backend_.end_pass(); });
+        bind_resources(execution.position_);
         if (step.invoke) {
             step.invoke(step.function, execution);
         }
@@ -285,6 +286,32 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
     }
     targets.colour = colours_;
     backend_.begin_pass(step.name, position, &targets);
+}
+
+void GraphRuntime::bind_resources(std::uint32_t position) {
+    const std::uint32_t end = state_.steps[position + 1].first_bound;
+    for (std::uint32_t at = state_.steps[position].first_bound; at < end; ++at) {
+        bind(state_.bound[at]);
+    }
+}
+
+/// After the running pass has replaced the object of one of its resources.
+void GraphRuntime::rebind(std::uint32_t position, std::uint32_t resource) {
+    const std::uint32_t end = state_.steps[position + 1].first_bound;
+    for (std::uint32_t at = state_.steps[position].first_bound; at < end; ++at) {
+        if (state_.bound[at].resource == resource) {
+            bind(state_.bound[at]);
+        }
+    }
+}
+
+void GraphRuntime::bind(const detail::Bound& bound) {
+    const detail::Slot& slot = *slot_of(bound.resource);
+    if (slot.kind == ResourceKind::texture) {
+        backend_.bind_texture(slot.object, slot.texture, bound.binding);
+    } else {
+        backend_.bind_buffer(slot.object, bound.binding);
+    }
 }
 
 /// Records a completed run. The outputs keep their stamps if the pass ran only to restore a result, with
@@ -459,6 +486,7 @@ void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
     runtime_.create(grown, runtime_.resource(buffer).name);
     runtime_.destroy(old);
     old = grown;
+    runtime_.rebind(position_, buffer.resource);
 }
 
 void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
@@ -471,6 +499,7 @@ void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
     runtime_.create(other, runtime_.resource(texture).name);
     runtime_.destroy(old);
     old = other;
+    runtime_.rebind(position_, texture.resource);
 }
 
 }  // namespace candela

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -91,6 +93,10 @@ class Execution {
     /// pass threw. Also always true during verification, which thereby compares partial updates with a full
     /// one. Throws GraphError for anything that is not an input, histories included.
     [[nodiscard]] bool changed(ResourceHandle read) const;
+    /// Whether any of several inputs has.
+    [[nodiscard]] bool changed(std::span<const ResourceHandle> reads) const {
+        return std::ranges::any_of(reads, [this](ResourceHandle read) { return changed(read); });
+    }
 
     /// Sets a value that the pass writes. If T has operator== and the new content equals the old, the readers
     /// of the value do not run again because of it.
@@ -254,6 +260,9 @@ class GraphRuntime {
     void run_step(Execution& execution, bool changed);
     void begin_outputs(const detail::Step& step);
     void begin_pass(std::uint32_t position);
+    void bind_resources(std::uint32_t position);
+    void rebind(std::uint32_t position, std::uint32_t resource);
+    void bind(const detail::Bound& bound);
     void keep_record(detail::Step& step, const World& world, bool changed);
     [[nodiscard]] bool has_results(const detail::Step& step) const;
     [[nodiscard]] bool renewed_results(const detail::Step& step) const;

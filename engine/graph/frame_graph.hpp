@@ -37,10 +37,13 @@ class Pass {
 
     /// The pass reads this version of the resource, and runs again when it changes (histories excepted). The
     /// version must be the newest one, and it must have been written by a pass, be imported or be a history.
-    void read(TextureHandle texture, Usage usage) { declared_.read(texture, ResourceKind::texture, usage); }
+    /// With a place, as in `pass.read(lights, {Usage::storage, 2})`, the graph binds it there for the pass.
+    void read(TextureHandle texture, Binding binding) {
+        declared_.read(texture, ResourceKind::texture, binding);
+    }
     template <class T>
-    void read(BufferHandle<T> buffer, Usage usage) {
-        declared_.read(buffer, ResourceKind::buffer, usage);
+    void read(BufferHandle<T> buffer, Binding binding) {
+        declared_.read(buffer, ResourceKind::buffer, binding);
     }
     template <class T>
     void read(ValueHandle<T> value) {
@@ -57,12 +60,12 @@ class Pass {
 
     /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
     /// imported values cannot be written.
-    [[nodiscard]] TextureHandle write(TextureHandle texture, Usage usage) {
-        return {declared_.write(texture, ResourceKind::texture, usage)};
+    [[nodiscard]] TextureHandle write(TextureHandle texture, Binding binding) {
+        return {declared_.write(texture, ResourceKind::texture, binding)};
     }
     template <class T>
-    [[nodiscard]] BufferHandle<T> write(BufferHandle<T> buffer, Usage usage) {
-        return {declared_.write(buffer, ResourceKind::buffer, usage)};
+    [[nodiscard]] BufferHandle<T> write(BufferHandle<T> buffer, Binding binding) {
+        return {declared_.write(buffer, ResourceKind::buffer, binding)};
     }
     template <class T>
     [[nodiscard]] ValueHandle<T> write(ValueHandle<T> value) {

@@ -71,6 +71,7 @@ struct BufferDesc {
 /// How a pass accesses a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
 enum class Usage : std::uint8_t {
     sampled,        ///< read: texture fetches
+    compared,       ///< read: texture fetches that compare with a reference depth
     storage,        ///< read or write: shader storage buffer or image; writes are incoherent (need barriers)
     uniform,        ///< read: uniform buffer
     vertex,         ///< read: vertex attributes
@@ -82,6 +83,21 @@ enum class Usage : std::uint8_t {
     copy            ///< read or write: copies, clears and uploads by API commands, not by shaders
 };
 [[nodiscard]] std::string_view to_string(Usage usage);
+
+/// An access and the place where shaders find the resource. The back end binds it there before the pass runs.
+struct Binding {
+    static constexpr std::uint32_t unbound = 0xffff'ffffU;
+
+    Binding() = default;
+    constexpr Binding(Usage access) : usage(access) {}  // a plain usage is a binding without a place
+    constexpr Binding(Usage access, std::uint32_t place) : usage(access), point(place) {}
+
+    Usage usage{};
+    /// The texture unit (sampled, compared), the image unit (storage, of textures), or the index of the
+    /// storage or uniform block. A buffer that a pass uploads (copy) and reads in its own shaders is bound as
+    /// a storage block. `unbound`: the pass binds the resource itself, or no shader sees it.
+    std::uint32_t point = unbound;
+};
 
 enum class Lifetime : std::uint8_t {
     /// Content is kept only from the first to the last use in a frame. Transients of the same kind and

@@ -31,6 +31,9 @@ std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t digest) 
 
 }  // namespace
 
+GraphBackend::GraphBackend(Device& device)
+    : device_(&device), timer_(device), comparison_(device, "depth comparison", {.compare = GL_GEQUAL}) {}
+
 ObjectId GraphBackend::create_texture(std::string_view name, const TextureDesc& desc) {
     Texture texture(*device_, name, desc);
     const ObjectId id = texture.name();
@@ -80,6 +83,28 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
 void GraphBackend::end_pass() {
     timer_.end_pass();
     device_->gl().PopDebugGroup();
+}
+
+void GraphBackend::bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) {
+    const Functions& gl = device_->gl();
+    if (binding.usage == Usage::storage) {
+        gl.BindImageTexture(binding.point, texture, 0, GL_FALSE, 0, GL_READ_WRITE,
+                            format_info(desc.format).internal);
+        return;
+    }
+    gl.BindTextureUnit(binding.point, texture);
+    gl.BindSampler(binding.point, binding.usage == Usage::compared ? comparison_.name() : 0);
+}
+
+void GraphBackend::bind_buffer(ObjectId buffer, Binding binding) {
+    const Functions& gl = device_->gl();
+    if (binding.usage == Usage::indirect) {
+        gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, buffer);
+        gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer);
+        return;
+    }
+    const GLenum target = binding.usage == Usage::uniform ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER;
+    gl.BindBufferBase(target, binding.point, buffer);
 }
 
 std::uint64_t GraphBackend::texture_digest(ObjectId texture) {

@@ -20,7 +20,7 @@ namespace candela::gl {
 class GraphBackend final : public Backend {
  public:
     /// The device must outlive the back end.
-    explicit GraphBackend(Device& device) : device_(&device), timer_(device) {}
+    explicit GraphBackend(Device& device);
 
     ObjectId create_texture(std::string_view name, const TextureDesc& desc) override;
     ObjectId create_buffer(std::string_view name, const BufferDesc& desc) override;
@@ -29,6 +29,8 @@ class GraphBackend final : public Backend {
     void barrier(Barrier bits) override;
     void begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) override;
     void end_pass() override;
+    void bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) override;
+    void bind_buffer(ObjectId buffer, Binding binding) override;
     std::uint64_t texture_digest(ObjectId texture) override;
     std::uint64_t buffer_digest(ObjectId buffer) override;
 
@@ -47,6 +49,9 @@ class GraphBackend final : public Backend {
 
     Device* device_;
     Timer timer_;
+    /// For Usage::compared: bilinear, of reversed depth, so that a texel passes where the reference is at
+    /// least its depth.
+    Sampler comparison_;
     std::unordered_map<ObjectId, Texture> textures_;
     std::unordered_map<ObjectId, Buffer> buffers_;
     std::map<Attachments, Framebuffer> framebuffers_;

@@ -10,15 +10,13 @@ TextureHandle add_accumulate(FrameGraph& graph, Gpu& gpu, TextureHandle radiance
     const TextureHandle blank = graph.texture("mean radiance", {size, Format::rgba32f}, Lifetime::persistent);
     const TextureHandle past = graph.history(blank);
     return graph.add("accumulate", [&](Pass& pass) {
-        pass.read(radiance, Usage::sampled);
-        pass.read(past, Usage::sampled);
+        pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
+        pass.read(past, {Usage::sampled, UNIT_MEAN});
         pass.read(refinement);
         const gl::Program& program = gpu.program({"fullscreen.vert", "accumulate.frag"});
         const TextureHandle mean = pass.write(blank, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::uint32_t before = run.history_valid(past) ? run.value(refinement).set : 0;
-            gpu.gl().BindTextureUnit(UNIT_RADIANCE, run.object(radiance));
-            gpu.gl().BindTextureUnit(UNIT_MEAN, run.object(past));
             program.set("count", before + 1);
             gpu.draw_fullscreen(program);
         });

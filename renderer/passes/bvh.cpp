@@ -67,6 +67,18 @@ SceneMetrics measure(const SceneLayout& layout, const WorldTriangles& world) {
     return metrics;
 }
 
+/// An empty scene gets one leaf with a triangle without area, which no ray hits.
+void upload_hierarchy(const Gpu& gpu, Execution& run, const Tracing& out, const Bvh& bvh,
+                      const std::vector<gpu::TraceTriangle>& triangles) {
+    if (bvh.nodes.empty()) {
+        upload_one(gpu, run, out.nodes, gpu::BvhNode{.lower = {}, .first = 0, .upper = {}, .count = 1});
+        upload_one(gpu, run, out.triangles, gpu::TraceTriangle{});
+        return;
+    }
+    upload<gpu::BvhNode>(gpu, run, out.nodes, bvh.nodes);
+    upload<gpu::TraceTriangle>(gpu, run, out.triangles, triangles);
+}
+
 }  // namespace
 
 Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
@@ -86,9 +98,7 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
             const SceneLayout& layout = run.value(layout_handle);
             const WorldTriangles world = place_triangles(layout, run.value(placement_handle));
             SceneHierarchy updated = update(run.find(hierarchy), layout, world.triangles);
-            upload<gpu::BvhNode>(gpu, run, out.nodes, updated.bvh.nodes);
-            upload<gpu::TraceTriangle>(gpu, run, out.triangles,
-                                       trace_triangles(layout, world, updated.bvh.order));
+            upload_hierarchy(gpu, run, out, updated.bvh, trace_triangles(layout, world, updated.bvh.order));
             run.set(out.metrics, measure(layout, world));
             run.set(hierarchy, std::move(updated));
         });
@@ -97,19 +107,11 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
 }
 
 void read_tracing(Pass& pass, const Tracing& tracing) {
-    pass.read(tracing.nodes, Usage::storage);
-    pass.read(tracing.triangles, Usage::storage);
-    pass.read(tracing.materials, Usage::storage);
-    pass.read(tracing.texels, Usage::storage);
+    pass.read(tracing.nodes, {Usage::storage, BINDING_BVH_NODES});
+    pass.read(tracing.triangles, {Usage::storage, BINDING_TRIANGLES});
+    pass.read(tracing.materials, {Usage::storage, BINDING_MATERIALS});
+    pass.read(tracing.texels, {Usage::storage, BINDING_TEXELS});
     pass.read(tracing.metrics);
-}
-
-void bind_tracing(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing) {
-    gpu.bind_storage(BINDING_BVH_NODES, run.object(tracing.nodes));
-    gpu.bind_storage(BINDING_TRIANGLES, run.object(tracing.triangles));
-    gpu.bind_storage(BINDING_MATERIALS, run.object(tracing.materials));
-    gpu.bind_storage(BINDING_TEXELS, run.object(tracing.texels));
-    program.set("triangle_count", static_cast<std::uint32_t>(run.value(tracing.metrics).triangles));
 }
 
 }  // namespace candela

@@ -56,9 +56,7 @@ struct Tracing {
 /// times that of the last build. Depends on the scene's layout and placement.
 [[nodiscard]] Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene);
 
-/// For a pass that traces rays: `read_tracing` declares its reads; `bind_tracing` binds them and sets the
-/// uniforms of shaders/bvh.glsl while the pass runs.
+/// For a pass whose shader includes bvh.glsl.
 void read_tracing(Pass& pass, const Tracing& tracing);
-void bind_tracing(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing);
 
 }  // namespace candela

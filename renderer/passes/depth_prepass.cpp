@@ -8,8 +8,7 @@ namespace candela {
 VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
                                   glm::uvec2 size) {
     return graph.add("depth-prepass", [&](Pass& pass) {
-        read_meshes(pass, scene);
-        read_materials(pass, scene);
+        read_surfaces(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "depth_prepass.frag", {"WITH_NORMALS"});
         const VisibleSurfaces out{
@@ -17,7 +16,6 @@ VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& 
             .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target)};
         pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
-            bind_view(gpu, run, view);
             draw_surfaces(gpu, run, scene, programs);
         });
         return out;

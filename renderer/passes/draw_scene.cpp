@@ -12,26 +12,16 @@ void multi_draw(const gl::Functions& gl, std::size_t first, std::size_t count) {
 
 }  // namespace
 
-void read_meshes(Pass& pass, const SceneData& scene) {
+std::vector<ResourceHandle> read_surfaces(Pass& pass, const SceneData& scene) {
     pass.read(scene.layout);
     pass.read(scene.vertices, Usage::vertex);
     pass.read(scene.instance_ids, Usage::vertex);
     pass.read(scene.indices, Usage::index);
     pass.read(scene.draws, Usage::indirect);
-    pass.read(scene.instances, Usage::storage);
-}
-
-void read_materials(Pass& pass, const SceneData& scene) {
-    pass.read(scene.materials, Usage::storage);
-}
-
-bool meshes_changed(const Execution& run, const SceneData& scene) {
-    return run.changed(scene.layout) || run.changed(scene.vertices) || run.changed(scene.instance_ids) ||
-           run.changed(scene.indices) || run.changed(scene.draws) || run.changed(scene.instances);
-}
-
-bool materials_changed(const Execution& run, const SceneData& scene) {
-    return run.changed(scene.materials);
+    pass.read(scene.instances, {Usage::storage, BINDING_INSTANCES});
+    pass.read(scene.materials, {Usage::storage, BINDING_MATERIALS});
+    return {scene.layout, scene.vertices,  scene.instance_ids, scene.indices,
+            scene.draws,  scene.instances, scene.materials};
 }
 
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
@@ -40,12 +30,6 @@ void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     vertices.vertex_buffer(run.object(scene.instance_ids), sizeof(std::uint32_t), 0, 1);
     vertices.index_buffer(run.object(scene.indices));
     vertices.bind();
-    gpu.gl().BindBuffer(GL_DRAW_INDIRECT_BUFFER, run.object(scene.draws));
-    gpu.bind_storage(BINDING_INSTANCES, run.object(scene.instances));
-}
-
-void bind_materials(const Gpu& gpu, Execution& run, const SceneData& scene) {
-    gpu.bind_storage(BINDING_MATERIALS, run.object(scene.materials));
 }
 
 void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
@@ -108,7 +92,6 @@ SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs) {
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
-    bind_materials(gpu, run, scene);
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
         if (group.alpha == AlphaMode::blend) {
             continue;

@@ -11,25 +11,16 @@ namespace candela {
 
 // Helpers for passes that rasterise the scene.
 
-/// Declares the reads that drawing the meshes needs.
-void read_meshes(Pass& pass, const SceneData& scene);
+/// Declares the reads of a pass that draws surfaces with mesh_surface.vert or shadow_maps.vert. Returns them.
+std::vector<ResourceHandle> read_surfaces(Pass& pass, const SceneData& scene);
 
-/// Declares the additional reads that shaded or masked surfaces need.
-void read_materials(Pass& pass, const SceneData& scene);
-
-/// Whether any of these inputs has changed since the running pass last ran.
-[[nodiscard]] bool meshes_changed(const Execution& run, const SceneData& scene);
-[[nodiscard]] bool materials_changed(const Execution& run, const SceneData& scene);
-
-/// Binds vertices, indices, instances and draw arguments.
+/// Sets up the vertex array for the meshes: vertices, instance numbers and indices.
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);
-void bind_materials(const Gpu& gpu, Execution& run, const SceneData& scene);
 
 /// Draws all opaque surfaces in one call with the bound program. Requires bind_meshes; needs no materials.
 void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws the masked surfaces with the bound program. Requires bind_meshes and bind_materials; binds the
-/// images.
+/// Draws the masked surfaces with the bound program. Requires bind_meshes; binds the images.
 void draw_masked_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
 
 /// Draws one group with the bound program. Binds its image and sets the winding of its front faces.
@@ -66,7 +57,7 @@ struct SurfacePrograms {
                                                std::vector<std::string> defined = {});
 
 /// Draws all opaque and masked surfaces, grouped by image. Culls the back faces of single-sided surfaces.
-/// Binds meshes, materials and images.
+/// Binds meshes and images.
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs);
 
 }  // namespace candela

@@ -9,8 +9,7 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
                            const FrameView& view, std::optional<TextureHandle> prepass_depth,
                            glm::uvec2 size) {
     return graph.add("forward", [&](Pass& pass) {
-        read_meshes(pass, scene);
-        read_materials(pass, scene);
+        read_surfaces(pass, scene);
         read_lighting(pass, lighting);
         read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "forward.frag", lighting_variant(lighting));
@@ -28,11 +27,10 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             } else {
                 begin_surfaces(gpu);
             }
-            bind_view(gpu, run, view);
-            programs.each([&](const gl::Program& program) { bind_lighting(gpu, run, program, lighting); });
-            draw_surfaces(gpu, run, scene, programs);
-            for (std::uint32_t part = 1; part < lighting_parts(run, lighting); ++part) {
-                begin_adding(gpu);
+            for (std::uint32_t part = 0; part < lighting_parts(run, lighting); ++part) {
+                if (part == 1) {
+                    begin_adding(gpu);
+                }
                 programs.each([&](const gl::Program& program) { begin_lighting_part(program, part); });
                 draw_surfaces(gpu, run, scene, programs);
             }

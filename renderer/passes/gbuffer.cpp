@@ -8,8 +8,7 @@ namespace candela {
 Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
                     glm::uvec2 size) {
     return graph.add("gbuffer", [&](Pass& pass) {
-        read_meshes(pass, scene);
-        read_materials(pass, scene);
+        read_surfaces(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "gbuffer.frag");
         const Gbuffer out{
@@ -18,7 +17,6 @@ Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const F
             .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target)};
         pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
-            bind_view(gpu, run, view);
             draw_surfaces(gpu, run, scene, programs);
         });
         return out;

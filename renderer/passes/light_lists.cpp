@@ -39,11 +39,7 @@ LightGrid add_light_grid(FrameGraph& graph, const Gpu& gpu, Declare declare, Mak
 }
 
 void read_light_grid(Pass& pass, const LightGrid& grid) {
-    pass.read(grid.constants, Usage::uniform);
-}
-
-void bind_light_grid(const Gpu& gpu, Execution& run, const LightGrid& grid) {
-    gpu.bind_uniforms(UNIFORMS_CELLS, run.object(grid.constants));
+    pass.read(grid.constants, {Usage::uniform, UNIFORMS_CELLS});
 }
 
 /// Adds node `NAME-bins` (CPU): sorts the lights into cells and uploads them. `declare(Pass&)` declares the
@@ -111,10 +107,10 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
         pass.read(bins.bins);
         read_view(pass, view);
         read_light_grid(pass, grid);
-        pass.read(lights, Usage::storage);
-        pass.read(bins.first, Usage::storage);
+        pass.read(lights, {Usage::storage, BINDING_LIGHTS});
+        pass.read(bins.first, {Usage::storage, BINDING_LIST_FIRST});
         if (depths) {
-            pass.read(*depths, Usage::storage);
+            pass.read(*depths, {Usage::storage, BINDING_TILE_DEPTHS});
         }
         const gl::Program& program = gpu.program({shader});
         const LightLists out{.kind = kind,
@@ -124,20 +120,11 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
                              .first = bins.first,
                              .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1,
                                                                              Lifetime::persistent),
-                                                 Usage::storage),
-                             .entries = pass.write(bins.entries, Usage::storage)};
+                                                 {Usage::storage, BINDING_LIST_COUNT}),
+                             .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
         pass.run([=, &gpu, &program](Execution& run) {
             run.reserve(out.count, run.value(bins.bins).grid.cells());
-            gpu.bind_storage(BINDING_LIGHTS, run.object(lights));
-            gpu.bind_storage(BINDING_LIST_FIRST, run.object(out.first));
-            gpu.bind_storage(BINDING_LIST_COUNT, run.object(out.count));
-            gpu.bind_storage(BINDING_LIST_ENTRIES, run.object(out.entries));
             program.set("has_depth", depths.has_value());
-            if (depths) {
-                gpu.bind_storage(BINDING_TILE_DEPTHS, run.object(*depths));
-            }
-            bind_view(gpu, run, view);
-            bind_light_grid(gpu, run, grid);
             dispatch_culling(gpu.gl(), program, run.value(bins.bins));
         });
         return out;
@@ -147,20 +134,16 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
 BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
                                              const FrameView& view, const LightGrid& grid) {
     return graph.add("tile-depths", [&](Pass& pass) {
-        pass.read(depth, Usage::sampled);
+        pass.read(depth, {Usage::sampled, UNIT_DEPTH});
         pass.read(grid.cells);
         read_view(pass, view);
         read_light_grid(pass, grid);
         const gl::Program& program = gpu.program({"tile_depths.comp"});
-        const auto depths =
-            pass.write(graph.buffer<gpu::TileDepth>("tile depths", 1, Lifetime::persistent), Usage::storage);
+        const auto depths = pass.write(graph.buffer<gpu::TileDepth>("tile depths", 1, Lifetime::persistent),
+                                       {Usage::storage, BINDING_TILE_DEPTHS});
         pass.run([=, &gpu, &program](Execution& run) {
             const CellGrid& cells = run.value(grid.cells);
             run.reserve(depths, cells.cells());
-            gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(depth));
-            gpu.bind_storage(BINDING_TILE_DEPTHS, run.object(depths));
-            bind_view(gpu, run, view);
-            bind_light_grid(gpu, run, grid);
             program.use();
             gpu.gl().DispatchCompute(cells.tiles.x, cells.tiles.y, 1);
         });
@@ -233,21 +216,11 @@ LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTabl
 }
 
 void read_light_lists(Pass& pass, const LightLists& lists) {
-    pass.read(lists.bins);
     read_view(pass, lists.view);
     read_light_grid(pass, lists.grid);
-    pass.read(lists.first, Usage::storage);
-    pass.read(lists.count, Usage::storage);
-    pass.read(lists.entries, Usage::storage);
-}
-
-void bind_light_lists(const Gpu& gpu, Execution& run, const gl::Program& program, const LightLists& lists) {
-    gpu.bind_storage(BINDING_LIST_FIRST, run.object(lists.first));
-    gpu.bind_storage(BINDING_LIST_COUNT, run.object(lists.count));
-    gpu.bind_storage(BINDING_LIST_ENTRIES, run.object(lists.entries));
-    bind_view(gpu, run, lists.view);
-    bind_light_grid(gpu, run, lists.grid);
-    program.set("global_light_count", run.value(lists.bins).global_count);
+    pass.read(lists.first, {Usage::storage, BINDING_LIST_FIRST});
+    pass.read(lists.count, {Usage::storage, BINDING_LIST_COUNT});
+    pass.read(lists.entries, {Usage::storage, BINDING_LIST_ENTRIES});
 }
 
 }  // namespace candela

@@ -60,9 +60,7 @@ struct LightLists {
                                             BufferHandle<gpu::Light> light_buffer, const FrameView& view,
                                             const LightGrid& grid);
 
-/// For a pass that shades with light lists: `read_light_lists` declares its reads; `bind_light_lists` binds
-/// them and sets the uniforms of shaders/light_list.glsl while the pass runs.
+/// For a pass whose shader includes light_list.glsl with LIGHT_LIST_CELLS.
 void read_light_lists(Pass& pass, const LightLists& lists);
-void bind_light_lists(const Gpu& gpu, Execution& run, const gl::Program& program, const LightLists& lists);
 
 }  // namespace candela

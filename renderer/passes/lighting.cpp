@@ -1,5 +1,6 @@
 #include "renderer/passes/lighting.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "engine/graph/execute.hpp"
@@ -9,25 +10,21 @@ namespace candela {
 
 namespace {
 
-std::uint32_t shown_lights(const Execution& run, const Lighting& lighting) {
-    const std::size_t lights = run.value(lighting.lights).entries.size();
-    return lighting.show == Show::indirect ? 0U : static_cast<std::uint32_t>(lights);
-}
-
-/// Stride at which VPLs are evaluated if they are too many. Odd, so that all bounces are evaluated equally
-/// often: paths often have an even number of VPLs.
-std::uint32_t vpl_stride(std::uint32_t vpl_count, std::uint32_t most) {
-    return vpl_count <= most ? 1 : (vpl_count + most - 1) / most | 1U;
+std::uint32_t shown_lights(const LightTable& lights, Show show) {
+    return show == Show::indirect ? 0U : static_cast<std::uint32_t>(lights.entries.size());
 }
 
 }  // namespace
 
 LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                              ValueHandle<ShadowPlan> plan) {
+                              ValueHandle<ShadowPlan> plan, Show show) {
     return graph.add("light-upload", [&](Pass& pass) {
         pass.read(lights);
         pass.read(plan);
+        pass.parameter(show);
         const LightBuffers out{
+            .constants = pass.write(
+                graph.buffer<gpu::LightConstants>("light constants", 1, Lifetime::persistent), Usage::copy),
             .lights =
                 pass.write(graph.buffer<gpu::Light>("light buffer", 1, Lifetime::persistent), Usage::copy),
             .shadows =
@@ -40,6 +37,7 @@ LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<Lig
                 records.push_back(table.entries[i].light);
                 records.back().shadow = shadows.shadow_of_light[i];
             }
+            upload_one(gpu, run, out.constants, gpu::LightConstants{.count = shown_lights(table, show)});
             upload<gpu::Light>(gpu, run, out.lights, records);
             upload<gpu::Shadow>(gpu, run, out.shadows, shadows.shadows);
         });
@@ -54,6 +52,8 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.emplace_back("INDIRECT_IRRADIANCE");
     } else if (lighting.vpls) {
         words.emplace_back("VPLS");
+        words.push_back(
+            fmt::format("MOST_VPLS={}", std::min(most_asked(*lighting.vpls), lighting.most_vpls)));
     }
     if (lighting.lists) {
         words.emplace_back("LIGHT_LIST_CELLS");
@@ -66,15 +66,16 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
 
 void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.read(lighting.lights);
-    pass.read(lighting.buffers.lights, Usage::storage);
-    pass.read(lighting.buffers.shadows, Usage::storage);
-    pass.read(lighting.shadows.cubes, Usage::sampled);
-    pass.read(lighting.shadows.maps, Usage::sampled);
+    pass.read(lighting.buffers.constants, {Usage::uniform, UNIFORMS_LIGHTS});
+    pass.read(lighting.buffers.lights, {Usage::storage, BINDING_LIGHTS});
+    pass.read(lighting.buffers.shadows, {Usage::storage, BINDING_SHADOWS});
+    pass.read(lighting.shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
+    pass.read(lighting.shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
     if (lighting.vpls) {
         read_vpl_light(pass, *lighting.vpls);
     }
     if (lighting.indirect) {
-        pass.read(*lighting.indirect, Usage::sampled);
+        pass.read(*lighting.indirect, {Usage::sampled, UNIT_INDIRECT});
     }
     if (lighting.lists) {
         read_light_lists(pass, *lighting.lists);
@@ -82,31 +83,9 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.parameter(lighting.show);
 }
 
-void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, const Lighting& lighting) {
-    gpu.bind_storage(BINDING_LIGHTS, run.object(lighting.buffers.lights));
-    gpu.bind_storage(BINDING_SHADOWS, run.object(lighting.buffers.shadows));
-    gpu.gl().BindTextureUnit(UNIT_SHADOW_CUBES, run.object(lighting.shadows.cubes));
-    gpu.gl().BindTextureUnit(UNIT_SHADOW_MAPS, run.object(lighting.shadows.maps));
-    gpu.shadow_sampler().bind(UNIT_SHADOW_CUBES);
-    gpu.shadow_sampler().bind(UNIT_SHADOW_MAPS);
-
-    program.set("light_count", shown_lights(run, lighting));
-    begin_lighting_part(program, 0);
-    if (lighting.lists) {
-        bind_light_lists(gpu, run, program, *lighting.lists);
-    }
-    if (lighting.indirect) {
-        gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(*lighting.indirect));
-    } else if (lighting.vpls) {
-        bind_vpl_light(gpu, run, program, *lighting.vpls);
-        const std::uint32_t vpls = run.value(lighting.vpls->vpls.plan).vpl_count;
-        const std::uint32_t most = std::min(most_asked(*lighting.vpls), lighting.most_vpls);
-        program.set("vpl_stride", lighting.show == Show::direct ? 0U : vpl_stride(vpls, most));
-    }
-}
-
 std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting) {
-    return std::max((shown_lights(run, lighting) + most_visited - 1) / most_visited, 1U);
+    return std::max(
+        (shown_lights(run.value(lighting.lights), lighting.show) + most_visited - 1) / most_visited, 1U);
 }
 
 void begin_lighting_part(const gl::Program& program, std::uint32_t part) {

@@ -20,6 +20,7 @@ enum class Show : std::uint8_t { total, direct, indirect };
 
 /// The lights on the GPU, in the order of the LightTable, and their shadow maps.
 struct LightBuffers {
+    BufferHandle<gpu::LightConstants> constants;
     BufferHandle<gpu::Light> lights;
     BufferHandle<gpu::Shadow> shadows;
 };
@@ -27,7 +28,7 @@ struct LightBuffers {
 /// Adds node `light-upload` (CPU, then upload): the lights, each with the index of its shadow. Depends on the
 /// lights and the shadow plan.
 [[nodiscard]] LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                                            ValueHandle<ShadowPlan> plan);
+                                            ValueHandle<ShadowPlan> plan, Show show);
 
 /// Everything that the evaluator in shaders/lighting.glsl reads.
 struct Lighting {
@@ -50,10 +51,8 @@ inline constexpr std::uint32_t most_visited = 8192;
 /// Names to define in shaders that include lighting.glsl.
 [[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
 
-/// For a pass that shades: `read_lighting` declares its reads; `bind_lighting` binds them and sets the
-/// uniforms of shaders/lighting.glsl while the pass runs.
+/// For a pass whose shader includes lighting.glsl.
 void read_lighting(Pass& pass, const Lighting& lighting);
-void bind_lighting(const Gpu& gpu, Execution& run, const gl::Program& program, const Lighting& lighting);
 
 /// Number of dispatches or draws that a shading pass needs, at least 1. Each adds the light of up to
 /// `most_visited` entries of the light lists; the first one also adds the indirect light.

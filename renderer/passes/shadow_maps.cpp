@@ -149,7 +149,7 @@ bool reserve(Execution& run, TextureHandle texture, const TextureDesc& desc) {
 }
 
 /// The views of the plan whose shadow maps are missing or outdated.
-std::vector<ShadowPlan::View> due_views(Execution& run, const SceneData& scene, const ShadowMaps& out,
+std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out,
                                         const ShadowSettings& settings) {
     const ShadowPlan& plan = run.value(out.plan);
     const bool keeps_cubes = reserve(
@@ -157,7 +157,7 @@ std::vector<ShadowPlan::View> due_views(Execution& run, const SceneData& scene, 
     const bool keeps_maps =
         reserve(run, out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
     const DrawnShadows* const last = run.find(out.drawn);
-    if (last == nullptr || meshes_changed(run, scene) || materials_changed(run, scene)) {
+    if (last == nullptr || surfaces_changed) {
         return plan.views;
     }
     std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
@@ -174,14 +174,13 @@ std::vector<ShadowPlan::View> due_views(Execution& run, const SceneData& scene, 
     return due;
 }
 
-void render_shadows(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
-                    const ShadowSettings& settings, const ShadowPrograms& programs) {
-    const std::vector<ShadowPlan::View> due = due_views(run, scene, out, settings);
+void draw_views(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
+                const ShadowSettings& settings, const ShadowPrograms& programs,
+                const std::vector<ShadowPlan::View>& due) {
     run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
 
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
-    bind_materials(gpu, run, scene);
     gl.Enable(GL_DEPTH_TEST);
     gl.Enable(GL_DEPTH_CLAMP);
     gl.Enable(GL_POLYGON_OFFSET_FILL);
@@ -253,8 +252,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         return out;
     });
     return graph.add("shadow-maps", [&](Pass& pass) {
-        read_meshes(pass, scene);
-        read_materials(pass, scene);
+        const std::vector<ResourceHandle> surfaces = read_surfaces(pass, scene);
         pass.read(plan);
         pass.parameter(settings);
         const ShadowPrograms programs{
@@ -267,7 +265,10 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
             .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
                                Usage::layer_target),
             .drawn = pass.write(graph.value<DrawnShadows>("drawn shadows"))};
-        pass.run([=, &gpu](Execution& run) { render_shadows(gpu, run, scene, out, settings, programs); });
+        pass.run([=, &gpu](Execution& run) {
+            const auto due = due_views(run, run.changed(surfaces), out, settings);
+            draw_views(gpu, run, scene, out, settings, programs, due);
+        });
         return out;
     });
 }

@@ -131,20 +131,20 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
                              const SurfelVisibility& visibility, const SurfelLights& lights) {
     return graph.add("surfel-light", [&](Pass& pass) {
         pass.read(surfels.plan);
-        pass.read(surfels.surfels, Usage::storage);
-        pass.read(surfels.points, Usage::storage);
-        pass.read(visibility.seen_points, Usage::storage);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
+        pass.read(visibility.seen_points, {Usage::storage, BINDING_SEEN_POINTS});
         pass.read(lights.table);
-        pass.read(lights.buffer, Usage::storage);
+        pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
         const gl::Program& lighter = gpu.program({"surfel_light.comp"});
         const gl::Program& adder = gpu.program({"surfel_cells.comp"});
         const DirectLight out{
             .points =
                 pass.write(graph.buffer<gpu::DirectPoint>("directly lit points", 1, Lifetime::persistent),
-                           Usage::storage),
+                           {Usage::storage, BINDING_DIRECT_POINTS}),
             .cells = pass.write(graph.buffer<gpu::CellLight>("directly lit cells", 1, Lifetime::persistent),
-                                Usage::storage)};
+                                {Usage::storage, BINDING_CELL_LIGHT})};
         pass.run([=, &gpu, &lighter, &adder](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             const std::uint32_t points = run.value(surfels.plan).point_count;
@@ -153,13 +153,6 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             if (count == 0) {
                 return;
             }
-            gpu.bind_storage(BINDING_LIGHTS, run.object(lights.buffer));
-            gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
-            gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
-            gpu.bind_storage(BINDING_SEEN_POINTS, run.object(visibility.seen_points));
-            gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(out.points));
-            gpu.bind_storage(BINDING_CELL_LIGHT, run.object(out.cells));
-            bind_tracing(gpu, run, lighter, tracing);
             lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
             const auto light_count = static_cast<std::uint32_t>(run.value(lights.table).entries.size());
             light_points(gpu.gl(), lighter, points, light_count);
@@ -182,8 +175,8 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
     return graph.add("surfel-visibility", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.set);
-        pass.read(surfels.surfels, Usage::storage);
-        pass.read(surfels.points, Usage::storage);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(motion);
         read_tracing(pass, tracing);
         pass.remembers();
@@ -193,13 +186,13 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         const gl::Program& seer = gpu.program({"surfel_points.comp"});
         const SurfelVisibility out{
             .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
-                                       Usage::storage),
-            .rows =
-                pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent), Usage::storage),
+                                       {Usage::storage, BINDING_FORM_FACTORS}),
+            .rows = pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent),
+                               {Usage::storage, BINDING_SURFEL_ROWS}),
             .seen_points = pass.write(graph.buffer<std::uint32_t>("seen points", 1, Lifetime::persistent),
-                                      Usage::storage)};
-        const auto hits =
-            pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent), Usage::storage);
+                                      {Usage::storage, BINDING_SEEN_POINTS})};
+        const auto hits = pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent),
+                                     {Usage::storage, BINDING_COVER});
         const auto known = pass.write(graph.value<KnownVisibility>("known visibility"));
         pass.run([=, &gpu, &factors, &cover, &rows, &seer](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
@@ -224,20 +217,13 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             if (count == 0) {
                 return;
             }
-            gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
-            gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
-            gpu.bind_storage(BINDING_FORM_FACTORS, now.form_factors);
-            gpu.bind_storage(BINDING_COVER, now.hits);
-            gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(out.rows));
             for (const gl::Program* tracer : {&factors, &cover, &seer}) {
-                bind_tracing(gpu, run, *tracer, tracing);
                 tracer->set("ray_offset", now.ray_offset);
                 set_changed_boxes(*tracer, changed, 4.0F * now.ray_offset);
             }
             find_form_factors(gpu.gl(), factors, count);
             find_cover(gpu.gl(), cover, count);
             scale_rows(gpu.gl(), rows, count);
-            gpu.bind_storage(BINDING_SEEN_POINTS, now.seen);
             seer.set("point_count", points);
             seer.use();
             gpu.gl().DispatchCompute(groups(points), 1, 1);
@@ -251,26 +237,27 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
     const DirectLight direct = add_direct_light(graph, gpu, tracing, surfels, visibility, lights);
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.plan);
-        pass.read(surfels.surfels, Usage::storage);
-        pass.read(surfels.points, Usage::storage);
-        pass.read(direct.points, Usage::storage);
-        pass.read(visibility.form_factors, Usage::storage);
-        pass.read(visibility.rows, Usage::storage);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
+        pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
+        pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
+        pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
         pass.parameter(bounces);
         const BouncePrograms programs{.first = &gpu.program({"surfel_bounce.comp"}, {"FIRST"}),
                                       .further = &gpu.program({"surfel_bounce.comp"}),
                                       .account = &gpu.program({"surfel_account.comp"})};
         const gl::Program& writer = gpu.program({"surfel_write.comp"});
-        const auto cells = pass.write(direct.cells, Usage::storage);
-        const auto bounced =
-            pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent), Usage::storage);
+        [[maybe_unused]] const auto lit_cells = pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
+        const auto bounced = pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent),
+                                        {Usage::storage, BINDING_BOUNCE});
         const Vpls out{
             .plan = surfels.plan,
-            .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
-            .flux =
-                pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage),
+            .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent),
+                               {Usage::storage, BINDING_VPLS}),
+            .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent),
+                               {Usage::storage, BINDING_FLUX_ACCOUNT}),
             .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
-                                 Usage::storage)};
+                                 {Usage::storage, BINDING_LIT_POINTS})};
         pass.run([=, &gpu, &writer](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             run.reserve(bounced, std::max(2 * count, 1U));
@@ -279,17 +266,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             if (count == 0) {
                 return;
             }
-            gpu.bind_storage(BINDING_SURFELS, run.object(surfels.surfels));
-            gpu.bind_storage(BINDING_CELL_POINTS, run.object(surfels.points));
-            gpu.bind_storage(BINDING_DIRECT_POINTS, run.object(direct.points));
-            gpu.bind_storage(BINDING_CELL_LIGHT, run.object(cells));
-            gpu.bind_storage(BINDING_FORM_FACTORS, run.object(visibility.form_factors));
-            gpu.bind_storage(BINDING_SURFEL_ROWS, run.object(visibility.rows));
-            gpu.bind_storage(BINDING_BOUNCE, run.object(bounced));
-            gpu.bind_storage(BINDING_FLUX_ACCOUNT, run.object(out.flux));
             gather_bounces(gpu.gl(), programs, count, bounces);
-            gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
-            gpu.bind_storage(BINDING_LIT_POINTS, run.object(*out.points));
             dispatch_surfels(gpu.gl(), writer, count);
         });
         return out;

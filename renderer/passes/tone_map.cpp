@@ -10,21 +10,20 @@ namespace candela {
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, TextureHandle target, glm::uvec2 size,
                   const ToneMapSettings& settings) {
     graph.add("tone-map", [&](Pass& pass) {
-        pass.read(radiance, Usage::sampled);
+        pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
         pass.parameter(settings);
         const gl::Program& program = tone_map_program(gpu);
         const TextureHandle written = pass.write(target, Usage::layer_target);
         pass.run([=, &gpu, &program](Execution& run) {
-            tone_map(gpu, program, run.object(radiance), run.object(written), size, settings);
+            draw_tone_mapped(gpu, program, run.object(written), size, settings);
         });
     });
 }
 
-void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuint framebuffer,
-              glm::uvec2 size, const ToneMapSettings& settings) {
+void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, GLuint framebuffer, glm::uvec2 size,
+                      const ToneMapSettings& settings) {
     gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
     gpu.gl().Viewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
-    gpu.gl().BindTextureUnit(UNIT_RADIANCE, radiance);
     program.set("target_size", glm::vec2(size));
     program.set("exposure", std::exp2(settings.exposure_ev));
     program.set("curve", settings.enabled);

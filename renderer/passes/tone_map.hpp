@@ -18,11 +18,11 @@ struct ToneMapSettings {
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, TextureHandle target, glm::uvec2 size,
                   const ToneMapSettings& settings);
 
-/// Does the work of the node, for pictures from elsewhere. `radiance` is the GL name of a texture. It is
-/// drawn to the lower left `size` pixels of `framebuffer`, with bilinear scaling if its size differs. Changes
-/// the draw framebuffer and the viewport.
-void tone_map(const Gpu& gpu, const gl::Program& program, GLuint radiance, GLuint framebuffer,
-              glm::uvec2 size, const ToneMapSettings& settings);
+/// Does the work of the node, also for pictures from elsewhere. The texture at UNIT_RADIANCE is drawn to the
+/// lower left `size` pixels of `framebuffer`, with bilinear scaling if its size differs. Changes the draw
+/// framebuffer and the viewport.
+void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, GLuint framebuffer, glm::uvec2 size,
+                      const ToneMapSettings& settings);
 [[nodiscard]] const gl::Program& tone_map_program(Gpu& gpu);
 
 }  // namespace candela

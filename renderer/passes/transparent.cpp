@@ -62,8 +62,7 @@ void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
 TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
                               const FrameView& view, const ShadedSurfaces& surfaces) {
     return graph.add("transparent", [&](Pass& pass) {
-        read_meshes(pass, scene);
-        read_materials(pass, scene);
+        read_surfaces(pass, scene);
         read_lighting(pass, lighting);
         pass.read(scene.placement);
         pass.read(view.camera);
@@ -82,9 +81,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
             check_lights(run.value(lighting.lights).entries.size());
             begin_blending(gpu.gl());
             bind_meshes(gpu, run, scene);
-            bind_materials(gpu, run, scene);
-            bind_view(gpu, run, view);
-            bind_lighting(gpu, run, program, lighting);
+            program.set("lights_before", 0U);
             program.set("lights_now", most_lights);
             program.use();
             for (const SortedGroup& next : sorted) {

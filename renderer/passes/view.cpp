@@ -120,11 +120,7 @@ FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraV
 }
 
 void read_view(Pass& pass, const FrameView& view) {
-    pass.read(view.constants, Usage::uniform);
-}
-
-void bind_view(const Gpu& gpu, Execution& run, const FrameView& view) {
-    gpu.bind_uniforms(UNIFORMS_VIEW, run.object(view.constants));
+    pass.read(view.constants, {Usage::uniform, UNIFORMS_VIEW});
 }
 
 }  // namespace candela

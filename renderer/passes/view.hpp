@@ -62,9 +62,7 @@ struct FrameView {
 [[nodiscard]] FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
                                         glm::uvec2 size);
 
-/// For a pass whose shader includes view.glsl: `read_view` declares the read; `bind_view` binds it while the
-/// pass runs.
+/// For a pass whose shader includes view.glsl.
 void read_view(Pass& pass, const FrameView& view);
-void bind_view(const Gpu& gpu, Execution& run, const FrameView& view);
 
 }  // namespace candela

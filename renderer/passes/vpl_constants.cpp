@@ -85,11 +85,7 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
 }
 
 void read_vpl_constants(Pass& pass, const VplCommon& common) {
-    pass.read(common.constants, Usage::uniform);
-}
-
-void bind_vpl_constants(const Gpu& gpu, Execution& run, const VplCommon& common) {
-    gpu.bind_uniforms(UNIFORMS_VPLS, run.object(common.constants));
+    pass.read(common.constants, {Usage::uniform, UNIFORMS_VPLS});
 }
 
 }  // namespace candela

@@ -59,9 +59,7 @@ struct VplCommon {
                                           ValueHandle<SceneMetrics> metrics, ValueHandle<VplPlan> plan,
                                           const VplVisibilitySettings& settings, float bound);
 
-/// For a pass whose shader includes vpl_constants.glsl: `read_vpl_constants` declares the read;
-/// `bind_vpl_constants` binds it while the pass runs.
+/// For a pass whose shader includes vpl_constants.glsl.
 void read_vpl_constants(Pass& pass, const VplCommon& common);
-void bind_vpl_constants(const Gpu& gpu, Execution& run, const VplCommon& common);
 
 }  // namespace candela

@@ -113,28 +113,20 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& 
                             glm::uvec2 size) {
     const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.plan);
     return graph.add("vpl-gather", [&](Pass& pass) {
-        pass.read(surfaces.normal, Usage::sampled);
-        pass.read(surfaces.depth, Usage::sampled);
-        pass.read(order, Usage::storage);
+        pass.read(surfaces.normal, {Usage::sampled, UNIT_NORMAL});
+        pass.read(surfaces.depth, {Usage::sampled, UNIT_DEPTH});
+        pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
         read_vpl_light(pass, light);
         read_view(pass, view);
         pass.parameter(interleave);
         const gl::Program& program = gpu.program({"vpl_gather.comp"}, vpl_light_variant(light));
         const GatheredVpls out{
-            .irradiance =
-                pass.write(graph.texture("gathered irradiance", {size, Format::rgba32f}), Usage::storage),
+            .irradiance = pass.write(graph.texture("gathered irradiance", {size, Format::rgba32f}),
+                                     {Usage::storage, IMAGE_INDIRECT}),
             .order = order};
         pass.run([=, &gpu, &program](Execution& run) {
-            const gl::Functions& gl = gpu.gl();
-            gl.BindTextureUnit(UNIT_NORMAL, run.object(surfaces.normal));
-            gl.BindTextureUnit(UNIT_DEPTH, run.object(surfaces.depth));
-            gl.BindImageTexture(IMAGE_INDIRECT, run.object(out.irradiance), 0, GL_FALSE, 0, GL_READ_WRITE,
-                                GL_RGBA32F);
-            gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
-            bind_view(gpu, run, view);
-            bind_vpl_light(gpu, run, program, light);
             program.set("interleave", interleave);
-            dispatch_gather(gl, program, size, interleave, run.value(light.vpls.plan).vpl_count,
+            dispatch_gather(gpu.gl(), program, size, interleave, run.value(light.vpls.plan).vpl_count,
                             most_asked(light));
         });
         return out;

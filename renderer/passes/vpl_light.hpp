@@ -27,9 +27,7 @@ struct VplLight {
 /// Names to define in shaders that include vpl_light.glsl.
 [[nodiscard]] std::vector<std::string> vpl_light_variant(const VplLight& light);
 
-/// For a pass whose shader includes vpl_light.glsl: `read_vpl_light` declares its reads; `bind_vpl_light`
-/// binds them and sets its uniforms while the pass runs.
+/// For a pass whose shader includes vpl_light.glsl.
 void read_vpl_light(Pass& pass, const VplLight& light);
-void bind_vpl_light(const Gpu& gpu, Execution& run, const gl::Program& program, const VplLight& light);
 
 }  // namespace candela

@@ -46,10 +46,7 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const DrawnAtlas& 
         const float nothing = 0.0F;
         gl.ClearBufferfv(GL_DEPTH, 0, &nothing);
     }
-    bind_tracing(gpu, run, *node.program, node.tracing);
-    bind_vpl_constants(gpu, run, node.common);
     set_changed_boxes(*node.program, changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
-    gpu.bind_storage(BINDING_VPLS, run.object(node.vpls.vpls));
     gl.Enable(GL_DEPTH_TEST);  // without the depth test, depth is not written
     gl.DepthFunc(GL_ALWAYS);
     node.program->use();
@@ -84,7 +81,7 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
                            const VplCommon& common) {
     return graph.add("vpl-maps", [&](Pass& pass) {
         pass.read(vpls.plan);
-        pass.read(vpls.vpls, Usage::storage);
+        pass.read(vpls.vpls, {Usage::storage, BINDING_VPLS});
         if (vpls.motion) {
             pass.read(*vpls.motion);
             pass.read(*vpls.set);

@@ -14,17 +14,10 @@ struct Pixels {
 };
 
 void read_pixels(Pass& pass, const Pixels& pixels) {
-    pass.read(pixels.surfaces.normal, Usage::sampled);
-    pass.read(pixels.surfaces.depth, Usage::sampled);
+    pass.read(pixels.surfaces.normal, {Usage::sampled, UNIT_NORMAL});
+    pass.read(pixels.surfaces.depth, {Usage::sampled, UNIT_DEPTH});
     read_view(pass, pixels.view);
     pass.parameter(pixels.interleave);
-}
-
-void bind_pixels(const Gpu& gpu, Execution& run, const Pixels& pixels, TextureHandle written, GLenum access) {
-    gpu.gl().BindTextureUnit(UNIT_NORMAL, run.object(pixels.surfaces.normal));
-    gpu.gl().BindTextureUnit(UNIT_DEPTH, run.object(pixels.surfaces.depth));
-    gpu.gl().BindImageTexture(IMAGE_INDIRECT, run.object(written), 0, GL_FALSE, 0, access, GL_RGBA32F);
-    bind_view(gpu, run, pixels.view);
 }
 
 std::uint32_t groups_of_row(glm::uvec2 size) {
@@ -40,15 +33,12 @@ void dispatch(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) 
 TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle gathered) {
     return graph.add("vpl-reconstruct-rows", [&](Pass& pass) {
         read_pixels(pass, pixels);
-        pass.read(gathered, Usage::sampled);
+        pass.read(gathered, {Usage::sampled, UNIT_INDIRECT});
         const gl::Program& program = gpu.program({"vpl_reconstruct.comp"});
-        const TextureHandle out = pass.write(
-            graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}), Usage::storage);
-        pass.run([=, &gpu, &program](Execution& run) {
-            bind_pixels(gpu, run, pixels, out, GL_WRITE_ONLY);
-            gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(gathered));
-            dispatch(gpu, program, pixels);
-        });
+        const TextureHandle out =
+            pass.write(graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}),
+                       {Usage::storage, IMAGE_INDIRECT});
+        pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
         return out;
     });
 }
@@ -66,36 +56,29 @@ std::uint32_t row_words(glm::uvec2 size) {
 Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle rows) {
     return graph.add("vpl-reconstruct", [&](Pass& pass) {
         read_pixels(pass, pixels);
-        pass.read(rows, Usage::sampled);
+        pass.read(rows, {Usage::sampled, UNIT_INDIRECT});
         const gl::Program& program = gpu.program({"vpl_reconstruct.comp"}, {"COLUMNS"});
         const Columns out{
             .irradiance = pass.write(graph.texture("indirect irradiance", {pixels.size, Format::rgba32f}),
-                                     Usage::storage),
+                                     {Usage::storage, IMAGE_INDIRECT}),
             .lacking_mask =
                 pass.write(graph.buffer<std::uint32_t>("mask of pixels lacking neighbours",
                                                        std::uint64_t{row_words(pixels.size)} * pixels.size.y),
-                           Usage::storage)};
-        pass.run([=, &gpu, &program](Execution& run) {
-            bind_pixels(gpu, run, pixels, out.irradiance, GL_WRITE_ONLY);
-            gpu.gl().BindTextureUnit(UNIT_INDIRECT, run.object(rows));
-            gpu.bind_storage(BINDING_LACKING_MASK, run.object(out.lacking_mask));
-            dispatch(gpu, program, pixels);
-        });
+                           {Usage::storage, BINDING_LACKING_MASK})};
+        pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
         return out;
     });
 }
 
 BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns& columns, glm::uvec2 size) {
     return graph.add("vpl-lacking", [&](Pass& pass) {
-        pass.read(columns.lacking_mask, Usage::storage);
+        pass.read(columns.lacking_mask, {Usage::storage, BINDING_LACKING_MASK});
         const gl::Program& program = gpu.program({"vpl_lacking.comp"});
         const auto list =
             pass.write(graph.buffer<std::uint32_t>("pixels lacking neighbours",
                                                    4 + std::uint64_t{size.x} * size.y, Lifetime::persistent),
-                       Usage::storage);
-        pass.run([=, &gpu, &program](Execution& run) {
-            gpu.bind_storage(BINDING_LACKING_MASK, run.object(columns.lacking_mask));
-            gpu.bind_storage(BINDING_LACKING, run.object(list));
+                       {Usage::storage, BINDING_LACKING});
+        pass.run([=, &gpu, &program](Execution&) {
             program.set("row_words", row_words(size));
             program.set("mask_words", row_words(size) * size.y);
             program.use();
@@ -124,18 +107,13 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
                        BufferHandle<std::uint32_t> order, const VplLight& light) {
     return graph.add("vpl-fill", [&](Pass& pass) {
         read_pixels(pass, pixels);
-        pass.read(order, Usage::storage);
-        pass.read(found.lacking, Usage::storage);
+        pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
+        pass.read(found.lacking, {Usage::storage, BINDING_LACKING});
         pass.read(found.lacking, Usage::indirect);
         read_vpl_light(pass, light);
         const gl::Program& program = gpu.program({"vpl_fill.comp"}, vpl_light_variant(light));
-        const TextureHandle out = pass.write(found.irradiance, Usage::storage);
+        const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
         pass.run([=, &gpu, &program](Execution& run) {
-            bind_pixels(gpu, run, pixels, out, GL_READ_WRITE);
-            gpu.bind_storage(BINDING_VPL_ORDER, run.object(order));
-            gpu.bind_storage(BINDING_LACKING, run.object(found.lacking));
-            bind_vpl_light(gpu, run, program, light);
-            gpu.gl().BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, run.object(found.lacking));
             dispatch_fill(gpu.gl(), program, run.value(light.vpls.plan).vpl_count, most_asked(light));
         });
         return out;

@@ -35,7 +35,6 @@ std::uint32_t groups(std::uint32_t count, std::uint32_t a_group) {
 void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
                     const VplPlan& plan) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
-    bind_tracing(gpu, run, program, tracing);
     program.set("path_count", path_count);
     program.set("ray_offset", run.value(tracing.metrics).ray_offset());
     program.use();
@@ -57,7 +56,6 @@ void write_vpls(const Gpu& gpu, const gl::Program& program, const VplPlan& plan)
 
 void find_edges(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
                 const VplPlan& plan) {
-    bind_tracing(gpu, run, program, tracing);
     program.set("vpl_count", plan.vpl_count);
     program.set("edge_reach", edge_reach(run.value(tracing.metrics).area, plan.vpl_count));
     program.use();
@@ -70,21 +68,23 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
                    BufferHandle<gpu::Light> lights) {
     return graph.add("vpl-trace", [&](Pass& pass) {
         pass.read(plan_handle);
-        pass.read(lights, Usage::storage);
+        pass.read(lights, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
         const gl::Program& tracer = gpu.program({"vpl_trace.comp"});
         const gl::Program& writer = gpu.program({"vpl_write.comp"});
         const gl::Program& edges = gpu.program({"vpl_edges.comp"});
         const PathBuffers buffers{
-            .paths = pass.write(graph.buffer<gpu::Path>("paths", 1, Lifetime::persistent), Usage::copy),
-            .weights = pass.write(graph.buffer<float>("path weights", 1, Lifetime::persistent), Usage::copy),
+            .paths = pass.write(graph.buffer<gpu::Path>("paths", 1, Lifetime::persistent),
+                                {Usage::copy, BINDING_PATHS}),
+            .weights = pass.write(graph.buffer<float>("path weights", 1, Lifetime::persistent),
+                                  {Usage::copy, BINDING_PATH_WEIGHTS}),
             .records = pass.write(graph.buffer<gpu::VplRecord>("vpl records", 1, Lifetime::persistent),
-                                  Usage::storage)};
-        const Vpls out{
-            .plan = plan_handle,
-            .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent), Usage::storage),
-            .flux =
-                pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent), Usage::storage)};
+                                  {Usage::storage, BINDING_VPL_RECORDS})};
+        const Vpls out{.plan = plan_handle,
+                       .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent),
+                                          {Usage::storage, BINDING_VPLS}),
+                       .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent),
+                                          {Usage::storage, BINDING_FLUX})};
         pass.run([=, &gpu, &tracer, &writer, &edges](Execution& run) {
             const VplPlan& plan = run.value(out.plan);
             run.reserve(out.vpls, std::max(plan.vpl_count, 1U));
@@ -95,12 +95,6 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
             if (plan.paths.empty()) {
                 return;
             }
-            gpu.bind_storage(BINDING_LIGHTS, run.object(lights));
-            gpu.bind_storage(BINDING_PATHS, run.object(buffers.paths));
-            gpu.bind_storage(BINDING_PATH_WEIGHTS, run.object(buffers.weights));
-            gpu.bind_storage(BINDING_VPL_RECORDS, run.object(buffers.records));
-            gpu.bind_storage(BINDING_VPLS, run.object(out.vpls));
-            gpu.bind_storage(BINDING_FLUX, run.object(out.flux));
             trace_segments(gpu, run, tracer, tracing, plan);
             write_vpls(gpu, writer, plan);
             find_edges(gpu, run, edges, tracing, plan);

@@ -43,6 +43,7 @@ class RecordingBackend final : public Backend {
     void begin_pass(std::string_view name, std::uint32_t, const PassTargets* given) override {
         log.push_back("begin " + std::string(name));
         targets = {};
+        bound.clear();
         if (given) {
             targets = {{given->colour.begin(), given->colour.end()}, given->depth, given->size};
         }
@@ -52,12 +53,17 @@ class RecordingBackend final : public Backend {
         log.push_back("end");
         --open_passes;
     }
+    void bind_texture(ObjectId texture, const TextureDesc&, Binding binding) override {
+        bind(texture, true, binding);
+    }
+    void bind_buffer(ObjectId buffer, Binding binding) override { bind(buffer, false, binding); }
     std::uint64_t texture_digest(ObjectId texture) override { return digest(texture, true); }
     std::uint64_t buffer_digest(ObjectId buffer) override { return digest(buffer, false); }
 
     std::map<ObjectId, Object> objects;
-    std::vector<std::string> log;  // barriers and passes
-    Targets targets;               // of the last pass
+    std::vector<std::string> log;                     // barriers and passes
+    Targets targets;                                  // of the last pass
+    std::vector<std::pair<ObjectId, Binding>> bound;  // of the last pass
     std::size_t created = 0;
     std::size_t creations_left = static_cast<std::size_t>(-1);  // until creating fails
     int open_passes = 0;
@@ -83,6 +89,17 @@ class RecordingBackend final : public Backend {
             return 0;
         }
         return found->second.content;
+    }
+
+    void bind(ObjectId id, bool texture, Binding binding) {
+        const auto found = objects.find(id);
+        if (found != objects.end() && found->second.texture != texture) {
+            misuse = fmt::format("object {} is bound as what it is not", id);
+        }
+        if (open_passes == 0) {
+            misuse = fmt::format("object {} is bound outside of a pass", id);
+        }
+        bound.emplace_back(id, binding);
     }
 
     void destroy(ObjectId id, bool texture) {

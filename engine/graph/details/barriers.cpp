@@ -100,6 +100,7 @@ Barrier barrier_for(ResourceKind kind, Usage usage) {
     const bool texture = kind == ResourceKind::texture;
     switch (usage) {
         case Usage::sampled:
+        case Usage::compared:
             return Barrier::texture_fetch;
         case Usage::storage:
             return texture ? Barrier::image_access : Barrier::storage;

@@ -26,6 +26,7 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
         case Usage::copy:
             return true;
         case Usage::sampled:
+        case Usage::compared:
             return texture && !write;
         case Usage::uniform:
         case Usage::vertex:
@@ -39,6 +40,12 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
             return texture && write;
     }
     return false;
+}
+
+/// Whether shaders find resources of this usage at binding points.
+bool has_point(ResourceKind kind, Usage usage) {
+    return usage == Usage::sampled || usage == Usage::compared || usage == Usage::storage ||
+           usage == Usage::uniform || (usage == Usage::copy && kind == ResourceKind::buffer);
 }
 
 }  // namespace
@@ -143,7 +150,7 @@ std::string_view Declaration::writer_of(std::uint32_t resource, std::uint32_t ve
     return std::prev(std::find_if(passes.begin(), passes.end(), starts_later))->name;
 }
 
-void Declaration::read(ResourceHandle handle, ResourceKind kind, Usage usage) {
+void Declaration::read(ResourceHandle handle, ResourceKind kind, Binding binding) {
     const std::uint32_t pass = pass_count() - 1;
     const std::string_view name = passes[pass].name;
     if (!owns(handle, kind)) {
@@ -151,7 +158,7 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Usage usage) {
                      fmt::format("pass '{}' reads a {} of another graph", name, to_string(kind)));
     }
     Resource& resource = resources[handle.resource];
-    check_usage(resource, usage, false);
+    check_binding(resource, binding, false);
     if (handle.version < resource.versions) {
         if (resource.writer == pass) {
             fault(FaultCode::feedback,
@@ -172,10 +179,10 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Usage usage) {
                                                      name, to_string(kind), resource.name));
     }
     resource.reader = pass;
-    accesses.push_back({handle.resource, handle.version, usage, false});
+    accesses.push_back({handle.resource, handle.version, binding.usage, false, binding.point});
 }
 
-ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usage usage) {
+ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Binding binding) {
     const std::uint32_t pass = pass_count() - 1;
     const std::string_view name = passes[pass].name;
     if (!owns(handle, kind)) {
@@ -195,7 +202,7 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usag
               fmt::format("pass '{}' writes value '{}', which the host sets", name, resource.name));
         return handle;
     }
-    check_usage(resource, usage, true);
+    check_binding(resource, binding, true);
     if (resource.reader == pass) {
         fault(FaultCode::feedback,
               fmt::format(
@@ -207,19 +214,26 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Usag
         late_writes_.push_back({handle.resource, handle.version, resource.writer});
     }
     resource.writer = pass;
-    accesses.push_back({handle.resource, ++resource.versions, usage, true});
+    accesses.push_back({handle.resource, ++resource.versions, binding.usage, true, binding.point});
     return {id, handle.resource, resource.versions};
 }
 
-void Declaration::check_usage(const Resource& resource, Usage usage, bool write) {
+void Declaration::check_binding(const Resource& resource, Binding binding, bool write) {
     if (resource.kind == ResourceKind::value) {
         return;
     }
+    const Usage usage = binding.usage;
     const std::string_view verb = write ? "writes" : "reads";
     if (!allowed(resource.kind, usage, write)) {
         return fault(FaultCode::wrong_usage,
                      fmt::format("pass '{}' {} {} '{}' as {}", passes.back().name, verb,
                                  to_string(resource.kind), resource.name, to_string(usage)));
+    }
+    if (binding.point != Binding::unbound && !has_point(resource.kind, usage)) {
+        fault(
+            FaultCode::wrong_usage,
+            fmt::format("pass '{}' {} {} '{}' as {}, for which there are no binding points",
+                        passes.back().name, verb, to_string(resource.kind), resource.name, to_string(usage)));
     }
     if (resource.kind != ResourceKind::texture) {
         return;

@@ -47,6 +47,7 @@ struct Access {
     std::uint32_t version;  // the version read, or the one that the write produces
     Usage usage;            // not used for values
     bool write;
+    std::uint32_t point;  // see Binding
 };
 
 struct ComponentRead {
@@ -132,8 +133,8 @@ class Declaration {
 
     void begin_pass(std::string_view name);
     void end_pass();
-    void read(ResourceHandle handle, ResourceKind kind, Usage usage);
-    ResourceHandle write(ResourceHandle handle, ResourceKind kind, Usage usage);
+    void read(ResourceHandle handle, ResourceKind kind, Binding binding);
+    ResourceHandle write(ResourceHandle handle, ResourceKind kind, Binding binding);
     void after(std::string_view pass) { afters.push_back(arena_->store_text(pass)); }
 
     template <class T>
@@ -184,7 +185,7 @@ class Declaration {
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
     void fault(FaultCode code, std::string message) { faults.push_back({code, std::move(message)}); }
-    void check_usage(const Resource& resource, Usage usage, bool write);
+    void check_binding(const Resource& resource, Binding binding, bool write);
     void check_late_writes();
     void check_attachments();
 

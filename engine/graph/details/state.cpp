@@ -44,6 +44,7 @@ class StateMaker {
         step.first_output = size_of(state_.outputs);
         step.first_revision = size_of(state_.revisions);
         step.first_target = size_of(state_.targets);
+        step.first_bound = size_of(state_.bound);
     }
 
     void add_step(std::uint32_t position) {
@@ -66,6 +67,7 @@ class StateMaker {
             step.remembers |= resource.history_of != none;
             add_input(access, pass);
             add_target(access);
+            add_bound(access);
         }
         for (const ComponentRead& read : declared_.components_of(pass)) {
             state_.revisions.push_back({read.revision});
@@ -101,6 +103,12 @@ class StateMaker {
         const bool depth = access.usage == Usage::depth_target;
         if (depth || access.usage == Usage::colour_target) {
             state_.targets.push_back({plan_.object[access.resource], depth});
+        }
+    }
+
+    void add_bound(const Access& access) {
+        if (access.point != Binding::unbound || access.usage == Usage::indirect) {
+            state_.bound.push_back({access.resource, {access.usage, access.point}});
         }
     }
 
@@ -281,7 +289,7 @@ class Heir {
     [[nodiscard]] bool same_access(const Access& a, std::uint32_t pass, const Access& b,
                                    std::uint32_t old) const {
         const Resource& resource = declared_.resources[a.resource];
-        if (a.usage != b.usage || a.write != b.write ||
+        if (a.usage != b.usage || a.point != b.point || a.write != b.write ||
             !alike(resource, old_declared_.resources[b.resource])) {
             return false;
         }

@@ -90,6 +90,12 @@ struct Target {
     bool depth;
 };
 
+/// What the back end binds for a pass.
+struct Bound {
+    std::uint32_t resource;
+    Binding binding;
+};
+
 /// A kept pass, in execution order. Its lists end where those of the next step begin.
 struct Step {
     void (*invoke)(void*, Execution&) = nullptr;
@@ -99,6 +105,7 @@ struct Step {
     std::uint32_t first_output = 0;
     std::uint32_t first_revision = 0;
     std::uint32_t first_target = 0;
+    std::uint32_t first_bound = 0;
     Barrier barrier = Barrier::none;
     bool side_effect = false;
     bool writes_import = false;
@@ -114,6 +121,7 @@ struct State {
     std::vector<Output> outputs;
     std::vector<Revision> revisions;
     std::vector<Target> targets;
+    std::vector<Bound> bound;
     std::vector<Version> versions;  // per version id
     std::vector<Slot> slots;
     std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
