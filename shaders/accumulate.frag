@@ -1,4 +1,4 @@
-// Running mean of radiance.
+// Running mean of the radiance of `count` frames. One fragment a pixel.
 #include "bindings.glsl"
 
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;

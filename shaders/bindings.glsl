@@ -16,11 +16,12 @@
 #define BINDING_LIST_ENTRIES 13
 #define BINDING_DIRECT_POINTS 14
 #define BINDING_LAST 14
-// Where lists are culled no meshes are drawn.
+// The names below reuse a number where no pass needs both buffers.
+// Passes that cull light lists draw no meshes.
 #define BINDING_TILE_DEPTHS BINDING_INSTANCES
-// Where light is traced there are no lists.
+// Passes that trace VPLs read no light lists.
 #define BINDING_VPL_RECORDS BINDING_LIST_FIRST
-// Surfels are lit without paths, and shaded with them.
+// Passes that light surfels, or shade with them, use no paths and draw no meshes.
 #define BINDING_SURFELS BINDING_INSTANCES
 #define BINDING_SURFEL_ROWS BINDING_LIGHTS
 #define BINDING_CELL_POINTS BINDING_PATHS
@@ -31,7 +32,7 @@
 #define BINDING_FORM_FACTORS BINDING_LIST_FIRST
 #define BINDING_COVER BINDING_LIST_COUNT
 #define BINDING_BOUNCE BINDING_LIST_ENTRIES
-// Nor where VPLs are gathered.
+// Passes that gather VPLs read no light lists.
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_LACKING_MASK BINDING_LIST_COUNT
 #define BINDING_LACKING BINDING_LIST_ENTRIES
@@ -65,12 +66,12 @@
 
 #define BVH_STACK_SIZE 48
 
-#define PIXEL_BLOCK 16      // pixels along an edge of what a work group shades: pixel_block.glsl
+#define PIXEL_BLOCK 16      // pixels along an edge of the block that a work group shades: pixel_block.glsl
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
-#define FILL_GROUP 64       // pixels that a work group asks VPLs for
-#define SURFEL_GROUP 64     // surfels, points or pairs of them that a work group lights
-#define COVER_RAYS 16       // that an invocation casts to find how much of a hemisphere is covered
-#define COVER_PARTS 16      // invocations a surfel
-#define MOST_COLUMNS 2048   // surfels that another one gathers from
-#define MOST_CHANGED_BOXES 8  // that passes are told of; more are told as one
+#define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp
+#define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
+#define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
+#define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
+#define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from
+#define MOST_CHANGED_BOXES 8  // in the uniforms of changed_boxes.glsl; more are merged into one box

@@ -1,5 +1,5 @@
-// Traversal of the bounding-volume hierarchy; the twin of engine/bvh, formula for formula, but for the holes of masks,
-// which rays pass through.
+// Traversal of the bounding-volume hierarchy. Uses the same formulas as engine/bvh, with one addition: rays pass
+// through the holes of alpha masks.
 #include "bindings.glsl"
 #include "materials.glsl"
 #include "types.glsl"
@@ -15,7 +15,7 @@ struct Hit {
 
 const uint NO_TRIANGLE = 0xffffffffu;
 
-// Distance at which the ray enters the box, or infinity. Kay and Kajiya's slabs.
+// Distance at which the ray enters the box, or infinity if it misses. Slab test of Kay and Kajiya.
 float enter_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_direction, float t_min, float t_max) {
     vec3 t0 = (lower - origin) * inverse_direction;
     vec3 t1 = (upper - origin) * inverse_direction;
@@ -23,11 +23,11 @@ float enter_box(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_direction, flo
     vec3 far = max(t0, t1);
     float enter = max(max(near.x, near.y), max(near.z, t_min));
     float leave = min(min(far.x, far.y), min(far.z, t_max));
-    // Widened by the rounding of the products (Ize, "Robust BVH Ray Traversal", 2013).
+    // Tolerates the rounding error of the products (Ize, "Robust BVH Ray Traversal", 2013).
     return enter <= leave * 1.00001 ? enter : 1.0 / 0.0;
 }
 
-// Components near zero are moved away from it: 0 × infinity would be NaN in the slabs.
+// Inverse of a direction. Components near zero are replaced by ±1e-20, as 0 × infinity would be NaN in the slab test.
 vec3 safe_inverse(vec3 direction) {
     const float tiny = 1e-20;
     vec3 safe = mix(direction, mix(vec3(tiny), vec3(-tiny), lessThan(direction, vec3(0.0))),
@@ -35,7 +35,8 @@ vec3 safe_inverse(vec3 direction) {
     return 1.0 / safe;
 }
 
-// Möller and Trumbore (1997), two-sided. Takes the nearer of two hits, at equal distance that of the lower id.
+// Two-sided test of Möller and Trumbore (1997). Keeps the nearer of two hits; at equal distance the one with the lower
+// id.
 void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, inout Hit hit) {
     TraceTriangle triangle = triangles[index];
     vec3 p = cross(direction, triangle.edge_ac);
@@ -53,7 +54,7 @@ void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, in
     if ((nearer || tie) && !is_hole(triangle, vec2(u, v))) hit = Hit(t, vec2(u, v), index);
 }
 
-// A triangle with t in (t_min, t_max), whichever side it shows: the nearest, or with `any` the first that turns up.
+// A triangle hit at t in (t_min, t_max), from either side: the nearest one, or with `any` the first one found.
 Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
     Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE);
     vec3 inverse_direction = safe_inverse(direction);
@@ -89,12 +90,12 @@ Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
     return hit;
 }
 
-// Nearest triangle with t in (t_min, t_max), whichever side it shows; `triangle` is NO_TRIANGLE if there is none.
+// Nearest triangle hit at t in (t_min, t_max), from either side; `triangle` is NO_TRIANGLE if there is none.
 Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
     return trace(origin, direction, t_min, t_max, false);
 }
 
-// Whether there is a triangle with t in (t_min, t_max).
+// Whether any triangle is hit at t in (t_min, t_max).
 bool any_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
     return trace(origin, direction, t_min, t_max, true).triangle != NO_TRIANGLE;
 }

@@ -1,4 +1,4 @@
-// Where the scene has changed, for passes that keep what they found elsewhere.
+// The boxes in which the scene has changed. Passes keep their earlier results for rays that miss all of them.
 #include "bindings.glsl"
 #include "bvh.glsl"
 
@@ -6,7 +6,7 @@ uniform bool everything_changed;
 uniform uint changed_box_count;
 uniform vec4 changed_boxes[2 * MOST_CHANGED_BOXES];  // lower and upper corners, metres
 
-// Whether a ray may meet something else now than it did before, up to t_max.
+// Whether a ray may hit something else than before, up to t_max.
 bool may_have_changed(vec3 origin, vec3 direction, float t_max) {
     if (everything_changed) return true;
     vec3 inverse_direction = safe_inverse(direction);
@@ -17,7 +17,7 @@ bool may_have_changed(vec3 origin, vec3 direction, float t_max) {
     return false;
 }
 
-// Whether anything has changed above a plane.
+// Whether anything may have changed above the plane through `position`.
 bool may_have_changed_above(vec3 position, vec3 normal) {
     if (everything_changed) return true;
     for (uint i = 0u; i < changed_box_count; ++i) {

@@ -1,4 +1,4 @@
-// Shades the G-buffer, a block of pixels a work group.
+// Shades the G-buffer. One work group a block of PIXEL_BLOCK² pixels, one invocation SURFACES of them.
 #include "bindings.glsl"
 
 #include "pixel_block.glsl"
@@ -23,7 +23,7 @@ void main() {
     vec3 reflected[SURFACES];
     for (int s = 0; s < SURFACES; ++s) reflected[s] = vec3(0.0);
     if (nearest > 0.0) reflect_radiance(surfaces, pixels, reflected);
-    // Stores beyond the target are discarded by the GL.
+    // OpenGL discards stores outside the image.
     for (int s = 0; s < SURFACES; ++s) {
         vec4 sum = depth[s] > 0.0 ? vec4(reflected[s], 1.0) : vec4(0.0);
         if (lights_before > 0u) sum.rgb += imageLoad(radiance, block_pixel(s)).rgb;

@@ -1,5 +1,5 @@
-// Depth, with the holes of masks, and (WITH_NORMALS) normals as in the G-buffer. The shadow maps of masked surfaces are
-// drawn with it too.
+// Writes depth, and with WITH_NORMALS also normals, packed as in the G-buffer. With MASKED it discards fragments in the
+// holes of alpha masks. Shadow maps of masked surfaces use it too.
 #include "mesh_surface.glsl"
 
 #ifdef WITH_NORMALS

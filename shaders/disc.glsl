@@ -1,14 +1,13 @@
-// Light from a small disc that reflects evenly.
+// Light from a small disc that emits diffusely, evenly over its area.
 
-// 0 where a receiver faces the disc, 1 where it stands square to it.
+// 0 where the receiver faces the disc, 1 where it is perpendicular to it or turned away.
 float squareness(vec3 normal, vec3 from_normal) { return 1.0 - max(-dot(normal, from_normal), 0.0); }
 
-// π / A times the form factor of a disc of area A = π R² at `to_disc` from a receiver, which is `height` above its plane.
-// Near the disc it stays finite in two ways, as the receiver turns to it. Facing it the term is cos θ cos θ' / (r² + R²),
-// which is exact on its axis (Howell et al., "Thermal Radiation Heat Transfer", configuration factor of a disc). Square to
-// it that would darken creases, where a wall takes up half of the floor's sky from however near: there the disc is seen as
-// if it sank behind its own surface, by R at contact and R²/r farther off, which leaves the half, to within R over the
-// wall's height.
+// π / A times the form factor of a disc of area A = π R², seen from a receiver `height` above the disc's plane;
+// `to_disc` is the vector from the receiver to the disc's centre, r its length. With q = `square`, the disc is seen
+// as if it had sunk by q R² / √(R² + r²) below its surface, and the term is cos θ cos θ' / (r'² + (1 - q) R²), r' being
+// the distance to the sunk centre. Exact on the axis of a facing disc; at most 4/3 of 1/R². See theory.md, "The sinking
+// disc".
 float sinking_disc_term(vec3 to_disc, float height, vec3 normal, float radius2, float square, vec3 from_normal) {
     float depth = square * radius2 * inversesqrt(radius2 + max(dot(to_disc, to_disc), 1e-12));
     vec3 to_sunk = to_disc - depth * normal;
@@ -17,7 +16,7 @@ float sinking_disc_term(vec3 to_disc, float height, vec3 normal, float radius2, 
     return cos_receiver * (height + depth) / (distance2 * (distance2 + (1.0 - square) * radius2));
 }
 
-// The same of a disc whose surface goes on around it.
+// The same for a disc whose surface continues around it, so that a perpendicular receiver may touch that surface.
 float disc_term(vec3 position, vec3 normal, float radius2, vec3 from, vec3 from_normal) {
     vec3 to_disc = position - from;
     float height = -dot(normal, to_disc);
@@ -25,5 +24,5 @@ float disc_term(vec3 position, vec3 normal, float radius2, vec3 from, vec3 from_
     return sinking_disc_term(to_disc, height, normal, radius2, squareness(normal, from_normal), from_normal);
 }
 
-// Nearer than three times its width a cell is seen point by point.
+// Whether a cell of that area is nearer than three times its width. Its points are then evaluated one by one.
 bool is_near(vec3 apart, float area) { return dot(apart, apart) < 9.0 * area; }

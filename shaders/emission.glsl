@@ -1,9 +1,9 @@
-// Rays that carry the flux of a light, all alike.
+// Rays that leave a light. Each ray of a light carries the same flux.
 #include "lights.glsl"
 #include "sampling.glsl"
 
-// Cosine to a spot's axis, distributed as its intensity: inverse of the cumulative flux of the inner cone, which is
-// constant, followed by that of the quadratic falloff.
+// Cosine of the angle to a spot's axis, distributed like its intensity, for `u` in [0, 1): the inverse of the
+// cumulative flux of the inner cone and then of the quadratic falloff. See theory.md, "Directions".
 float sample_spot_cosine(Light light, float u) {
     float inner = 1.0 - light.cos_inner;
     float falloff = (light.cos_inner - light.cos_outer) / 3.0;
@@ -12,6 +12,7 @@ float sample_spot_cosine(Light light, float u) {
     return light.cos_outer + (light.cos_inner - light.cos_outer) * pow(max(1.0 - (x - inner) / falloff, 0.0), 1.0 / 3.0);
 }
 
+// Origin and unit direction of the ray for `u` in [0, 1)². Rays of a directional light start on its footprint.
 void sample_emission(Light light, vec2 u, out vec3 origin, out vec3 direction) {
     origin = light.position;
     direction = light.direction;

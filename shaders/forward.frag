@@ -1,9 +1,10 @@
+// Shades a fragment as it is drawn, without a G-buffer.
 #include "mesh_surface.glsl"
 #include "lighting.glsl"
 #include "view.glsl"
 
 #ifdef BLENDED
-// Blending leaves radiance + (1 - cover) · what is behind, and alpha telling where a surface is.
+// Dual-source blending computes radiance + (1 - cover) · background. Alpha is 1 where there is a surface.
 layout(location = 0, index = 0) out vec4 radiance;
 layout(location = 0, index = 1) out vec4 cover;
 #else
@@ -12,7 +13,7 @@ layout(location = 0) out vec4 radiance;
 
 void main() {
     vec4 colour = fragment_colour();
-    if (gl_HelperInvocation) return;  // as in vpl_maps.frag, where rays are traced
+    if (gl_HelperInvocation) return;  // as in vpl_maps.frag: this shader may trace rays too
     Surface surfaces[SURFACES];
     uvec2 pixels[SURFACES];
     vec3 reflected[SURFACES];

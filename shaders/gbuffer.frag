@@ -1,3 +1,4 @@
+// Writes the visible surface to the G-buffer.
 #include "mesh_surface.glsl"
 
 layout(location = 0) out vec4 albedo;

@@ -1,10 +1,12 @@
-// The grid of cells that the view is cut into, and the lists of lights that each cell has.
+// The grid of cells (screen tiles, or clusters of tiles and depth slices) that the view is divided into. Each cell has
+// a light list.
 #include "bindings.glsl"
 #include "types.glsl"
 
 layout(std140, binding = UNIFORMS_CELLS) uniform Cells { CellConstants grid; };
 
-// Of the 32 slices between two depths, those from depth a to depth b, as bits.
+// Divides [nearest, farthest] into 32 slices and returns a bit for each slice that [a, b] touches; all bits if the
+// range is empty.
 uint slices_between(float nearest, float farthest, float a, float b) {
     float extent = farthest - nearest;
     if (extent <= 0.0) return 0xffffffffu;
@@ -14,7 +16,7 @@ uint slices_between(float nearest, float farthest, float a, float b) {
     return count >= 32u ? 0xffffffffu : ((1u << count) - 1u) << low;
 }
 
-// Slice in which a depth lies.
+// Index of the cluster slice that contains a view depth in metres.
 uint slice_of(float depth) {
     if (depth <= grid.first_depth) return 0u;
     float slice = 1.0 + floor(log(depth / grid.first_depth) / log(grid.depth_ratio));

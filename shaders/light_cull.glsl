@@ -1,4 +1,4 @@
-// Culls the list of a cell: the lights that reach it stay, in place and in order. One invocation a cell.
+// Culls the light list of a cell in place: lights that reach the cell are kept, in their order. One invocation a cell.
 #include "bindings.glsl"
 #include "light_cells.glsl"
 #include "types.glsl"
@@ -11,8 +11,8 @@ layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst 
 layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };
 
-// What a cell holds: rays between `lower` and `upper` (view-space x and y at depth 1; orthographic: at any depth),
-// between two depths, and within them only where the mask has bits.
+// The part of view space that a cell covers: rays between `lower` and `upper` (view-space x and y at depth 1;
+// orthographic: at any depth), between two depths in metres, and there only the slices whose bit is set in the mask.
 struct Cell {
     vec2 lower;
     vec2 upper;
@@ -34,7 +34,7 @@ struct Bounds {
     vec3 half_extent;
 };
 
-// Box around the part of the cell between two depths.
+// View-space bounding box of the part of the cell between depths a and b.
 Bounds box_between(Cell cell, float a, float b) {
     vec2 scale = view.orthographic != 0u ? vec2(1.0) : vec2(a, b);
     vec2 low = min(cell.lower * scale.x, cell.lower * scale.y);
@@ -42,7 +42,8 @@ Bounds box_between(Cell cell, float a, float b) {
     return Bounds(vec3(low + high, -(a + b)) * 0.5, vec3(high - low, b - a) * 0.5);
 }
 
-// Signed distances to the four side planes, positive inside, at least -radius: Hasselgren's and everybody's test.
+// Whether a sphere lies wholly outside one of the four side planes: its signed distance, positive inside the cell, is
+// less than -radius.
 bool outside_planes(Cell cell, vec3 centre, float radius) {
     vec2 depth = view.orthographic != 0u ? vec2(1.0) : vec2(-centre.z);
     vec2 low = centre.xy - cell.lower * depth;
@@ -54,7 +55,8 @@ bool outside_planes(Cell cell, vec3 centre, float radius) {
     return any(lessThan(low, vec2(-radius))) || any(lessThan(high, vec2(-radius)));
 }
 
-// The sphere around a box against a cone with its apex and axis: the sphere lies wholly to the side of it, or behind.
+// Whether the bounding sphere of a box lies wholly outside a cone, to the side of it or behind it. Conservative: behind
+// the apex it may miss that the sphere is outside.
 bool outside_cone(Bounds box, vec3 apex, vec3 axis, float cos_angle) {
     float radius = length(box.half_extent);
     vec3 from_apex = box.centre - apex;
@@ -64,11 +66,12 @@ bool outside_cone(Bounds box, vec3 apex, vec3 axis, float cos_angle) {
     return cos_angle * across - sin_angle * along > radius;
 }
 
-// Whether any of the light's reach is in the cell. Never false where the light's irradiance is not zero.
+// Whether the light's range may overlap the cell. Conservative: never false where the light's irradiance in the cell is
+// not zero. See theory.md, "Light culling".
 bool reaches(Light light, Cell cell) {
     if (isinf(light.range)) return true;
     vec3 centre = (view.view_from_world * vec4(light.position, 1.0)).xyz;
-    // Widened by what rounding may move the centre.
+    // Enlarged by the rounding error of the centre.
     float radius = light.range * 1.0001 + 1e-6 * (length(centre) + length(light.position));
     float nearest = max(cell.nearest, -centre.z - radius);
     float farthest = min(cell.farthest, -centre.z + radius);
@@ -86,6 +89,8 @@ bool reaches(Light light, Cell cell) {
 uniform uint culled_before;  // entries of each list, in the dispatches before this one
 uniform uint culled_now;     // at most
 
+// Tests entries [culled_before, culled_before + culled_now) of list `index`. Those that reach the cell are moved behind
+// the entries that earlier dispatches kept.
 void cull(uint index, Cell cell) {
     uint first = list_first[index];
     uint begin = first + culled_before;

@@ -1,4 +1,4 @@
-// Which lights a surface visits: all of them, or the list of its cell (LIGHT_LIST_CELLS).
+// Which lights a surface evaluates: all of them, or the list of its cell (LIGHT_LIST_CELLS).
 #include "bindings.glsl"
 #include "light_cells.glsl"
 #include "types.glsl"
@@ -12,7 +12,7 @@ layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst 
 layout(std430, binding = BINDING_LIST_COUNT) readonly restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) readonly restrict buffer ListEntries { uint list_entries[]; };
 
-// Entries at the start that every cell visits: the list of the first cell comes after them.
+// Number of entries at the start of the buffer that belong to every cell's list. The first cell's own list follows them.
 uint global_light_count() { return list_first[0]; }
 
 struct LightListRange {
@@ -20,7 +20,7 @@ struct LightListRange {
     uint size;
 };
 
-// The list for a surface under a pixel.
+// The list for a surface at a pixel; `position` in world space, metres.
 LightListRange light_list_at(uvec2 pixel, vec3 position) {
     float depth = grid.slices > 1u ? -(view.view_from_world * vec4(position, 1.0)).z : 0.0;
     uint cell = cell_index(pixel / grid.tile_size, grid.slices > 1u ? slice_of(depth) : 0u);

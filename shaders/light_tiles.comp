@@ -1,4 +1,5 @@
-// Light lists of screen tiles, bound by the surfaces in them where these have been found.
+// Culls the light lists of screen tiles, with `has_depth` against the depths of the tile's surfaces. One invocation a
+// tile.
 #include "light_cull.glsl"
 
 layout(std430, binding = BINDING_TILE_DEPTHS) readonly restrict buffer TileDepths { TileDepth tile_depths[]; };

@@ -1,7 +1,7 @@
-// The one evaluator of light: real lights with their shadows, and light by way of surfaces, which has been gathered before
-// (INDIRECT_IRRADIANCE) or comes from the VPLs (VPLS). A shading path finds the surfaces; light_list.glsl says which lights each of
-// them visits. An invocation shades SURFACES of them, which have one list together unless LIGHT_LIST_PER_SURFACE says
-// otherwise.
+// Evaluates the light at a surface; all shading paths use it. Direct light comes from the lights of light_list.glsl,
+// with shadows. Indirect light is either read from an image that earlier passes gathered (INDIRECT_IRRADIANCE) or
+// summed over the VPLs (VPLS). An invocation shades SURFACES surfaces, which share the light list of the first one
+// unless LIGHT_LIST_PER_SURFACE is defined.
 #include "bindings.glsl"
 #include "light_list.glsl"
 #include "lights.glsl"
@@ -26,7 +26,8 @@ vec3 irradiance_from_light(Light light, Surface surface) {
     return incident.irradiance * (cos_surface * visibility);
 }
 
-// Irradiance from the lights that the surfaces visit, light by light, so that each is fetched once for all of them.
+// Adds the irradiance from the lights of the surfaces' list. Loops over lights outside and surfaces inside, so that
+// each light is fetched once.
 void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
 #ifdef LIGHT_LIST_PER_SURFACE
     for (int s = 0; s < SURFACES; ++s) {
@@ -48,7 +49,7 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
 
 layout(binding = UNIT_INDIRECT) uniform sampler2D indirect_irradiance;
 
-// π times the irradiance from the VPLs, which has been gathered before: vpl_gather.comp.
+// π times the irradiance from the VPLs, as vpl_gather.comp and later passes computed it.
 void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
     for (int s = 0; s < SURFACES; ++s) irradiance[s] = texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb;
 }
@@ -57,8 +58,9 @@ void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout v
 
 #include "vpl_light.glsl"
 
-// π times the irradiance from the VPLs. All surfaces visit all of them: a VPL reaches everything in front of it. Where they
-// are too many, every vpl_stride-th of them stands for all, and for pixels side by side not the same ones.
+// π times the irradiance from the VPLs. There are no lists of VPLs, as a VPL reaches everything in front of it. If there
+// are more than MOST_VPLS, every n-th VPL is used and the sum multiplied by n, with an odd n, because paths often have an even
+// number of VPLs and all bounces should be used; neighbouring pixels use different VPLs.
 void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
     uint count = vpl_constants.count;
     uint vpl_stride = count <= uint(MOST_VPLS) ? 1u : (count + uint(MOST_VPLS) - 1u) / uint(MOST_VPLS) | 1u;
@@ -75,7 +77,8 @@ void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout v
 
 #endif
 
-// Radiance that surfaces reflect: ρ/π times their irradiance. `pixels` are theirs, from the target's lower left.
+// Radiance that the surfaces reflect: ρ/π times their irradiance. `pixels`: their pixels, counted from the target's
+// lower left corner.
 void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
     vec3 direct[SURFACES];
     vec3 indirect[SURFACES];

@@ -1,4 +1,4 @@
-// What a punctual light sends to a point, shared by shading and by the tracing of VPLs.
+// Light that a punctual light sends to a point. Used by shading, by the tracing of VPLs and by surfels.
 #include "maths.glsl"
 #include "types.glsl"
 
@@ -16,7 +16,7 @@ float cone_falloff(Light light, float cos_angle) {
 
 struct Incident {
     vec3 direction;   // unit, towards the light
-    vec3 irradiance;  // on a surface that faces the light, unoccluded; lux
+    vec3 irradiance;  // on a surface that faces the light, unoccluded; lux or W/m²
 };
 
 Incident incident_light(Light light, vec3 position) {

@@ -1,5 +1,5 @@
-// Base colour where a traced ray hits, with its image, read from the texel buffer, since a compute shader cannot choose
-// among textures. The images there are reduced; a diffuse bounce needs no more.
+// Base colour at a ray hit. Images are read from one texel buffer, since a shader cannot select among textures by
+// index. They have a reduced resolution, which is enough for diffuse bounces.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "types.glsl"
@@ -21,7 +21,7 @@ int wrap(int x, int size, uint mode) {
     return clamp(x, 0, size - 1);
 }
 
-// Linear, alpha included.
+// Texel at `at`, wrapped as the material says; linear colour and alpha.
 vec4 texel(Material material, ivec2 at) {
     int x = wrap(at.x, int(material.texel_width), (material.flags >> MATERIAL_WRAP_U_SHIFT) & MATERIAL_WRAP_MASK);
     int y = wrap(at.y, int(material.texel_height), (material.flags >> MATERIAL_WRAP_V_SHIFT) & MATERIAL_WRAP_MASK);
@@ -48,7 +48,7 @@ vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {
     return colour_at(materials[triangle.material], uv);
 }
 
-// Whether a ray passes through a hole of the triangle's mask there.
+// Whether there is a hole of the triangle's alpha mask at this point.
 bool is_hole(TraceTriangle triangle, vec2 barycentric) {
     if (triangle.masked == 0u) return false;
     return hit_colour(triangle, barycentric).a < materials[triangle.material].alpha_cutoff;

@@ -1,4 +1,4 @@
-// Vertex stage of everything that rasterises the scene's meshes.
+// Vertex inputs and transforms, for all vertex shaders that rasterise the scene's meshes.
 #include "bindings.glsl"
 #include "types.glsl"
 
@@ -14,7 +14,8 @@ vec3 world_position(Instance instance) {
     return vec3(dot(instance.world[0], local), dot(instance.world[1], local), dot(instance.world[2], local));
 }
 
-// Normals transform by the matrix of cofactors, which exists where an inverse does not; mirrored instances flip it.
+// Not normalised. Normals transform by the cofactor matrix, which also exists for singular matrices; its sign is
+// flipped for mirrored instances.
 vec3 world_normal(Instance instance) {
     vec3 x = instance.world[0].xyz;
     vec3 y = instance.world[1].xyz;

@@ -10,8 +10,8 @@ in vec3 normal;
 in vec2 uv;
 flat in uint material_index;
 
-// Base colour, linear, with its alpha. With MASKED, drops the fragment if it lies in a hole of the material's mask; other
-// programs have no discard, so that hidden fragments are never shaded.
+// Base colour (linear) and alpha. With MASKED, discards the fragment in a hole of the material's alpha mask. Without it
+// there is no discard in the program, so the GPU can reject hidden fragments by an early depth test.
 vec4 fragment_colour() {
     vec4 colour = materials[material_index].base_colour * texture(base_colour, uv);
 #ifdef MASKED

@@ -1,13 +1,13 @@
 #include "mesh.glsl"
 
 #ifdef SHADOW_MAP
-uniform mat4 clip_from_world;  // the light's
+uniform mat4 clip_from_world;  // of the light's view
 #else
 #include "view.glsl"
 mat4 clip_from_world = view.clip_from_world;
 #endif
 
-invariant gl_Position;  // a depth pre-pass and what is tested against it must agree to the bit
+invariant gl_Position;  // depth pre-pass and later passes must compute identical depths
 
 out vec3 normal;
 out vec2 uv;

@@ -1,5 +1,6 @@
-// A work group of a compute shader that shades takes a block of 16 × 16 pixels. An invocation takes four of them, 8 apart,
-// and fetches each light once for all four; with rays, which cost more than any fetch, it takes one.
+// The pixels of a work group and its invocations, for compute shaders that shade. A work group shades a block of
+// 16 × 16 pixels. An invocation shades four of them, 8 apart, so that it fetches each light once for four pixels. With
+// shadow rays to VPLs, whose cost exceeds that of any fetch, it shades one.
 #include "bindings.glsl"
 
 #ifdef VPL_VISIBILITY_RAYS
@@ -12,7 +13,7 @@
 
 layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_SIDE) in;
 
-// The invocation's pixel s; may lie beyond the target.
+// The invocation's pixel s; may lie outside the target.
 ivec2 block_pixel(int s) {
     return PIXEL_BLOCK * ivec2(gl_WorkGroupID.xy) + ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(s & 1, s >> 1);
 }

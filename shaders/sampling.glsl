@@ -1,5 +1,5 @@
-// Low-discrepancy points whose indices stay put: Owen-scrambled Sobol pairs after Burley, "Practical Hash-based
-// Owen Scrambling" (JCGT 2020).
+// Low-discrepancy points with random access: a point depends on its index and seed only. Owen-scrambled pairs of Sobol
+// dimensions (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). See theory.md, "Points".
 #include "maths.glsl"
 
 uint hash(uint x) {
@@ -36,7 +36,7 @@ uvec2 sobol_2d(uint index) {
 }
 
 // Point `index` of the scrambled sequence number `pair`, in [0, 1)². Pair 0 keeps its order, so that its prefixes
-// are well distributed; the others are shuffled against it.
+// are well distributed; the other pairs are shuffled, so that they are not correlated with it.
 vec2 sample_2d(uint index, uint pair, uint seed) {
     uint pair_seed = hash_combine(seed, pair);
     uint i = pair == 0u ? index : owen_scramble(index, hash_combine(pair_seed, 2u));
@@ -46,7 +46,7 @@ vec2 sample_2d(uint index, uint pair, uint seed) {
     return vec2(bits >> 8u) * (1.0 / 16777216.0);
 }
 
-// Uniform in the cone of directions around `axis` whose cosines are in [cos_min, 1].
+// Unit direction at an angle with cosine `cos_theta` to the unit vector `axis`; `u` is the azimuth in turns.
 vec3 direction_at(vec3 axis, float cos_theta, float u) {
     vec3 tangent, bitangent;
     basis_around(axis, tangent, bitangent);
@@ -55,7 +55,7 @@ vec3 direction_at(vec3 axis, float cos_theta, float u) {
     return sin_theta * (cos(phi) * tangent + sin(phi) * bitangent) + cos_theta * axis;
 }
 
-// Density cos θ / π over the hemisphere of `normal`.
+// Unit direction in the hemisphere of `normal` with density cos θ / π, for `u` in [0, 1)². See theory.md, "Directions".
 vec3 cosine_direction(vec3 normal, vec2 u) {
     return direction_at(normal, sqrt(1.0 - u.x), u.y);
 }

@@ -1,4 +1,5 @@
-// Shadow maps of the lights. Depth is reversed: 1 at the near plane, 0 at infinity, compared with "greater or equal".
+// Look-up in the shadow maps of lights. Depth is reversed: 1 at the near plane, 0 at infinity (orthographic maps: at
+// their far end). A receiver is lit where its depth is greater than or equal to the map's.
 #include "bindings.glsl"
 #include "types.glsl"
 
@@ -6,19 +7,17 @@ layout(std430, binding = BINDING_SHADOWS) readonly restrict buffer Shadows { Sha
 layout(binding = UNIT_SHADOW_CUBES) uniform samplerCubeArrayShadow shadow_cubes;
 layout(binding = UNIT_SHADOW_MAPS) uniform sampler2DArrayShadow shadow_maps;
 
-// How far to lift the receiver along its normal so that its own plane, as any texel under the bilinear footprint stores
-// it, never shades it. From the sample to a texel's centre it is at most a texel in x and one in y, over which the
-// plane's depth changes by texel·(|nx| + |ny|), n being the normal in the map's axes. Rendering has pushed the plane away
-// by the larger of the two (a slope-scaled offset of one texel, which also keeps the neighbouring surface of a concave
-// edge from shading this one); the smaller is at most sin(normal, axis)/√2, and lifting by l gains l in the same
-// measure. A tenth of a texel pays for rounding.
+// Metres to lift the receiver along its normal so that its own plane never shadows it in a bilinear look-up:
+// texel · (sin θ / √2 + 0.1), θ being the angle between normal and map axis and `texel` a texel's width at the
+// receiver. Maps are rendered with a slope-scaled offset of one texel, which covers the rest; 0.1 is a margin for
+// rounding. See theory.md, "Lift above shadow maps".
 float normal_offset(float texel, float cos_axis) {
     return texel * (0.7072 * sqrt(max(0.0, 1.0 - cos_axis * cos_axis)) + 0.1);
 }
 
-// A surface that meets the receiver in a crease and lies square to the map's axis has no slope and so no offset: in the
-// crease only rounding decides. This share of the depth, some ten times the rounding of positions found from the
-// camera's depth, decides for the light.
+// Relative depth bias. A surface perpendicular to the map's axis has no slope and so no offset; if it meets the
+// receiver in a crease, rounding alone decides there. This bias, about ten times the rounding error of positions
+// reconstructed from the camera's depth, makes the crease lit.
 const float crease_bias = 1e-5;
 
 float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
@@ -38,12 +37,13 @@ float map_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position)
     vec4 clip = shadow.from_world * vec4(lifted, 1.0);
     if (clip.w <= 0.0) return 1.0;
     vec3 at = clip.xyz / clip.w;
-    // Perspective depth falls off as 1 / distance, orthographic depth is a share of the scene.
+    // Perspective depth is near / distance, so a relative bias scales it. Orthographic depth is linear over the map's
+    // range.
     float bias = crease_bias * (shadow.kind == SHADOW_PERSPECTIVE ? at.z : 1.0);
     return texture(shadow_maps, vec4(at.xy * 0.5 + 0.5, float(shadow.layer), clamp(at.z + bias, 0.0, 1.0)));
 }
 
-// Share of the light that reaches the position, in [0, 1]. `normal` faces the light.
+// Share of the light that reaches the position, in [0, 1]. `normal` must face the light.
 float shadow_visibility(int index, vec3 position, vec3 normal, vec3 light_position) {
     if (index < 0) return 1.0;
     Shadow shadow = shadows[index];

@@ -1,3 +1,4 @@
+// Vertex stage of the shadow maps of opaque surfaces.
 #include "mesh.glsl"
 
 uniform mat4 clip_from_world;

@@ -1,10 +1,10 @@
-// The visible surface, and its packed form in the G-buffer. Every path goes through the packed form, so that all of
-// them shade the very same numbers.
+// The visible surface, and its packed form in the G-buffer. Every shading path packs and unpacks the surface, even
+// where it has no G-buffer, so that all of them shade exactly the same values.
 #include "maths.glsl"
 
 struct Surface {
     vec3 position;  // world space, metres
-    vec3 normal;    // unit, towards the viewer's side
+    vec3 normal;    // unit, on the side that the viewer sees
     vec3 albedo;    // linear
 };
 
@@ -18,7 +18,7 @@ PackedSurface pack_surface(vec3 albedo, vec3 normal) {
     return PackedSurface(rounded, octahedral_encode(normal));
 }
 
-// `window` is the pixel's centre in window coordinates and its depth.
+// `window`: the pixel's centre in window coordinates (pixels), and its window depth.
 Surface unpack_surface(PackedSurface surface, vec3 window, vec2 target_size, mat4 world_from_clip) {
     vec4 clip = vec4(window.xy / target_size * 2.0 - 1.0, window.z, 1.0);
     vec4 world = world_from_clip * clip;

@@ -1,17 +1,18 @@
-// Surfels: points on the surfaces, even in area, that gather light and send it on. Each has a cell of the surface around
-// it, which is known by its points.
+// Surfels: points spread evenly over the surfaces, which gather light and reflect it. Each surfel represents a cell,
+// the part of the surface around it. A cell is sampled by its cell points (types.glsl, CellPoint).
 #include "bindings.glsl"
 #include "disc.glsl"
 #include "maths.glsl"
 #include "types.glsl"
 
 uniform uint surfel_count;
-uniform uint columns;  // surfels that each one gathers from: all, or where they are many every column_stride-th
+uniform uint columns;  // even; surfels that each one gathers from, every column_stride-th of them
 uniform uint column_stride;
 
-// The surfel that a row has in a column.
+// The surfel in a column of the form-factor matrix, for the row of surfel `row`. May be surfel_count or more: no
+// surfel.
 uint surfel_of(uint row, uint column) { return column * column_stride + row % column_stride; }
 
-// Where the form factors of a row's columns 2 * pair and 2 * pair + 1 are, two half floats: those of neighbouring rows side
-// by side, as neighbouring invocations read them.
+// Index of the word that holds the form factors of columns 2 * pair and 2 * pair + 1 of a row, as two half floats. The
+// words of neighbouring rows are adjacent, since neighbouring invocations read them together.
 uint form_factors_at(uint row, uint pair) { return pair * surfel_count + row; }

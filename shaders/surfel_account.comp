@@ -1,17 +1,19 @@
-// Where the light went that the lights send to the surfaces, and whether enough is left for another bounce. One work group
-// adds up all cells.
+// Sums up over all cells where the flux of the lights went: absorbed, escaped, or left after the last bounce; and
+// decides whether another bounce is worth gathering. See theory.md, "Flux account of surfels". One work group in all;
+// an invocation adds up every SURFEL_GROUP-th cell.
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
-layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // scale, open share
+// Scale, and 1 - covered share.
+layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
 layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 bounced[]; };  // radiosity, scale
 layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccount flux[]; };
 
-uniform uint bounce;  // gathered last; 1: none was
+uniform uint bounce;  // number of the last bounce that was gathered; 1: none yet
 
-const float LITTLE = 1e-3;  // of the light that surfaces reflect at first: no more is gathered
+const float LITTLE = 1e-3;  // share of the directly reflected flux; gathering stops when no more than that is left
 
 shared vec3 emitted[SURFEL_GROUP];
 shared vec3 absorbed[SURFEL_GROUP];
@@ -19,7 +21,7 @@ shared vec3 escaped[SURFEL_GROUP];
 shared vec3 truncated[SURFEL_GROUP];
 shared vec3 reflected[SURFEL_GROUP];
 
-// What a cell reflects of the last bounce, which nobody gathers.
+// Flux that a cell reflects after the last bounce, which no surfel gathers any more.
 vec3 left_over(uint id, CellLight cell) {
     if (bounce < 2u) return cell.direct;
     return cell.area * bounced[((bounce + 1u) % 2u) * surfel_count + id].rgb;

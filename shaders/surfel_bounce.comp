@@ -1,5 +1,6 @@
-// Surfels gather what others reflect: first of the lights' flux, from where in its cell that falls (FIRST), then of what
-// they have gathered last. One invocation a surfel.
+// One bounce: surfels gather the light that others reflect. In the first dispatch (FIRST) that is the reflected flux of
+// the lights, placed where it falls within each cell; later it is what the others gathered in the previous bounce. Adds
+// to CellLight::indirect. One invocation a surfel.
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -8,15 +9,16 @@ layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
-layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };  // scale, open share
+// Scale, and 1 - covered share.
+layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight cells[]; };
-// Radiosity of the last bounce and of this one; the surfel's scale.
+// Two buffers in turn, for the previous bounce and this one: rgb is radiosity, a the surfel's scale.
 layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]; };
 layout(std430, binding = BINDING_FLUX_ACCOUNT) readonly restrict buffer Flux { FluxAccount flux[]; };
 
-uniform uint bounce;  // from 2 on
+uniform uint bounce;  // 2 or more
 
-// Irradiance from the lights' flux that a cell reflects.
+// Irradiance from the flux of the lights that a cell reflects, before the scales.
 vec3 from_lit_cell(Vpl from, uint other) {
     CellLight cell = cells[other];
     if (cell.direct == vec3(0.0)) return vec3(0.0);
@@ -35,7 +37,7 @@ vec3 from_lit_cell(Vpl from, uint other) {
     return sum;
 }
 
-// Irradiance from a column, before the row's scale.
+// Irradiance from the surfel in a column, with that surfel's scale but without the row's.
 vec3 from_column(Vpl from, uint row, uint column, float factor) {
     uint other = surfel_of(row, column);
     if (factor == 0.0) return vec3(0.0);

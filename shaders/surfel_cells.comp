@@ -1,4 +1,5 @@
-// What the points of a cell come to together. One invocation a surfel.
+// Sums up the points of a cell: its flux, mean albedo, area, and the disc that its directly reflected flux comes from.
+// One invocation a surfel.
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -17,7 +18,7 @@ void main() {
     vec3 albedo = vec3(0.0);
     float area = 0.0;
     float weight = 0.0;
-    vec3 first = vec3(0.0);   // moments of where the flux is, from the surfel
+    vec3 first = vec3(0.0);   // first and second moments of the flux's position relative to the surfel
     float second = 0.0;
     for (uint i = 0u; i < surfel.point_count; ++i) {
         DirectPoint point = direct_points[surfel.first_point + i];
@@ -37,7 +38,8 @@ void main() {
     if (weight > 0.0) {
         vec3 mean = first / weight;
         cell.centre += mean;
-        // A square of side h has the variance h² / 6 about its middle. A point has none, yet stands for its share.
+        // h² = 6 · variance + area / points: a square of side h has variance h² / 6, and each point represents an equal
+        // share of the cell. The disc has the square's area. See theory.md, "Width of a lit cell".
         float side2 = 6.0 * max(second / weight - dot(mean, mean), 0.0) + surfel.area / float(surfel.point_count);
         cell.radius2 = min(side2, surfel.area) / PI;
     }

@@ -1,5 +1,6 @@
-// How much of a surfel's hemisphere shows surfaces that reflect, by cosine-weighted rays: what the form factors of a row
-// should come to. A part of the rays an invocation, so that none works without bound.
+// Finds which share of a surfel's hemisphere is covered by reflecting surfaces, with COVER_PARTS · COVER_RAYS
+// cosine-weighted rays. The form factors of the surfel's row should add up to it. One work group a surfel, COVER_RAYS
+// rays an invocation, which bounds its loops.
 #include "bvh.glsl"
 #include "changed_boxes.glsl"
 #include "sampling.glsl"
@@ -10,7 +11,7 @@ layout(local_size_x = COVER_PARTS) in;
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
 layout(std430, binding = BINDING_COVER) writeonly restrict buffer Cover { uint cover[]; };
 
-uniform float ray_offset;  // metres, off the surface
+uniform float ray_offset;  // metres above the surface, where rays start
 
 bool reflects(Hit hit, vec3 direction) {
     if (hit.triangle == NO_TRIANGLE) return false;

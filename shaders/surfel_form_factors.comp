@@ -1,5 +1,6 @@
-// The share of a surfel's hemisphere that each of its columns takes up, 0 where it does not see it. Two columns an
-// invocation; work groups go along rows, then columns.
+// Form factors: the share of a surfel's cosine-weighted hemisphere that the cell in each column fills, 0 where a ray
+// finds the other surfel hidden. One invocation a row and two columns; work groups: x along rows, y along pairs of
+// columns.
 #include "bvh.glsl"
 #include "changed_boxes.glsl"
 #include "surfel.glsl"
@@ -10,7 +11,7 @@ layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) restrict buffer FormFactors { uint form_factors[]; };
 
-uniform float ray_offset;  // metres, off both surfaces
+uniform float ray_offset;  // metres above both surfaces, where rays start and end
 
 float form_factor(Vpl from, Vpl to) {
     if (!is_near(to.position - from.position, to.area)) {

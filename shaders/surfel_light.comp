@@ -1,4 +1,5 @@
-// The light of the real lights at each point of the surfels' cells, with a shadow ray to each. One invocation a point.
+// Flux of the lights at the points of the surfels' cells, with one shadow ray to each light. One invocation a cell
+// point.
 #include "bindings.glsl"
 #include "bvh.glsl"
 #include "lights.glsl"
@@ -16,7 +17,7 @@ uniform uint point_count;
 uniform uint light_count;
 uniform uint lights_before;  // in the dispatches before this one
 uniform uint lights_now;     // at most
-uniform float ray_offset;    // metres, off the surface, and before a light, which may lie on one
+uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
 
 bool is_hidden(Light light, vec3 origin, vec3 direction) {
     float distance = light.kind == LIGHT_DIRECTIONAL ? 1.0 / 0.0 : length(light.position - origin) - ray_offset;

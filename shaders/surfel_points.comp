@@ -1,5 +1,5 @@
-// Which points of its cell a surfel sees. Where a wall stands on a cell, what lies behind it is not the surfel's to send
-// on: it would shine through. One invocation a point.
+// Finds which points of its cell a surfel sees. If a wall stands on the cell, light that falls behind the wall must not
+// be sent on from in front of it: that would leak through the wall. One invocation a cell point.
 #include "bvh.glsl"
 #include "changed_boxes.glsl"
 #include "surfel.glsl"
@@ -12,7 +12,7 @@ layout(std430, binding = BINDING_SEEN_POINTS) restrict buffer Seen { uint seen[]
 
 uniform uint point_count;
 
-const float LIFT = 0.25;  // of a cell's width: above what the surface of a cell bends
+const float LIFT = 0.25;  // of a cell's width; rays run this high above the surface, as it may be curved within a cell
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
@@ -22,7 +22,7 @@ void main() {
     float lift = LIFT * sqrt(surfel.area);
     vec3 origin = surfel.position + lift * surfel.normal;
     vec3 direction = point.position + lift * point.normal - origin;
-    // What has moved by itself lies in a changed box, though what is lifted off it may not.
+    // If the cell itself has moved, its surface lies in a changed box, but the lifted ray may miss that box.
     bool moved = may_have_changed(surfel.position, point.position - surfel.position, 1.0);
     if (!moved && !may_have_changed(origin, direction, 1.0)) return;
     seen[id] = any_hit(origin, direction, 0.0, 1.0) ? 0u : 1u;

@@ -1,19 +1,21 @@
-// Scales form factors, so that a surfel's row comes to what it sees of reflecting surfaces, and what others gather from it
-// comes to what it sends them: the factor of row and column is multiplied by the scales of both. As areas times factors are
-// symmetric but for the discs' shapes, one scale a surfel does both (Sinkhorn and Knopp, "Concerning nonnegative matrices
-// and doubly stochastic matrices", 1967); a round halves the logarithm of what is left to scale. One invocation a surfel.
+// Balances the form factors F. Each surfel i gets a scale dᵢ such that its row, Σ dᵢ Fᵢⱼ dⱼ over j, adds up to its
+// covered share cᵢ, from surfel_cover.comp. Other surfels then gather from it the share cᵢ of the flux that it sends
+// out. One round computes dᵢ ← √(dᵢ cᵢ / Σ Fᵢⱼ dⱼ) and halves the logarithm of the remaining error (after Sinkhorn and
+// Knopp, 1967). See theory.md, "Balanced form factors". One invocation a surfel.
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_COVER) readonly restrict buffer Cover { uint cover[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
-layout(std430, binding = BINDING_SURFEL_ROWS) restrict buffer Rows { vec2 rows[]; };  // scale, open share; of two rounds
+// Scale, and 1 - covered share. Two halves, written by the rounds in turn.
+layout(std430, binding = BINDING_SURFEL_ROWS) restrict buffer Rows { vec2 rows[]; };
 
 uniform uint round;
 
-const float MOST_SCALE = 2.0;  // of a factor
+const float MOST_SCALE = 2.0;  // largest product of the two scales of a factor, over column_stride
 
+// Scale of a surfel after the previous round.
 float last_scale(uint surfel) {
     if (round == 0u || surfel >= surfel_count) return 1.0;
     return rows[((round + 1u) % 2u) * surfel_count + surfel].x;

@@ -1,4 +1,5 @@
-// Makes VPLs of the surfels: each with all that its cell reflects, placed where it comes from. One invocation a surfel.
+// Turns surfels into VPLs: each has the total flux that its cell reflects, and the position and width of the part of
+// the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
 #include "surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -28,7 +29,8 @@ void main() {
         float share = direct_weight / (direct_weight + spread_weight);
         vec3 apart = cell.centre - vpl.position;
         vpl.position += share * apart;
-        // Two discs as one, with the variance of both about their common middle.
+        // One disc in place of two, with the variance of both about their common mean. See theory.md, "Width of a lit
+        // cell".
         float between = share * (1.0 - share) * dot(apart, apart) * 6.0 / PI;
         vpl.radius2 = min(mix(vpl.radius2, cell.radius2, share) + between, vpl.radius2);
     }

@@ -1,4 +1,5 @@
-// Depths of the surfaces in each screen tile. One work group a tile.
+// Finds the nearest and farthest surface in each screen tile, and which of 32 depth slices between them have surfaces.
+// One work group a tile.
 #include "bindings.glsl"
 #include "light_cells.glsl"
 #include "types.glsl"
@@ -10,7 +11,7 @@ layout(std430, binding = BINDING_TILE_DEPTHS) writeonly restrict buffer TileDept
 
 layout(binding = UNIT_DEPTH) uniform sampler2D depth_texture;
 
-// Depths as integers that are in the same order.
+// Depths as integers in the same order, for atomicMin and atomicMax.
 shared uint nearest_bits;
 shared uint farthest_bits;
 shared uint mask;
@@ -52,7 +53,7 @@ void main() {
     atomicMin(nearest_bits, ordered_bits(nearest));
     atomicMax(farthest_bits, ordered_bits(farthest));
     barrier();
-    // A little widened. Where there is no surface: nearest > farthest.
+    // The bounds get a margin of 1e-4 for rounding. A tile without surfaces has nearest > farthest.
     TileDepth bounds = TileDepth(from_ordered_bits(nearest_bits), from_ordered_bits(farthest_bits), 0u, 0u);
     bool has_surface = bounds.nearest <= bounds.farthest;
     float slack = has_surface ? 1e-4 * (abs(bounds.nearest) + abs(bounds.farthest)) : 0.0;

@@ -1,14 +1,16 @@
+// Maps radiance to display colours, or copies it. One fragment a pixel of the target.
 #include "bindings.glsl"
 #include "maths.glsl"
 
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
 
 uniform float exposure;   // multiplies radiance
-uniform bool curve;       // off: radiance goes out as it is, linear, alpha telling where there is a surface
+uniform bool curve;       // off: writes radiance unchanged, linear; alpha is 1 where there is a surface
 
 layout(location = 0) out vec4 colour;
 
-// Narkowicz, "ACES Filmic Tone Mapping Curve" (2015). White long before the bound, which keeps the squares finite.
+// Narkowicz, "ACES Filmic Tone Mapping Curve" (2015). The bound of 1e4 keeps the squares finite; the curve is white
+// long before it.
 vec3 filmic(vec3 light) {
     vec3 x = min(light, 1e4);
     return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
@@ -16,7 +18,7 @@ vec3 filmic(vec3 light) {
 
 uniform vec2 target_size;
 
-// A picture of another size is interpolated between its pixels.
+// Radiance of a picture of another size than the target, interpolated bilinearly.
 vec4 scaled_radiance(vec2 size) {
     vec2 at = gl_FragCoord.xy / target_size * size - 0.5;
     ivec2 first = ivec2(floor(at));

@@ -1,5 +1,6 @@
-// Structs that the GPU and the CPU both see; their twins are in renderer/gpu_types.hpp.
-// Layout std430; a test compares every offset and stride with what the driver reports.
+// Structs shared with the CPU; their C++ counterparts are in renderer/gpu_types.hpp. Layout std430, those of uniform
+// blocks also std140. A test compares every offset and stride with what the driver reports.
+// Flux is in lm or W, irradiance in lux or W/m², depending on the unit of the lights.
 
 struct Instance {
     vec4 world[3];  // rows of the local-to-world matrix
@@ -10,12 +11,12 @@ struct Instance {
 };
 
 struct Material {
-    vec4 base_colour;     // linear
-    uint first_texel;     // of its reduced base-colour image in the texel buffer
-    uint texel_width;     // 0: no texture
+    vec4 base_colour;     // linear, and alpha
+    uint first_texel;     // in the texel buffer, of its base-colour image at reduced resolution
+    uint texel_width;     // texels; 0: no texture
     uint texel_height;
     uint flags;           // MATERIAL_*
-    float alpha_cutoff;   // where alpha is below it there is no surface; 0: there always is one
+    float alpha_cutoff;   // alpha below it is a hole; 0: no holes
     float pad0;
     float pad1;
     float pad2;
@@ -27,13 +28,13 @@ struct Material {
 #define MATERIAL_WRAP_MASK 3u
 
 struct Light {
-    vec3 position;   // metres; directional: centre of the footprint, outside the scene
+    vec3 position;   // metres; directional: centre of the footprint, a rectangle outside the scene that rays start on
     uint kind;       // LIGHT_*
-    vec3 direction;  // unit, the way the light travels
-    float range;     // metres
+    vec3 direction;  // unit, in which the light travels
+    float range;     // metres; may be infinite
     vec3 intensity;  // candela; directional: lux
     int shadow;      // index into the shadows, -1: none
-    vec2 shape;      // spot: scale and offset of the cone's falloff; directional: half extents of the footprint
+    vec2 shape;      // spot: scale and offset of the cone's falloff; directional: half extents of the footprint, metres
     float cos_inner;
     float cos_outer;
 };
@@ -53,7 +54,7 @@ struct LightConstants {
 struct Shadow {
     mat4 from_world;  // to clip space; unused by cubes
     vec3 axis;        // the map's viewing direction; unused by cubes
-    float texel;      // width of a texel at unit distance (tangent units); directional: metres
+    float texel;      // width of a texel at a depth of 1 metre, metres; directional: at any depth
     float near_plane; // metres, of perspective maps
     uint layer;       // of the map array, or cube of the cube array
     uint kind;        // SHADOW_*
@@ -64,22 +65,22 @@ struct Shadow {
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u
 
-// The viewpoint, and what is drawn for it. A uniform block: shaders/view.glsl.
+// The camera's view of the current frame. A uniform block: shaders/view.glsl.
 struct ViewConstants {
     mat4 clip_from_world;
     mat4 world_from_clip;
     mat4 view_from_world;
     vec2 target_size;    // pixels
-    vec2 ray_scale;      // view-space x and y at depth 1 (orthographic: at any) of ndc - ray_shift
+    vec2 ray_scale;      // (ndc - ray_shift) · ray_scale: view-space x and y at depth 1 (orthographic: at any depth)
     vec2 ray_shift;
     vec2 depth_terms;    // a and b of window depth = a·z + b (orthographic), -a + b / depth (perspective)
-    uint orthographic;   // 1: it is
+    uint orthographic;   // 1: orthographic, 0: perspective
     uint pad0;
     uint pad1;
     uint pad2;
 };
 
-// The grid of cells that the view is cut into; CellGrid in renderer/passes/light_bins.hpp says more. A uniform block:
+// The grid of cells that the view is divided into; see CellGrid in renderer/passes/light_bins.hpp. A uniform block:
 // shaders/light_cells.glsl.
 struct CellConstants {
     uvec2 tiles;         // cells across and up
@@ -87,85 +88,86 @@ struct CellConstants {
     uint slices;
     uint tile_size;      // pixels
     float first_depth;   // metres: end of slice 0
-    float depth_ratio;   // of the ends of neighbouring slices
+    float depth_ratio;   // end of a slice over the end of the slice before
 };
 
-// Of the surfaces in a screen tile.
+// Depths of the surfaces in a screen tile.
 struct TileDepth {
-    float nearest;   // metres; beyond `farthest` where there is no surface
+    float nearest;   // metres; greater than `farthest` if there is no surface
     float farthest;
-    uint mask;       // which of 32 slices between the two have surfaces
+    uint mask;       // bits of those of the 32 slices between the two that have surfaces
     uint pad0;
 };
 
+// A VPL or a surfel. Members "of surfels" are unused in traced VPLs, and the reverse.
 struct Vpl {
     vec3 position;     // metres, on the surface
-    uint map;          // tile of its depth map in the atlas
+    uint map;          // slot of its depth map in the atlas
     vec3 normal;       // unit; it emits into this half-space
-    float radius2;     // m², of the disc that shines; of surfels
-    vec3 flux;         // reflected flux, lm or W as the lights have it; zero: not alive
-    uint first_point;  // of its cell, of surfels
-    vec3 edges_up;     // 1/m, of its surface along +x, +y, +z, 0 where none is near: vpl_edges.glsl; of traced ones
-    uint point_count;  // of its cell
-    vec3 edges_down;   // along -x, -y, -z
-    float area;        // m², of its cell
-    vec3 map_origin;   // metres, on the surface: where its depth map is drawn
+    float radius2;     // m², squared radius of the disc that it emits from; of surfels
+    vec3 flux;         // reflected flux; zero: emits nothing, or not in use
+    uint first_point;  // index of its cell's first point; of surfels
+    vec3 edges_up;     // 1/m, inverse distances to edges along +x, +y, +z, 0: none near; of traced VPLs: vpl_edges.comp
+    uint point_count;  // points of its cell; of surfels
+    vec3 edges_down;   // 1/m, along -x, -y, -z; of traced VPLs
+    float area;        // m², of its cell; of surfels
+    vec3 map_origin;   // metres, on the surface; its depth map is seen from ray_offset above it
     float pad0;
 };
 
-// A point of a surfel's cell, which stands for a part of the surface.
+// A sample point of a surfel's cell; represents a part of the surface.
 struct CellPoint {
     vec3 position;  // metres
     uint material;
     vec3 normal;    // unit
     float area;     // m²
     vec2 uv;
-    uint surfel;    // whose cell it is of
+    uint surfel;    // index of the surfel whose cell it belongs to
     uint pad0;
 };
 
-// What a point of a cell has of the lights.
+// Light that a cell point receives from the lights.
 struct DirectPoint {
     vec3 arriving;  // flux
-    float area;     // m²; 0: a hole in a mask, or what the surfel does not see
-    vec3 albedo;
+    float area;     // m²; 0: in a hole of a mask, or hidden from its surfel
+    vec3 albedo;    // linear
     float pad0;
 };
 
-// A point of a cell with all its light.
+// A cell point with all the light that it reflects.
 struct LitPoint {
     vec3 position;  // metres
     float area;     // m²
     vec3 normal;    // unit
     float pad0;
-    vec3 flux;      // reflected
+    vec3 flux;      // reflected, direct and indirect
     float pad1;
 };
 
-// What a surfel's cell as a whole has of the lights, and of other surfels.
+// Light of a surfel's cell as a whole, from the lights and from other surfels.
 struct CellLight {
-    vec3 centre;    // metres: where the lights' flux comes from, in the mean
-    float radius2;  // m², of a disc as wide as that
+    vec3 centre;    // metres: mean position of the reflected flux of the lights
+    float radius2;  // m², squared radius of the disc that this flux comes from
     vec3 arriving;  // flux of the lights
     float pad2;
-    vec3 direct;    // what it reflects of that
+    vec3 direct;    // the part of `arriving` that it reflects
     float pad0;
-    vec3 albedo;    // in the mean of its points
-    float area;     // m², of its points that are no holes
-    vec3 indirect;  // irradiance from the other surfels, of all bounces together
+    vec3 albedo;    // mean over the area of its points
+    float area;     // m², of its points that have an area
+    vec3 indirect;  // irradiance from the other surfels, sum over all bounces
     float pad1;
 };
 
-// What all VPLs have in common. A uniform block: shaders/vpl_constants.glsl.
+// Constants that all VPLs share. A uniform block: shaders/vpl_constants.glsl.
 struct VplConstants {
     uint count;
-    float radius2;            // m²: nearer than its root a VPL lights no more than from there
-    float crease_slack;       // metres: by so many a surface behind a VPL's plane still counts as before it
-    float ray_offset;         // metres, off a surface: where rays and depth maps start
-    uint map_resolution;      // texels along a side of a tile of the atlas
-    uint map_tiles;           // along a side of a layer
+    float radius2;            // m², R²: bounds the geometry term to 4/3 of 1/R²; of traced VPLs
+    float crease_slack;       // metres: a receiver this little behind a VPL's plane still counts as in front of it
+    float ray_offset;         // metres above a surface, where rays and depth maps start
+    uint map_resolution;      // texels along a side of a slot of the atlas
+    uint map_tiles;           // slots along a side of a layer
     float map_side;           // texels along a side of a layer
-    float map_inverse_reach;  // 1/m: where depth is 0
+    float map_inverse_reach;  // 1/m, inverse of the distance at which map depth is 0
 };
 
 struct BvhNode {
@@ -179,9 +181,9 @@ struct TraceTriangle {
     vec3 a;
     uint material;
     vec3 edge_ab;
-    uint id;  // in the caller's numbering
+    uint id;      // index before sorting into leaves
     vec3 edge_ac;
-    uint masked;  // 1: the material's mask may have holes in it
+    uint masked;  // 1: may have holes of an alpha mask
     vec2 uv_a;
     vec2 uv_b;
     vec2 uv_c;
@@ -189,15 +191,15 @@ struct TraceTriangle {
 };
 
 struct Path {
-    vec3 flux;       // of its light
+    vec3 flux;       // of its light as a whole; a weight a bounce gives the path's share
     uint light;
     uint index;      // within the light's sequence
     uint seed;       // of the light's sequence
-    uint first_vpl;  // of its bounces
-    uint vpl_count;  // bounces that the path may make, at least 1
+    uint first_vpl;  // index of the VPL of its first bounce
+    uint vpl_count;  // largest number of its bounces, at least 1
 };
 
-// A bounce without its flux.
+// A bounce of a traced path, without its flux.
 struct VplRecord {
     vec3 position;    // metres; escaped: where the segment began
     uint state;       // VPL_*
@@ -210,15 +212,17 @@ struct VplRecord {
 #define VPL_PLACED 0u
 #define VPL_ESCAPED 1u
 
+// Where the flux of a path, or of all surfels, went. emitted = absorbed + escaped + truncated + roulette, up to
+// rounding; of surfels also up to the balance of the form factors, and without roulette.
 struct FluxAccount {
-    vec3 emitted;
-    uint spent;  // of surfels: 1 where too little is left to be gathered once more
+    vec3 emitted;  // of surfels: flux of the lights that arrives at the cells
+    uint spent;  // of surfels: 1 if too little flux is left for another bounce
     vec3 absorbed;
     float pad1;
     vec3 escaped;
     float pad2;
     vec3 truncated;
     float pad3;
-    vec3 roulette;  // lost where the path was ended early, less what its continuation was weighted up by
+    vec3 roulette;  // lost where the path was ended early, minus what higher weights added where it went on
     float pad4;
 };

@@ -1,12 +1,12 @@
-// The atlas of the VPLs' depth maps: square tiles in the layers of an array. A tile holds the hemisphere that a VPL looks
-// into, hemi-octahedrally. Depth is reversed as everywhere: 1 at the VPL, 0 at least a scene's diameter away and where
-// nothing is.
+// The atlas of the VPLs' depth maps: square slots (VplTile) in the layers of an array texture. A slot holds the
+// hemisphere above a VPL's surface in the hemi-octahedral map. Depth is linear in distance and reversed: 1 at the VPL,
+// 0 at a distance of at least the scene's diameter and where there is no surface.
 #include "maths.glsl"
 #include "types.glsl"
 #include "vpl_constants.glsl"
 
 struct VplTile {
-    uvec2 corner;  // its first texel
+    uvec2 corner;  // first texel of the slot
     uint layer;
 };
 

@@ -1,5 +1,6 @@
-// Where the surface that a VPL sits on ends, as far as that is near: what lies beyond does not stand on it. Looked for anew
-// whenever VPLs are written, as what stands around a kept one may have moved. One invocation for each direction.
+// Finds the near edges of the surface that a VPL lies on: receivers beyond an edge do not stand on that surface, so
+// there is no crease between them. Runs whenever VPLs are written, since the surroundings of a VPL may have moved even
+// if it has not. One invocation a VPL and direction. See theory.md, "Edges of a VPL's surface".
 #include "bindings.glsl"
 #include "bvh.glsl"
 #include "types.glsl"
@@ -12,13 +13,14 @@ layout(local_size_x = 6, local_size_y = 16) in;
 layout(std430, binding = BINDING_VPLS) restrict buffer Vpls { Vpl vpls[]; };
 
 uniform uint vpl_count;
-uniform float edge_reach;  // metres: how far edges are looked for
+uniform float edge_reach;  // metres: edges farther away are ignored
 
-const float EDGE_RISE = 1.0 / 64.0;  // of edge_reach: by how much a surface may bend away and still go on
+const float EDGE_RISE = 1.0 / 64.0;  // of edge_reach: a surface that bends away from the plane by less still continues
 const int EDGE_BISECTIONS = 6;
 
-// Distance in metres to the edge along a unit direction in the surface, from a place EDGE_RISE above it; infinite if there
-// is none, or something that stands on the surface comes first.
+// Distance in metres to the edge along a unit direction in the surface's plane, by bisection to within 1/128 of
+// edge_reach. `above`: EDGE_RISE · edge_reach above the VPL. Infinite if there is no edge within edge_reach, or if the
+// way to it is blocked by something that stands on the surface.
 float edge_distance(vec3 above, vec3 along, vec3 normal) {
     float rise = EDGE_RISE * edge_reach;
     float near = 0.0;
@@ -37,10 +39,9 @@ float edge_distance(vec3 above, vec3 along, vec3 normal) {
     return at;
 }
 
-// Along the axes of the world and against them, each laid into the surface's plane: the inverse of the distance, times the
-// sine of the angle between axis and normal. Of a straight edge e metres away, whose normal in the plane is m, these are
-// m / e, whichever way the plane lies: their scalar product with a place in the plane, relative to the VPL, is 1 all along
-// the edge. 0 where there is none; axes within 18 degrees of the normal say nothing.
+// For a world axis, or its opposite, projected into the surface's plane: sin(axis, normal) / distance to the edge in
+// that direction, in 1/m; 0 if there is no edge. For a straight edge e metres away, with normal m in the plane, the six
+// values hold the components of m / e, whatever the plane's orientation. Axes within 18 degrees of the normal give 0.
 float inverse_edge(Vpl vpl, uint direction) {
     uint axis = direction % 3u;
     vec3 along = -vpl.normal[axis] * vpl.normal;

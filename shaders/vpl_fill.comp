@@ -1,5 +1,6 @@
-// Pixels that too few neighbours fit ask half of the VPLs themselves: every second one in their order, and pixels side by
-// side not the same. The two estimates are weighted by the VPLs behind them.
+// Gathers VPLs for the listed pixels, for which reconstruction found too few classes. Such a pixel sums every second
+// VPL; neighbouring pixels sum different halves. The result is the mean of both estimates, weighted by
+// the number of VPLs behind each: theory.md, "Pixels that lack neighbours". One invocation a listed pixel.
 #include "bindings.glsl"
 #include "visible_surface.glsl"
 #include "vpl_light.glsl"
@@ -13,7 +14,7 @@ layout(std430, binding = BINDING_LACKING) readonly restrict buffer Lacking {
     uint lacking[];
 };
 
-uniform uint asked_before;  // VPLs, in the dispatches before this one
+uniform uint asked_before;  // VPLs that a pixel has summed in the dispatches before this one
 uniform uint asked_now;     // at most
 
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
@@ -27,13 +28,14 @@ void main() {
     uint end = min(vpl_constants.count, 2u * (asked_before + asked_now));
     for (uint i = 2u * asked_before + uint(at.x + at.y) % 2u; i < end; i += 2u) {
 #ifdef SURFELS
-        irradiance += irradiance_from_vpl(vpls[i], surface);  // those side by side go into different halves
+        // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
+        irradiance += irradiance_from_vpl(vpls[i], surface);
 #else
         irradiance += irradiance_from_vpl(vpls[vpl_order[i]], surface);
 #endif
     }
     vec4 found = imageLoad(reconstructed, at);
-    float weight = 1.0 / (found.a + 0.5);  // half of them send half of what all would
+    float weight = 1.0 / (found.a + 0.5);  // the sum over half of the VPLs is half of the estimate
     if (asked_before == 0u) found.rgb *= found.a * weight;
     imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance, found.a));
 }

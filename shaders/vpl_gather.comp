@@ -1,5 +1,6 @@
-// Each pixel asks the VPLs of its class's share. A work group takes a block of pixels of one class, `interleave` apart, so
-// that all its invocations walk the same VPLs; work groups are layered by class.
+// Interleaved gathering: each pixel sums the light of its class's share of the VPLs (vpl_shares.glsl). A work group
+// handles a block of pixels of one class, `interleave` pixels apart, so that all its invocations loop over the same
+// VPLs; its z index is the class.
 #include "bindings.glsl"
 #include "pixel_block.glsl"
 #include "visible_surface.glsl"
@@ -34,7 +35,7 @@ void main() {
         Vpl vpl = vpls[vpl_order[i]];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
     }
-    // What all VPLs together would send if they were like these. Stores beyond the target are discarded by the GL.
+    // Multiplied by the number of classes: the estimate for all VPLs. OpenGL discards stores outside the image.
     for (int s = 0; s < SURFACES; ++s) {
         ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);
         vec4 sum = depth[s] > 0.0 ? vec4(float(classes) * irradiance[s], 1.0) : vec4(0.0);

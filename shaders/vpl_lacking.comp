@@ -1,4 +1,4 @@
-// Lists the pixels that lack neighbours, row by row, by one work group.
+// Turns the mask of pixels that lack neighbours into a list, row by row. One work group in all.
 #include "bindings.glsl"
 
 layout(local_size_x = LIST_GROUP) in;
@@ -13,7 +13,7 @@ layout(std430, binding = BINDING_LACKING) writeonly restrict buffer Lacking {
 uniform uint mask_words;
 uniform uint row_words;
 
-shared uint counts[LIST_GROUP];  // of each invocation's stretch of the mask
+shared uint counts[LIST_GROUP];  // set bits in each invocation's range of mask words
 
 void main() {
     uint id = gl_LocalInvocationID.x;

@@ -1,4 +1,4 @@
-// What virtual point lights send to a surface.
+// Light that virtual point lights (VPLs) send to a surface.
 #include "bindings.glsl"
 #include "disc.glsl"
 #include "surface.glsl"
@@ -8,16 +8,18 @@
 
 layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
 
-// 1 above the surface that a VPL sits on, 0 beyond its edges, with a rim a quarter as wide between; `aside`: from the
-// VPL, in its plane. Towards a straight edge `ahead` is the share of the way to it.
+// 1 above the surface that a VPL lies on, 0 beyond its edges. Falls off linearly beyond an edge, over a quarter of the
+// distance to it. `aside`: metres from the VPL, in its plane. `ahead`: distance towards a straight edge over the
+// distance to it. See theory.md, "Edges of a VPL's surface".
 float share_on_surface(Vpl vpl, vec3 aside) {
     float ahead = dot(max(aside * vpl.edges_up, -aside * vpl.edges_down), vec3(1.0));
     return clamp(5.0 - 4.0 * ahead, 0.0, 1.0);
 }
 
-// Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997), kept from growing
-// beyond 4/3 of 1/R², R² being vpl_constants.radius2: the VPL stands for a disc. Beyond an edge of its surface there is no
-// crease, and it does not sink. Multiplied by flux/π the term is the irradiance.
+// Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997). It is at most 4/3
+// of 1/R², R² being vpl_constants.radius2, as the VPL is treated as a disc (disc.glsl). Beyond an edge of the VPL's
+// surface there is no crease, and the disc does not sink. Irradiance is flux/π times the term. See theory.md, "Bound of
+// the geometry term".
 float geometry_term(Vpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float height = -dot(vpl.normal, to_vpl);
@@ -29,7 +31,7 @@ float geometry_term(Vpl vpl, Surface surface) {
 
 #ifndef SURFELS
 
-// Geometry term times the share of the light that nothing holds back; that is looked up only where there is light.
+// Geometry term times visibility, which is looked up only where the term is not zero.
 float visible_geometry_term(Vpl vpl, Surface surface) {
     float geometry = geometry_term(vpl, surface);
     if (geometry > 0.0) geometry *= vpl_visibility(vpl, surface);
@@ -43,7 +45,7 @@ vec3 irradiance_from_vpl(Vpl vpl, Surface surface) { return vpl.flux * visible_g
 
 layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints { LitPoint lit_points[]; };
 
-// π times the irradiance from the cell of a surfel, were nothing in the way.
+// π times the unoccluded irradiance from the cell of a surfel.
 vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
     if (!is_near(vpl.map_origin - surface.position, vpl.area)) {
         return vpl.flux * disc_term(vpl.position, vpl.normal, vpl.radius2, surface.position, surface.normal);

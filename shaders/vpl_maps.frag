@@ -1,4 +1,4 @@
-// How far a VPL sees in the direction of a texel's centre.
+// Depth map of a VPL: traces a ray through the centre of the texel. One fragment a texel.
 #include "bindings.glsl"
 #include "bvh.glsl"
 #include "changed_boxes.glsl"
@@ -10,7 +10,7 @@ layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[
 flat in uint mapped_vpl;
 
 void main() {
-    // Llvmpipe reads zeros for fragments that cover nothing, and walks in a circle through a hierarchy of zeros.
+    // In helper invocations llvmpipe reads zeros from buffers; traversing a BVH of zeros would never end.
     if (gl_HelperInvocation) return;
     Vpl vpl = vpls[mapped_vpl];
     vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl.map).corner)) / float(vpl_constants.map_resolution);

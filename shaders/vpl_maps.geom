@@ -1,4 +1,4 @@
-// The square of a VPL's tile, in the layer of the atlas that the tile is in.
+// Emits the square of a VPL's slot in its layer of the atlas. One invocation a VPL.
 #include "bindings.glsl"
 #include "changed_boxes.glsl"
 #include "types.glsl"
@@ -14,7 +14,7 @@ flat out uint mapped_vpl;
 
 void main() {
     Vpl vpl = vpls[vpl_id[0]];
-    if (vpl.normal == vec3(0.0)) return;  // no path came so far
+    if (vpl.normal == vec3(0.0)) return;  // not in use: the path ended before this bounce
     if (!may_have_changed_above(vpl.map_origin, vpl.normal)) return;
     VplTile tile = vpl_tile(vpl.map);
     for (uint i = 0u; i < 4u; ++i) {

@@ -1,4 +1,4 @@
-// One point for each VPL; vpl_maps.geom makes a tile of it.
+// One point for each VPL; vpl_maps.geom turns it into the square of the VPL's slot.
 flat out uint vpl_id;
 
 void main() {

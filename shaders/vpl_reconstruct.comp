@@ -1,7 +1,8 @@
-// From what each pixel has gathered of its class's share of the VPLs, what it would have from all: along rows first, then
-// (COLUMNS) along columns of the result. Along a line the classes repeat every `interleave` pixels, and each class is
-// interpolated linearly between its two nearest pixels, as far as these lie on the same surface as the pixel in the middle,
-// so that each class counts once. In alpha: the share of the classes that were found.
+// Reconstructs the irradiance from all VPLs out of the gathered estimates, each of which covers one class's share:
+// first along rows, then (COLUMNS) along columns of that result. Along a line the classes repeat every `interleave`
+// pixels. Each class counts once, interpolated linearly between its two nearest pixels, as far as they lie on the same
+// surface as the pixel. Alpha: the share of the classes that were found. See theory.md, "Interpolation between
+// classes". One invocation a pixel.
 #include "bindings.glsl"
 #include "visible_surface.glsl"
 
@@ -18,23 +19,22 @@ uniform uint interleave;
 layout(binding = UNIT_INDIRECT) uniform sampler2D gathered;
 layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D reconstructed;
 
-const float SAME_NORMAL = 0.9;  // least cosine between the normals of one surface
-const float SAME_PLANE = 2.0;   // pixels, as wide as they are there: farther off a plane nothing counts as on it
+const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
+const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in widths of a pixel at that depth
 
-// The tangent plane of the surface under a pixel, in clip space, scaled so that its product with a point (x, y, z, 1) is
-// the distance from the plane in pixels' widths: with w the factor by which world_from_clip scales the point, the distance
-// in metres is the plane's product over w, and a pixel is |column 1| · 2 / (height · w) metres wide.
+// Tangent plane of the surface at a pixel, in clip space. Its dot product with (x, y, z, 1) in normalised device
+// coordinates is the distance from the plane in pixel widths. See theory.md, "Same surface".
 vec4 tangent_plane(Surface surface) {
     vec4 plane = vec4(surface.normal, -dot(surface.normal, surface.position)) * view.world_from_clip;
     return plane * (0.5 * view.target_size.y / length(view.world_from_clip[1].xyz));
 }
 
-// Irradiance of the pixel in the middle, and the share of the classes that it is from.
+// Irradiance of the pixel, and the share of the classes that it was interpolated from.
 vec4 reconstruct(ivec2 at) {
     float depth = texelFetch(surface_depth, at, 0).r;
     Surface surface = visible_surface(at, depth, vec3(0.0));
     vec4 plane = tangent_plane(surface);
-    float step_off = dot(plane.xy, 2.0 * vec2(along) / view.target_size);  // how far a pixel more leads off the plane
+    float step_off = dot(plane.xy, 2.0 * vec2(along) / view.target_size);  // change of that distance per pixel
     ivec2 before = at * along;
     ivec2 behind = (ivec2(view.target_size) - 1 - at) * along;
     int least = -(before.x + before.y);
@@ -43,7 +43,7 @@ vec4 reconstruct(ivec2 at) {
     vec4 sum = vec4(0.0);
     int n = int(interleave);
     for (int offset = 0; offset < n; ++offset) {
-        vec4 value = vec4(0.0);  // of the class `offset` farther on: weighted by its weight in alpha
+        vec4 value = vec4(0.0);  // of the class `offset` pixels on; rgb is weighted by alpha
         float fitting = 0.0;
         for (int side = 0; side < 2; ++side) {
             int d = side == 0 ? offset : offset - n;
@@ -65,9 +65,10 @@ vec4 reconstruct(ivec2 at) {
 
 #ifdef COLUMNS
 
-layout(std430, binding = BINDING_LACKING_MASK) writeonly restrict buffer Mask { uint lacking_mask[]; };  // 32 pixels each
+// One bit a pixel, 32 a word.
+layout(std430, binding = BINDING_LACKING_MASK) writeonly restrict buffer Mask { uint lacking_mask[]; };
 
-const float ENOUGH = 0.6;  // of the classes, for a pixel not to ask VPLs itself
+const float ENOUGH = 0.6;  // share of the classes; with less, vpl_fill.comp gathers VPLs for the pixel
 
 shared uint group_mask[RECONSTRUCT_GROUP / 32];
 
@@ -88,7 +89,7 @@ void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     bool is_surface = at.x < int(view.target_size.x) && texelFetch(surface_depth, at, 0).r > 0.0;
     vec4 result = is_surface ? reconstruct(at) : vec4(0.0);
-    imageStore(reconstructed, at, result);  // beyond the target it is discarded by the GL
+    imageStore(reconstructed, at, result);  // OpenGL discards stores outside the image
 #ifdef COLUMNS
     note_lacking(is_surface && result.a < ENOUGH);
 #endif

@@ -1,5 +1,5 @@
-// Traces paths of light from the lights, one segment a dispatch: Keller, "Instant Radiosity" (1997). One invocation a path.
-// Blended surfaces are not among the triangles: light passes through them unchanged.
+// Traces light paths from the lights, one segment a dispatch (Keller, "Instant Radiosity", 1997). One invocation a
+// path. The hierarchy holds no blended surfaces: light passes through them unchanged.
 #include "bindings.glsl"
 #include "bvh.glsl"
 #include "emission.glsl"
@@ -12,15 +12,15 @@ layout(std430, binding = BINDING_PATHS) readonly restrict buffer Paths { Path pa
 layout(std430, binding = BINDING_VPL_RECORDS) restrict buffer Records { VplRecord records[]; };
 
 uniform uint path_count;
-uniform uint bounce;  // at the segment's end, from 1 on
-uniform float ray_offset;  // metres, off the surface
+uniform uint bounce;  // number of the bounce at the segment's end, from 1
+uniform float ray_offset;  // metres above the surface, where rays start
 
 struct Ray {
     vec3 origin;
     vec3 direction;  // unit
 };
 
-// What a segment that carries `throughput` times its light's flux finds at its end.
+// The bounce at the end of a segment; `throughput` is the product of the albedos before it.
 VplRecord follow(Ray ray, vec3 throughput) {
     Hit hit = closest_hit(ray.origin, ray.direction, 0.0, 1.0 / 0.0);
     if (hit.triangle == NO_TRIANGLE) return VplRecord(ray.origin, VPL_ESCAPED, ray.direction, 0.0, vec3(0.0), 0.0);
@@ -33,14 +33,14 @@ VplRecord follow(Ray ray, vec3 throughput) {
     return VplRecord(position, VPL_PLACED, normal, 0.0, throughput * albedo, 0.0);
 }
 
-// Segment of a path from the light on; `u` in [0, 1]².
+// First segment of a path, from the light; `u` in [0, 1)².
 Ray first_segment(Light light, vec2 u) {
     Ray ray;
     sample_emission(light, u, ray.origin, ray.direction);
     return ray;
 }
 
-// Segment of path `index` from its VPL of this bounce on.
+// Segment of path `index` that starts at its VPL of bounce `bounce`.
 Ray next_segment(VplRecord vpl, uint index, uint bounce, uint seed) {
     return Ray(vpl.position + ray_offset * vpl.normal, cosine_direction(vpl.normal, sample_2d(index, bounce, seed)));
 }
@@ -58,6 +58,6 @@ void main() {
     uint place = path.first_vpl + bounce - 1u;
     VplRecord last = VplRecord(vec3(0.0), VPL_PLACED, vec3(0.0), 0.0, vec3(1.0), 0.0);
     if (bounce > 1u) last = records[place - 1u];
-    // Bounces that a path does not come to are marked like the last that it came to.
+    // After a path has escaped, its remaining bounces get the same record.
     records[place] = last.state == VPL_ESCAPED ? last : follow(segment(path, last), last.throughput);
 }

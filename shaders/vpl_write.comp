@@ -1,5 +1,5 @@
-// Leaves a VPL at every bounce of the traced paths, and accounts for their flux. One invocation a path; path and bounce give
-// the VPL's place, so that the order is that of the paths.
+// Writes a VPL for every bounce of the traced paths, and the account of their flux. One invocation a path. Path and
+// bounce give the VPL's index, so VPLs are in the order of the paths.
 #include "bindings.glsl"
 #include "lights.glsl"
 #include "types.glsl"
@@ -16,13 +16,13 @@ layout(std430, binding = BINDING_FLUX) writeonly restrict buffer Flux { FluxAcco
 uniform uint path_count;
 uniform uint max_bounces;
 
-// What of a ranged light arrives at its path's first VPL; the rest counts as escaped.
+// Share of the flux that a light's range lets through to the path's first VPL; the rest counts as escaped.
 float first_window(Light light, VplRecord first) {
     if (light.kind == LIGHT_DIRECTIONAL || first.state == VPL_ESCAPED) return 1.0;
     return range_window(distance(light.position, first.position), light.range);
 }
 
-// Its edges are left to vpl_edges.comp.
+// vpl_edges.comp fills in the edges.
 Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint map) {
     return Vpl(position, map, normal, 0.0, flux, 0u, vec3(0.0), 0u, vec3(0.0), 0.0, position, 0.0);
 }
@@ -40,7 +40,7 @@ void main() {
     FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     vec3 throughput = vec3(1.0);
     float window = 1.0;
-    vec3 reflected = vec3(0.0);  // at the bounce before
+    vec3 reflected = vec3(0.0);  // at the previous bounce
     for (uint bounce = 1u; bounce <= path.vpl_count; ++bounce) {
         uint place = path.first_vpl + bounce - 1u;
         float weight = weights[place];
