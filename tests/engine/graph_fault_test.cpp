@@ -1,4 +1,4 @@
-// Every way to declare a graph wrongly, and what compiling says about it.
+// Every invalid declaration of a graph, and what compiling reports about it.
 
 #include <doctest/doctest.h>
 
@@ -163,7 +163,7 @@ TEST_CASE("graph fault: histories of what has none, and writes of what is read o
     CHECK(faults[3].message == "pass 'host' writes value 'number', which the host sets");
 }
 
-/// Whether a pass that accesses an imported texture or buffer by `access` is at fault.
+/// Whether a pass that accesses an imported texture or buffer with `access` is invalid.
 template <class Access>
 bool faulty(const TextureDesc& desc, Access access) {
     FrameGraph graph;

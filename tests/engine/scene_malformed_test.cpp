@@ -14,7 +14,7 @@ using namespace candela::test;
 
 namespace {
 
-/// One change to the document of the complete scene and what must be said about it.
+/// One change to the document of the complete scene, and the error that must be reported.
 struct Defect {
     std::string where;  ///< JSON pointer
     std::string value;  ///< JSON text; empty: the member is removed
