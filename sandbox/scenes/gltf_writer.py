@@ -76,7 +76,7 @@ class Scene:
         self.node(name, mesh=self.mesh(name, surface, material), **transform)
 
     def light(self, name, kind, colour, intensity, reach=None, cone=None, **transform):
-        """Intensity in candela, or lux for a directional light; reach in metres; cone: inner, outer angle in degrees."""
+        """Intensity in candela, or lux for a directional light; reach in metres; cone: inner and outer, in degrees."""
         light = {"type": kind, "name": name, "color": colour, "intensity": intensity}
         if reach is not None:
             light["range"] = reach

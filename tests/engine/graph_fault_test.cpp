@@ -20,7 +20,7 @@ std::vector<Fault> faults_of(FrameGraph& graph) {
     return compile(std::move(graph)).faults;
 }
 
-/// The only fault of a graph.
+/// The only fault of a graph; it must have exactly one.
 Fault fault_of(FrameGraph& graph) {
     const std::vector<Fault> faults = faults_of(graph);
     REQUIRE(faults.size() == 1);
