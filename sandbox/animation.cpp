@@ -14,7 +14,7 @@ namespace candela::sandbox {
 
 namespace {
 
-/// The key in force: the last that is not after `frame`, else the first. There is one.
+/// The last key that is not after `frame`, else the first key. `keys` must not be empty.
 template <class T>
 auto key_at(const Keys<T>& keys, int frame) {
     const auto is_later = [](int at, const Key<T>& key) { return at < key.frame; };
@@ -27,14 +27,15 @@ std::optional<T> held_at(const Keys<T>& keys, int frame) {
     return keys.empty() ? std::nullopt : std::optional<T>(key_at(keys, frame)->value);
 }
 
-// Between equal keys a value stands still to the bit, so that what rests causes no work.
+// Between equal keys a value is bit-identical, so that it does not count as a change.
 float between(float from, float to, float part) {
     return from + part * (to - from);
 }
 glm::vec3 between(const glm::vec3& from, const glm::vec3& to, float part) {
     return from + part * (to - from);
 }
-/// Along the great circle, the shorter way: Shoemake, "Animating Rotation with Quaternion Curves" (1985).
+/// Spherical interpolation along the shorter arc: Shoemake, "Animating Rotation with Quaternion Curves"
+/// (1985).
 glm::quat between(const glm::quat& from, const glm::quat& to, float part) {
     return from == to ? from : glm::normalize(glm::slerp(from, to, part));
 }
@@ -44,7 +45,7 @@ std::optional<T> value_at(const Keys<T>& keys, Interpolation interpolation, int 
     if (keys.empty()) return std::nullopt;
     const auto last = key_at(keys, frame);
     const auto next = std::next(last);
-    // At its frame a key holds to the bit.
+    // At the frame of a key, the value is bit-identical to that of the key.
     const bool holds = interpolation == Interpolation::step || next == keys.end() || frame <= last->frame;
     if (holds) return last->value;
     const float part =
@@ -67,7 +68,7 @@ std::vector<Entity> find_nodes(const World& world, const std::string& wanted) {
     return found;
 }
 
-/// Candela or lux; nullopt where there is no light.
+/// Candela or lux; nullopt if the entity is not a light.
 std::optional<float> light_strength(const World& world, Entity entity) {
     if (const auto* light = world.find<PointLight>(entity)) return light->intensity;
     if (const auto* light = world.find<SpotLight>(entity)) return light->intensity;
@@ -75,7 +76,7 @@ std::optional<float> light_strength(const World& world, Entity entity) {
     return std::nullopt;
 }
 
-/// The member that only a light has and the track drives.
+/// The name of an animated member that only lights have, or null.
 const char* light_member(const Track& track) {
     if (!track.intensity.empty()) return "intensity";
     if (!track.colour.empty()) return "colour";
@@ -97,7 +98,7 @@ void apply_transform(World& world, Entity entity, const Pose& pose) {
     world.set(entity, transform);
 }
 
-/// `strength` is what the light has while it is on.
+/// `strength` is the intensity while the light is on, in the unit of `member`.
 template <class Light>
 void apply_light(World& world, Entity entity, const Pose& pose, float strength, float Light::*member) {
     if (!world.has<Light>(entity)) return;

@@ -13,42 +13,42 @@
 
 namespace candela::sandbox {
 
-/// How a value gets from one key to the next. `smooth` starts and ends every stretch at rest.
+/// How a value is interpolated between two keys. `smooth` eases in and out of every key (smoothstep).
 enum class Interpolation : std::uint8_t { linear, step, smooth };
 
-/// What a value is at a frame.
+/// A key frame: the value at one frame.
 template <class T>
 struct Key {
     int frame = 0;
     T value{};
 };
 
-/// In the order of their frames, of which no two are equal. Without keys a value is not driven.
+/// Sorted by frame, and no two keys share a frame. Without keys the value is not animated.
 template <class T>
 using Keys = std::vector<Key<T>>;
 
-/// What a script does to one node. Before its first key a value is as there, after its last as there.
+/// The animation of one node. A value is constant before its first key and after its last key.
 struct Track {
     std::string node;  ///< name
     Interpolation interpolation = Interpolation::linear;
-    Keys<glm::vec3> translation{};  ///< metres, to the parent
-    Keys<glm::quat> rotation{};     ///< unit length, to the parent; taken the shorter way round
+    Keys<glm::vec3> translation{};  ///< metres, relative to the parent
+    Keys<glm::quat> rotation{};     ///< unit length, relative to the parent; takes the shorter arc
     Keys<glm::vec3> scale{};
-    Keys<float> intensity{};   ///< of a light: candela, or lux of a directional one
-    Keys<glm::vec3> colour{};  ///< of a light: linear
-    Keys<bool> enabled{};      ///< of a light; steps, whatever the interpolation
+    Keys<float> intensity{};   ///< of a light: candela, or lux if directional
+    Keys<glm::vec3> colour{};  ///< of a light: linear RGB
+    Keys<bool> enabled{};      ///< of a light; always stepped
 };
 
-/// Motion of a scene by frame number.
+/// Animation of a scene by frame number.
 struct Script {
-    std::filesystem::path path;        ///< where it came from; for messages
-    std::optional<std::string> scene;  ///< the shipped scene that it is for, or a glTF file; see scene_of
+    std::filesystem::path path;        ///< the file it was read from; for messages
+    std::optional<std::string> scene;  ///< the shipped scene or glTF file to animate; see scene_of
     int frames = 1;                    ///< >= 1
-    bool loop = false;                 ///< after the last frame comes the first, or else the last again
-    std::vector<Track> tracks;         ///< one a node
+    bool loop = false;                 ///< restart after the last frame, instead of holding the last frame
+    std::vector<Track> tracks;         ///< at most one per node
 };
 
-/// What a track makes of its node in one frame; what it does not drive is nullopt.
+/// The values of a track at one frame; nullopt for values that are not animated.
 struct Pose {
     std::optional<glm::vec3> translation;
     std::optional<glm::quat> rotation;
@@ -59,36 +59,37 @@ struct Pose {
     bool operator==(const Pose&) const = default;
 };
 
-/// Depends on nothing but its arguments.
+/// Depends only on its arguments.
 [[nodiscard]] Pose pose_at(const Track& track, int frame);
 
-/// The frame of the script that is shown in frame `frame`, >= 0, of a run.
+/// The frame of the script that is shown in frame `frame` (>= 0) of a run.
 [[nodiscard]] int frame_of(const Script& script, int frame);
 
-/// A script and the entities that it moves.
+/// A script and the entities that it animates.
 class Animation {
  public:
-    /// Finds the nodes in the world. Throws std::runtime_error whose one line names the script and the track
-    /// that asks for a node which is not there or not the only one of its name, or for light of what is no
-    /// light.
+    /// Looks up the nodes in the world. Throws std::runtime_error with a one-line message that names the
+    /// script and the track, if a track's node does not exist, if its name is not unique, or if a track
+    /// animates light values of a node that is not a light.
     Animation(Script script, const World& world);
 
     [[nodiscard]] const Script& script() const { return script_; }
 
-    /// Puts everything that the script drives to where it is in frame `frame`, >= 0, of a run, whatever was
-    /// there before: the world depends on the frame alone, not on those shown before it. A light that is
-    /// switched off keeps its component, with no intensity; one that is on and whose intensity is not driven
-    /// has what it had when this was made. `world` is that of the constructor, or a copy.
+    /// Sets everything that the script animates to its value in frame `frame` (>= 0) of a run. The result
+    /// depends only on the frame, not on the frames shown before. A light that is switched off keeps its
+    /// component, with intensity 0. A light that is switched on and whose intensity is not animated gets the
+    /// intensity that it had when this object was created. `world` is the world that was given to the
+    /// constructor, or a copy of it.
     void apply(World& world, int frame) const;
 
  private:
     struct Driven {
         Entity entity;
-        float strength = 0.0F;  ///< candela or lux, when the animation was made; of no light 0
+        float strength = 0.0F;  ///< candela or lux at construction; 0 if it is not a light
     };
 
     Script script_;
-    std::vector<Driven> driven_;  ///< one a track
+    std::vector<Driven> driven_;  ///< one per track
 };
 
 }  // namespace candela::sandbox

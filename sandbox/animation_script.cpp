@@ -30,7 +30,7 @@ using Json = nlohmann::json;
     throw std::runtime_error(place.empty() ? std::string(fault) : fmt::format("{}: {}", place, fault));
 }
 
-/// The place of a member; the script itself has an empty one.
+/// The path of a member, for error messages. The path of the script itself is empty.
 std::string member_of(const std::string& place, std::string_view member) {
     return place.empty() ? std::string(member) : fmt::format("{}.{}", place, member);
 }
@@ -50,7 +50,7 @@ const Json& require(const Json& object, const std::string& place, const char* me
     return *found;
 }
 
-/// An object with no members but these.
+/// Checks that it is an object with no members other than `known`.
 void check_object(const Json& json, const std::string& place, std::initializer_list<std::string_view> known) {
     if (!json.is_object()) fail(place, "is not an object");
     for (const auto& [member, value] : json.items()) {
@@ -82,7 +82,7 @@ std::string read_text(const Json& json, const std::string& place) {
 float read_float(const Json& json, const std::string& place) {
     if (!json.is_number()) fail(place, "is not a number");
     const double number = json.get<double>();
-    // Numbers beyond a float's would become infinite.
+    // Converting a number outside the range of float would give infinity.
     if (std::abs(number) > std::numeric_limits<float>::max()) fail(place, "is too large");
     return static_cast<float>(number);
 }
@@ -109,7 +109,7 @@ glm::vec3 read_colour(const Json& json, const std::string& place) {
     return colour;
 }
 
-/// In double, so that no length overflows that a float holds.
+/// In double precision, so that the length of a quaternion of floats cannot overflow.
 glm::quat unit_quaternion(const glm::dquat& rotation, const std::string& place) {
     const double length = glm::length(rotation);
     if (!(length > 0.0)) fail(place, "has no length");
@@ -140,7 +140,7 @@ Interpolation read_interpolation(const Json& json, const std::string& place) {
     fail(place, "is not one of linear, step, smooth");
 }
 
-/// The keys of one value, none where the track leaves it out. `frames` is the last frame that a key may have.
+/// The keys of one value; empty if the track leaves it out. `frames` is the last valid frame of a key.
 template <class T>
 Keys<T> read_keys(const Json& track, const std::string& track_place, const char* member, int frames,
                   T (*read_value)(const Json&, const std::string&)) {

@@ -13,7 +13,7 @@ namespace candela::sandbox {
 
 namespace {
 
-/// Turns tone mapping off while it lives.
+/// Turns tone mapping off during its lifetime.
 class LinearOutput {
  public:
     explicit LinearOutput(Renderer& renderer) : renderer_(renderer), before_(renderer.configuration()) {
@@ -23,7 +23,7 @@ class LinearOutput {
         if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
     }
     ~LinearOutput() {
-        // The renderer had it before; where it still failed, the linear one goes on.
+        // The renderer had this configuration before. If it fails nonetheless, the linear one stays.
         static_cast<void>(renderer_.configure(before_));
     }
     LinearOutput(const LinearOutput&) = delete;
@@ -34,7 +34,7 @@ class LinearOutput {
     Configuration before_;
 };
 
-/// One frame made of several: what they took together.
+/// The sum of the costs of several frames.
 FrameReport sum_up(const std::vector<FrameReport>& frames) {
     if (frames.empty()) return {};
     FrameReport sum = frames.front();
@@ -50,7 +50,7 @@ FrameReport sum_up(const std::vector<FrameReport>& frames) {
     return sum;
 }
 
-/// Between the GL's order of rows and that of files.
+/// Converts between GL's row order (bottom to top) and that of Picture (top to bottom).
 void flip_rows(std::vector<glm::vec3>& pixels, glm::uvec2 size) {
     const auto row = [&](std::uint32_t y) {
         return pixels.begin() + static_cast<std::ptrdiff_t>(y) * size.x;
@@ -61,7 +61,8 @@ void flip_rows(std::vector<glm::vec3>& pixels, glm::uvec2 size) {
 }  // namespace
 
 glm::vec2 pixel_jitter(int i, int count) {
-    const int first = count % 2 == 0 ? 1 : 0;  // an even number is pairs, without the sample at the centre
+    // An even number of samples consists of pairs, without the sample at the centre.
+    const int first = count % 2 == 0 ? 1 : 0;
     return pixel_sample(static_cast<std::uint32_t>(first + i));
 }
 

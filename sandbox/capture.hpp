@@ -9,35 +9,36 @@
 
 namespace candela::sandbox {
 
-/// Where the i-th of `count` samples lies in a pixel, in pixels from its centre, on which their mean lies.
+/// The offset of the i-th of `count` samples from the pixel centre, in pixels. The mean of all offsets is 0.
 [[nodiscard]] glm::vec2 pixel_jitter(int i, int count);
 
-/// What one picture took: the sums over its samples, and the state after them.
+/// The cost of one picture: the sums over its samples, and the renderer's state after the last one.
 struct CaptureReport {
     FrameReport frame;
     Report state;
 };
 
-/// Renders pictures that go to files, into a framebuffer of its own.
+/// Renders pictures for output files, into its own framebuffer.
 class Capture {
  public:
-    /// Refers to the renderer, whose configuration it leaves as it is. Throws gl::GlError if the driver does
-    /// not allow the size (pixels).
+    /// Keeps a reference to the renderer and leaves its configuration unchanged. `size` is in pixels. Throws
+    /// gl::GlError if the driver does not support the size.
     Capture(Renderer& renderer, glm::ivec2 size);
 
-    /// The mean of so many frames, jittered within the pixel (a box filter), in linear radiance. With
-    /// refinement, which does both, so many frames more are in its mean.
+    /// The mean of `samples` frames in linear radiance, jittered within the pixel (a box filter). With
+    /// refinement the renderer does the jittering and averaging itself; then `samples` further frames go into
+    /// its running mean, and that mean is returned.
     [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
 
-    /// The picture through the renderer's tone map: sRGB-encoded, three bytes a pixel, row 0 at the top.
+    /// The picture through the renderer's tone map: sRGB, 3 bytes per pixel, row 0 at the top.
     [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);
 
-    /// Writes what the file's extension says: .png tone-mapped, .exr and .pfm linear. Throws
-    /// std::runtime_error that names the file and the fault.
+    /// Writes the format that the file extension names: .png tone-mapped, .exr and .pfm linear. Throws
+    /// std::runtime_error that names the file and the error.
     void write(const std::filesystem::path& path, const Picture& picture);
 
  private:
-    /// A colour texture, and the framebuffer that draws into it.
+    /// A colour texture and a framebuffer that draws into it.
     struct Canvas {
         gl::Texture colour;
         gl::Framebuffer framebuffer;

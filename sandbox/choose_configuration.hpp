@@ -5,13 +5,13 @@
 
 namespace candela::sandbox {
 
-/// The defaults, overridden by the configuration file, overridden by flags. In a window the frame budget is
-/// "auto" by default, and refinement on, as a picture that stands still is looked at; it is also on where
-/// many frames of a still scene are for one picture. Throws std::runtime_error whose one line names the file
-/// and all faults.
+/// The defaults, overridden by the configuration file, which is overridden by the flags. In a window the
+/// default frame budget is "auto", and refinement is on by default because users look at still pictures.
+/// Refinement is also on by default if many frames of a still scene are rendered into one picture. Throws
+/// std::runtime_error with a one-line message that names the file and all errors.
 [[nodiscard]] Configuration choose_configuration(const Options& options, bool in_window);
 
-/// The named configurations, a line each, for --list-configs.
+/// The named configurations for --list-configs, one per line.
 [[nodiscard]] std::string list_configurations();
 
 }  // namespace candela::sandbox

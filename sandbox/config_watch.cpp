@@ -29,7 +29,7 @@ std::optional<ConfigurationResult> ConfigWatch::poll(Clock::time_point now) {
     const bool settled = stamp == std::exchange(seen_, stamp);
     if (!stamp || !settled || stamp == read_) return std::nullopt;
     ConfigurationResult result = read(options_);
-    // Saved again meanwhile: what was read may be half of each.
+    // The file was saved again in the meantime: what was read may be a mix of both versions.
     if (look() != stamp) return std::nullopt;
     read_ = stamp;
     return result;

@@ -10,25 +10,25 @@
 
 namespace candela::sandbox {
 
-/// Reads the configuration file anew whenever it is saved, in place or by replacing it. A file that is not
-/// there is no save: it is read once it is back.
+/// Reads the configuration file again whenever it is saved, in place or by replacing it. A missing file does
+/// not count as saved; it is read once it is back.
 class ConfigWatch {
  public:
     using Clock = std::chrono::steady_clock;
-    /// Between two looks at the file. A save is read once two looks in a row find the same, so that a file
-    /// that is still being written is left alone.
+    /// Time between two checks of the file. A saved file is read once two checks in a row find the same
+    /// state, so that a file is not read while it is being written.
     static constexpr std::chrono::milliseconds interval{200};
 
-    /// Knows the file as it is now: to miss no save, make this before the file is first read. Watches nothing
-    /// without `options.config`.
+    /// Records the current state of the file. To miss no save, create this before the file is first read.
+    /// Watches nothing if `options.config` is not set.
     explicit ConfigWatch(Options options);
 
-    /// To be called often. Once after each save: the configuration that choose_configuration gives a window,
-    /// or what is wrong with it. Throws nothing for files that are missing or faulty.
+    /// Call this often. Returns a result once after each save: the configuration that choose_configuration
+    /// gives for a window, or its errors. Does not throw if the file is missing or invalid.
     [[nodiscard]] std::optional<ConfigurationResult> poll(Clock::time_point now);
 
  private:
-    /// Tells one state of the file from another without reading it.
+    /// Identifies a state of the file without reading it.
     struct Stamp {
         std::filesystem::file_time_type written;
         std::uintmax_t bytes = 0;
@@ -37,7 +37,7 @@ class ConfigWatch {
     [[nodiscard]] std::optional<Stamp> look() const;
 
     Options options_;
-    std::optional<Stamp> seen_;  ///< at the last look
+    std::optional<Stamp> seen_;  ///< at the last check
     std::optional<Stamp> read_;  ///< when it was last read
     Clock::time_point next_look_{};
 };

@@ -13,7 +13,7 @@ namespace candela::sandbox {
 
 namespace {
 
-/// How much larger than usual panels must be, where window coordinates are pixels on a dense display.
+/// The scale of panels on dense displays where a window coordinate is a pixel; >= 1.
 float panel_scale(const Window& window) {
     float content = 1.0F;
     glfwGetWindowContentScale(window.handle(), &content, nullptr);
@@ -22,7 +22,7 @@ float panel_scale(const Window& window) {
     return pixels > 0.0F ? std::max(content * units / pixels, 1.0F) : 1.0F;
 }
 
-/// A light's hue at full brightness.
+/// The light's hue at full brightness.
 ImU32 marker_colour(glm::vec3 linear) {
     const float brightest = std::max({linear.r, linear.g, linear.b, 1e-6F});
     const auto encode = [&](float channel) { return std::pow(channel / brightest, 1.0F / 2.2F); };

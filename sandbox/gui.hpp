@@ -7,7 +7,8 @@
 
 namespace candela::sandbox {
 
-/// Dear ImGui in a window. Its context is current while this lives, and nothing else in the process uses it.
+/// Dear ImGui in a window. Its context is current during the lifetime of this object; the process uses no
+/// other one.
 class Gui {
  public:
     explicit Gui(const Window& window);
@@ -15,18 +16,18 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    /// Between the two, what is drawn with Dear ImGui goes into the window's framebuffer.
+    /// What is drawn with Dear ImGui between these two calls goes into the window's framebuffer.
     void begin_frame();
     void end_frame();
 
-    /// Whether the pointer, or the keyboard, belongs to a panel at the moment.
+    /// Whether ImGui currently uses the pointer, or the keyboard, for its panels.
     [[nodiscard]] bool wants(InputEvent::Kind kind) const;
 };
 
-/// Fills the window with words, for the time until there is a picture.
+/// Shows a text on black in the whole window, until there is a picture.
 void show_words(Gui& gui, Window& window, const std::string& words);
 
-/// Draws a ring and a name where each light is seen, behind the panels.
+/// Draws a ring and a name at the position of each light, behind the panels.
 void draw_markers(const std::vector<LightMarker>& markers, const Viewport& viewport,
                   std::optional<Entity> selected);
 

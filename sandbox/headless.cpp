@@ -20,7 +20,7 @@ GraphFormat graph_format(const fs::path& path) {
     return extension == ".json" ? GraphFormat::json : GraphFormat::text;
 }
 
-/// Frames of a numbered series each have a file; without numbers the last frame is the picture.
+/// In a numbered series each frame has its own file; without numbers only the last frame is written.
 bool is_written(const fs::path& out, int frame, int frames) {
     return numbered(out, frame) != out || frame == frames - 1;
 }

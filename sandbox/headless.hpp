@@ -11,23 +11,23 @@
 
 namespace candela::sandbox {
 
-/// Where the headless picture goes: what --out says; else "candela.png" in the working directory, unless a
-/// report or a graph is all that is asked for.
+/// Where the headless picture goes: the file given by --out; otherwise "candela.png" in the working
+/// directory, or no file if only a report or a graph is asked for.
 [[nodiscard]] std::optional<std::filesystem::path> picture_path(const Options& options);
 
-/// The frames of a headless run: those asked for, else those of the scene's animation, else one.
+/// The number of frames of a headless run: as given by the options, else the length of the animation, else 1.
 [[nodiscard]] int frames_of(const Options& options, const Scene& scene);
 
-/// Renders the frames, moving the scene by its animation, writes what the options ask for and prints a table
-/// of the last frame. `context` is current. Throws std::runtime_error for outputs that cannot be written, and
-/// gl::GlError for impossible sizes.
+/// Renders the frames, applies the scene's animation, writes what the options ask for and prints a table of
+/// the last frame. `context` must be current. Throws std::runtime_error for outputs that cannot be written,
+/// gl::GlError for unsupported sizes, and EnergyError if the light of the last frame does not add up.
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size);
 
-/// Writes --report and --describe-graph, as far as they are asked for.
+/// Writes --report and --describe-graph if they are asked for.
 void write_documents(const Options& options, const RunReport& report, const Renderer& renderer);
 
-/// The configuration, which is valid, into a renderer that has just been made. Throws std::runtime_error.
+/// Sets a configuration, which must be valid, on a new renderer. Throws std::runtime_error.
 void apply(Renderer& renderer, const Configuration& configuration);
 
 }  // namespace candela::sandbox

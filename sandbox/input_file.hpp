@@ -5,7 +5,7 @@
 
 namespace candela::sandbox {
 
-/// The whole file. Throws std::runtime_error that names it and the fault.
+/// Reads the whole file. Throws std::runtime_error that names the file and the error.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 }  // namespace candela::sandbox

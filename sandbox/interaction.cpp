@@ -16,11 +16,11 @@ namespace candela::sandbox {
 
 namespace {
 
-constexpr float least_distance = 0.05F;  // of the scene's radius, from the eye to the pivot
-constexpr float nudge_step = 0.02F;      // of the scene's radius
+constexpr float least_distance = 0.05F;  // from the eye to the pivot, relative to the scene's radius
+constexpr float nudge_step = 0.02F;      // relative to the scene's radius
 constexpr float zoom_per_notch = 0.9F;
 
-/// Directions of the picture by key: +x right, +y up, +z towards the viewer.
+/// The direction of a key in view space: +x right, +y up, +z towards the viewer.
 glm::vec3 direction_of(int key) {
     switch (key) {
         case GLFW_KEY_LEFT:
@@ -106,7 +106,7 @@ void Interaction::move(glm::vec2 position, const Viewport& viewport) {
     const glm::vec2 moved = position - pointer_;
     pointer_ = position;
     if (const auto* light = std::get_if<LightDrag>(&action_)) return light->drag(*world_, viewport, position);
-    // What was grabbed follows the pointer; a drag across the window's height is half a turn.
+    // The grabbed point follows the pointer. A drag over the window's height turns by 180 degrees.
     if (std::holds_alternative<Orbiting>(action_)) {
         const float angle_per_unit = glm::pi<float>() / viewport.size.y;
         orbit_ = orbited(orbit_, glm::vec2(-moved.x, moved.y) * angle_per_unit);

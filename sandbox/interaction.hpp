@@ -10,24 +10,25 @@
 
 namespace candela::sandbox {
 
-/// Turns input into changes of the world: a camera of the viewer's own that orbits, pans and zooms, and
-/// lights that are picked, dragged and nudged.
+/// Turns input into changes of the world: orbits, pans and zooms the viewer's own camera, and picks, drags
+/// and nudges lights.
 class Interaction {
  public:
-    /// Adds the viewer's camera to the world, which is referred to, and looks from `camera`.
+    /// Adds the viewer's camera to the world and starts at the view of `camera`. Keeps a reference to the
+    /// world.
     Interaction(World& world, Entity camera);
 
-    /// `size` is the window's, in window coordinates, each > 0.
+    /// `size` is the window size in window coordinates; both components > 0.
     void handle(const InputEvent& event, glm::vec2 size);
-    /// Takes over the pose and lens of a camera of the scene.
+    /// Copies the pose and lens of one of the scene's cameras to the viewer's camera.
     void look_from_camera(Entity camera);
 
     /// The viewer's camera.
     [[nodiscard]] Entity viewer() const { return viewer_; }
-    /// The camera that the viewer last started from.
+    /// The scene camera that the viewer last started from.
     [[nodiscard]] Entity camera() const { return camera_; }
 
-    std::optional<Entity> selected;  ///< light
+    std::optional<Entity> selected;  ///< a light
 
     static constexpr float pick_radius = 14.0F;  ///< window coordinates
 
@@ -40,7 +41,7 @@ class Interaction {
     void scroll(float notches);
     void press_key(int key, const Viewport& viewport);
     void place_viewer();
-    /// Metres that a unit of the window spans at the pivot.
+    /// World-space metres per window coordinate at the distance of the pivot.
     [[nodiscard]] float metres_per_unit(const Viewport& viewport) const;
 
     World* world_;

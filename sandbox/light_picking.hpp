@@ -9,7 +9,7 @@
 
 namespace candela::sandbox {
 
-/// A light as the window marks it.
+/// A light as it is marked in the window.
 struct LightMarker {
     Entity entity;
     std::string name;
@@ -17,19 +17,18 @@ struct LightMarker {
     glm::vec3 position{0.0F};  ///< world space, metres
 };
 
-/// Every light that sits somewhere: point and spot lights, in the order of their creation. Directional lights
-/// have no place.
+/// All lights that have a position (point and spot lights), in the order of their creation.
 [[nodiscard]] std::vector<LightMarker> light_markers(const World& world);
 
-/// The marker nearest to a position of the window, if it is within `radius` (window coordinates).
+/// The marker nearest to a position in the window, if it is within `radius`; both in window coordinates.
 [[nodiscard]] std::optional<Entity> pick(const std::vector<LightMarker>& markers, const Viewport& viewport,
                                          glm::vec2 position, float radius);
 
-/// Puts the entity's origin at a place in world space, whatever its parents are. Nothing happens below a
-/// parent that is flat, where most places cannot be reached.
+/// Moves the entity's origin to a world-space position, whatever its parents are. Does nothing if the
+/// transform of its parents cannot be inverted.
 void move_to(World& world, Entity entity, const glm::vec3& position);
 
-/// A light being dragged in the plane through it that faces the camera. What was grabbed stays under the
+/// Drags a light in the plane through the light that faces the camera. The grabbed point stays under the
 /// pointer.
 class LightDrag {
  public:
@@ -44,7 +43,7 @@ class LightDrag {
     glm::vec2 offset_{0.0F};  ///< from the pointer to the light, window coordinates
 };
 
-/// Moves a light along the picture's axes: +x right, +y up, +z towards the viewer; metres.
+/// Moves a light along the axes of the view: +x right, +y up, +z towards the viewer; in metres.
 void nudge(World& world, Entity light, const Viewport& viewport, const glm::vec3& metres);
 
 }  // namespace candela::sandbox

@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int largest_side = 16384;  // of a texture, on most drivers
+constexpr int largest_side = 16384;  // maximum texture size of most drivers
 constexpr std::string_view frame_number = "%d";
 
-/// A flag whose value is one of a few words.
+/// A flag with a fixed set of values.
 template <typename Target, typename Value>
 void add_choice(CLI::App& app, const std::string& flag, Target& target,
                 std::vector<std::pair<std::string, Value>> choices, const std::string& help) {
@@ -42,12 +42,12 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target,
         });
 }
 
-/// Faults are worded by the caller, so that no two flags word the same fault differently.
+/// All errors have the same form: the flag, the value and what is wrong with it.
 [[noreturn]] void fail(std::string_view flag, std::string_view value, std::string_view fault) {
     throw CLI::ValidationError(std::string(flag), fmt::format("'{}' {}", value, fault));
 }
 
-/// The whole of `text` as a number from `least` on.
+/// Parses all of `text` as a number >= `least`.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view text, Number least) {
     Number number{};
@@ -79,7 +79,7 @@ glm::ivec2 parse_size(const std::string& text) {
     fail("--size", text, fmt::format("is no size from 1x1 to {0}x{0}", largest_side));
 }
 
-/// A file that will be written: its format is known and its folder is there.
+/// Checks the path of an output file: the format is known and the folder exists.
 fs::path parse_output(std::string_view flag, const std::string& text,
                       const std::vector<std::string_view>& extensions) {
     fs::path path = text;
@@ -173,7 +173,7 @@ void declare(CLI::App& app, Options& options) {
     app.add_flag("--list-configs", options.list_configs, "print the named configurations and exit");
 }
 
-/// What no flag can tell alone.
+/// Checks across several flags.
 void check_together(Options& options) {
     const bool windowless = options.context == ContextChoice::egl || options.context == ContextChoice::osmesa;
     if (options.headless && options.context == ContextChoice::window) {

@@ -15,15 +15,15 @@ namespace candela::sandbox {
 /// Where the GL context comes from. `automatic`: a window if there is a display, else EGL, else OSMesa.
 enum class ContextChoice : std::uint8_t { automatic, window, egl, osmesa };
 
-/// The command line. What it left out and a configuration file may hold is nullopt, so that only flags that
-/// were given override the file.
+/// The command line. Options that a configuration file can also set are nullopt if not given, so that only
+/// flags that were given override the file.
 struct Options {
     std::optional<std::filesystem::path> scene;  ///< default: the script's, else the shipped Cornell box
-    bool headless = false;                       ///< also set by a `context` that has no windows
+    bool headless = false;                       ///< also set by a `context` without windows
     ContextChoice context = ContextChoice::automatic;
     std::optional<glm::ivec2> size;     ///< pixels; default: 1280x720 in a window, 512x512 headless
-    std::optional<int> frames;          ///< default: 1 or the script's length headless, no end in a window
-    int samples = 1;                    ///< frames averaged, jittered within the pixel
+    std::optional<int> frames;          ///< default: headless 1 or the script's length, unlimited in a window
+    int samples = 1;                    ///< number of averaged frames, jittered within the pixel
     std::optional<std::string> camera;  ///< name or index; default: the scene's first
 
     std::optional<Show> show;
@@ -31,11 +31,11 @@ struct Options {
     std::optional<bool> indirect;
     std::optional<VplPlacement> vpl_placement;
     std::optional<std::uint32_t> vpls;
-    std::optional<std::uint32_t> bounces;  ///< indirect ones: 1 is light, surface, seen surface
+    std::optional<std::uint32_t> bounces;  ///< indirect bounces; 1: light, surface, visible surface
     std::optional<std::uint32_t> seed;
     std::optional<VplVisibility> vpl_visibility;
     std::optional<Interleave> interleave;
-    std::optional<std::filesystem::path> animate;  ///< a script's file, or the name of a shipped one
+    std::optional<std::filesystem::path> animate;  ///< a script file, or the name of a shipped script
     std::optional<std::filesystem::path> config;
     bool print_config = false;
 
@@ -45,19 +45,19 @@ struct Options {
     bool list_configs = false;
 };
 
-/// Nothing is left to do: `text`, one line and its end where it is a fault, belongs on stdout if `status` is
-/// 0 and on stderr otherwise.
+/// The program must exit with `status` and print `text`: to stdout if `status` is 0, otherwise to stderr. An
+/// error is one line with its newline.
 struct EarlyExit {
     int status = 0;
     std::string text;
 };
 
-/// Reads the command line; `arguments[0]` is the program. Looks at no file beyond whether it, or the folder
-/// that is to hold it, is there. Faults have exit status 2.
+/// Parses the command line; `arguments[0]` is the program. Of the files it checks only whether the
+/// configuration file and the folders of output files exist. Errors have exit status 2.
 [[nodiscard]] std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments);
 
-/// The picture's file name for frame `frame`: every "%d" in the name becomes its number. Without one, all
-/// frames have the same name, and the last is written.
+/// The picture's file name for frame `frame`: every "%d" in the name is replaced by the number. Without "%d"
+/// all frames have the same name, and only the last one is written.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& out, int frame);
 
 }  // namespace candela::sandbox

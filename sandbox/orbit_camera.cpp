@@ -15,7 +15,8 @@ constexpr glm::vec3 vertical(0.0F, 1.0F, 0.0F);
 constexpr glm::vec3 right(1.0F, 0.0F, 0.0F);
 constexpr float steepest = 0.49F * glm::pi<float>();
 
-/// The elevation by which to turn so that the view does not come steeper than allowed, unless it already was.
+/// Limits a turn so that the elevation stays within the allowed range, or within its present value if that is
+/// outside.
 float limited_turn(float elevation, float turn) {
     const float most = std::max(steepest, std::abs(elevation));
     return std::clamp(elevation + turn, -most, most) - elevation;

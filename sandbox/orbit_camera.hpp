@@ -7,7 +7,7 @@
 
 namespace candela::sandbox {
 
-/// A viewpoint that turns around a pivot straight ahead. World space, metres; it looks along its -Z, +Y up.
+/// A camera that orbits a pivot straight ahead of it. World space, metres; it looks along its -Z, with +Y up.
 struct OrbitCamera {
     glm::vec3 eye{0.0F};
     glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
@@ -17,19 +17,19 @@ struct OrbitCamera {
     [[nodiscard]] glm::vec3 pivot() const { return eye + distance * forward(); }
 };
 
-/// The viewpoint of a camera's matrix, whose scale is left out, with its pivot at the depth of `target`, or
-/// at `least_distance` if the target is nearer or behind.
+/// The orbit camera with the position and rotation of a camera matrix; its scale is ignored. The pivot is at
+/// the depth of `target`, or at `least_distance` if the target is nearer than that or behind the camera.
 [[nodiscard]] OrbitCamera look_from(const glm::mat4& world_from_camera, const glm::vec3& target,
                                     float least_distance);
 
-/// Turns around the pivot by angles in radians: `x` around the world's vertical, to the right, `y` up over
-/// it. It stops short of the poles.
+/// Orbits around the pivot by angles in radians: `x` around the world's vertical, to the right; `y` upwards.
+/// The camera stops before it reaches a pole.
 [[nodiscard]] OrbitCamera orbited(const OrbitCamera& camera, glm::vec2 angles);
 
-/// Moves eye and pivot by metres along the picture, +x right, +y up.
+/// Moves eye and pivot in the view plane by metres, +x right, +y up.
 [[nodiscard]] OrbitCamera panned(const OrbitCamera& camera, glm::vec2 metres);
 
-/// Multiplies the distance to the pivot, which stays.
+/// Multiplies the distance to the pivot by `factor`; the pivot stays in place.
 [[nodiscard]] OrbitCamera zoomed(const OrbitCamera& camera, float factor);
 
 }  // namespace candela::sandbox

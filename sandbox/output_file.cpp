@@ -29,7 +29,7 @@ std::error_code write_bytes(const fs::path& path, const char* mode, std::span<co
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), mode), &std::fclose);
     if (!file) return last_error();
     if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return last_error();
-    // Only closing tells that the last of the bytes found room.
+    // Buffered bytes are written on close, so only fclose reports that the disk is full.
     return std::fclose(file.release()) == 0 ? std::error_code{} : last_error();
 }
 
@@ -50,7 +50,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
     if (!fs::exists(status)) return replace_file(path, bytes);
-    // A link keeps pointing at its file, which is what is replaced.
+    // A symbolic link stays a link: its target is replaced.
     if (fs::is_regular_file(status)) return replace_file(fs::canonical(path), bytes);
     if (const std::error_code fault = write_bytes(path, "wb", bytes)) fail(path, fault);
 }

@@ -32,14 +32,14 @@ void drag(const char* label, std::uint32_t& value, float speed) {
     ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
 }
 
-/// Named configurations say what a frame is made of, and leave as it is how a window spends its time.
+/// A named configuration describes how a frame is rendered; refinement and the frame budget stay as they are.
 Configuration paced_as(const Configuration& present, Configuration named) {
     named.refinement = present.refinement;
     named.frame_budget_ms = present.frame_budget_ms;
     return named;
 }
 
-/// Named configurations, of which one is shown where nothing was changed since.
+/// A list of named configurations. Shows "custom" if the current one matches none of them.
 void draw_named_configurations(Configuration& value) {
     const auto named = named_configurations();
     const auto is_value = [&](const NamedConfiguration& choice) {
@@ -57,7 +57,7 @@ void draw_named_configurations(Configuration& value) {
     ImGui::EndCombo();
 }
 
-/// What the path's lists go by; nothing if it has none.
+/// The settings of the path's light lists; draws nothing if it has none.
 void draw_list_settings(LightList list, ListSettings& settings) {
     if (list == LightList::all) return;
     for (const std::uint32_t size : {16U, 32U, 64U}) {
@@ -80,7 +80,7 @@ void draw_refinement(RefinementSettings& settings) {
     if (settings.enabled) drag("frames to refine", settings.frames, 1.0F);
 }
 
-/// `present`: what the last frame was rendered with.
+/// `present` is the quality of the last frame.
 void draw_frame_budget(std::optional<float>& budget_ms, const Quality& present) {
     bool automatic = !budget_ms;
     if (ImGui::Checkbox("frame time: automatic", &automatic)) {
@@ -135,7 +135,7 @@ void draw_light_list(const World& world, std::optional<Entity>& selected) {
     ImGui::EndCombo();
 }
 
-/// Colour and strength of a light component, if the entity has it.
+/// The colour and strength of a light component, if the entity has it.
 template <class Light>
 void draw_emission(World& world, Entity entity, float Light::*strength, const char* unit) {
     if (!world.has<Light>(entity)) return;
@@ -171,7 +171,7 @@ void draw_passes(const FrameReport& frame) {
         text(fmt::format("{:.3f}", gpu_ms));
     };
     for (const PassReport& pass : frame.passes) {
-        // Passes that had nothing to do are shown dimmed.
+        // Passes that did not run are dimmed.
         ImGui::PushStyleVar(ImGuiStyleVar_Alpha, pass.ran ? 1.0F : 0.4F);
         row(pass.name, pass.cpu_ms, pass.gpu_ms);
         ImGui::PopStyleVar();
@@ -218,7 +218,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
         ImGui::PopItemWidth();
     }
     ImGui::End();
-    // Not before the account was drawn: it tells of the last frame, which the present configuration made.
+    // After drawing the account, which describes the last frame and thus the old configuration.
     if (wanted != renderer.configuration()) faults = renderer.configure(wanted);
 }
 
@@ -251,8 +251,8 @@ void Panel::draw_configuration(Configuration& wanted, const Quality& present) {
     ImGui::PopStyleColor();
 }
 
-/// Reading it back waits for the GPU, so that it is done a few times a second, and only while it is looked
-/// at.
+/// Reading the account back waits for the GPU, so it is done only a few times per second, and only while it
+/// is visible.
 void Panel::draw_account(Renderer& renderer) {
     constexpr double refresh = 0.25;  // seconds
     if (!report_ || ImGui::GetTime() - report_time_ > refresh) {

@@ -10,15 +10,15 @@
 
 namespace candela::sandbox {
 
-/// The panel beside the picture: what is chosen, what a frame takes and where the light goes.
+/// The panel over the picture: the settings, the cost of a frame and the energy account.
 class Panel {
  public:
     bool visible = true;
-    /// Of the configuration that was last asked for, in the panel or elsewhere.
+    /// The errors of the configuration that was last requested, in the panel or elsewhere.
     std::vector<std::string> faults;
 
-    /// Draws it, and puts into effect what people change in it. `playback` is null without an animation.
-    /// Between Gui::begin_frame and end_frame.
+    /// Draws the panel and applies the user's changes. `playback` is null without an animation. Call this
+    /// between Gui::begin_frame and Gui::end_frame.
     void draw(Renderer& renderer, World& world, Interaction& interaction, Playback* playback,
               const FrameReport& frame);
 

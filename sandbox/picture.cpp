@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 static_assert(std::endian::native == std::endian::little, "PFM is read and written as memory holds floats");
 static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
 
-/// Memory that a C library allocated.
+/// Memory allocated by a C library.
 template <typename T>
 using CMemory = std::unique_ptr<T, decltype(&std::free)>;
 
@@ -56,14 +56,14 @@ std::string read_bytes(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Throws with tinyexr's own words, which it hands over in memory to be freed.
+/// Throws with the message of tinyexr, and frees it.
 [[noreturn]] void fail_exr(const fs::path& path, std::string_view action, const char* message) {
     const std::string fault = message != nullptr ? message : "unknown fault";
     FreeEXRErrorMessage(message);
     fail(path, fmt::format("{}: {}", action, fault));
 }
 
-/// OpenEXR stores channels apart, in the order of their names: blue, green, red.
+/// OpenEXR stores channels separately, sorted by name: blue, green, red.
 std::array<std::vector<float>, 3> planes_bgr(const Picture& picture) {
     std::array<std::vector<float>, 3> planes;
     for (int channel = 0; channel < 3; ++channel) {
@@ -94,7 +94,7 @@ struct FloatMapHeader {
     std::size_t channels = 0;
     glm::ivec2 size{0};
     bool big_endian = false;
-    std::size_t length = 0;  ///< bytes up to the pixels
+    std::size_t length = 0;  ///< bytes before the pixels
 };
 
 FloatMapHeader read_float_map_header(const fs::path& path, const std::string& file) {
@@ -103,7 +103,7 @@ FloatMapHeader read_float_map_header(const fs::path& path, const std::string& fi
     FloatMapHeader header;
     float scale = 0.0F;
     stream >> kind >> header.size.x >> header.size.y >> scale;
-    // One white-space character, then the pixels.
+    // One white-space character ends the header; then the pixels follow.
     const bool ends = stream && std::isspace(stream.get()) != 0;
     if (!ends || (kind != "PF" && kind != "Pf") || header.size.x <= 0 || header.size.y <= 0 ||
         scale == 0.0F) {
@@ -115,7 +115,7 @@ FloatMapHeader read_float_map_header(const fs::path& path, const std::string& fi
     return header;
 }
 
-/// The floats of a PFM in the file's order.
+/// The floats of a PFM file, in file order.
 std::vector<float> floats_of(const fs::path& path, const std::string& file, const FloatMapHeader& header) {
     const std::size_t length = file.size() - header.length;
     const std::size_t pixel_length = header.channels * sizeof(float);
@@ -217,7 +217,7 @@ Picture read_pfm(const fs::path& path) {
     const std::size_t row_length = static_cast<std::size_t>(header.size.x) * header.channels;
     for (std::size_t row = floats.size(); row > 0; row -= row_length) {
         for (std::size_t i = row - row_length; i < row; i += header.channels) {
-            const std::size_t last = header.channels - 1;  // 0 in grey, where all three are one
+            const std::size_t last = header.channels - 1;  // 0 in grey: all three channels are the same float
             picture.pixels.emplace_back(floats[i], floats[i + last / 2], floats[i + last]);
         }
     }

@@ -6,28 +6,29 @@
 
 namespace candela::sandbox {
 
-/// How far a window is in a script: a frame of the script for each of the window's, until it is paused.
+/// The playback position of a script in a window. While playing, each frame of the window advances the script
+/// by one frame.
 ///
-/// While it plays, what the script drives is the script's: a light that people drag is back in the next
-/// frame. While it is paused they have it, until it plays on, steps or seeks.
+/// While playing, the script overwrites what it animates: a light that the user drags is back in the next
+/// frame. While paused, the user's changes stay until playback resumes, steps or seeks.
 class Playback {
  public:
-    /// Plays from frame 0 on. Refers to the animation.
+    /// Starts playing at frame 0. Keeps a reference to the animation.
     explicit Playback(const Animation& animation) : animation_(&animation) {}
 
     [[nodiscard]] int frame() const { return frame_; }
     [[nodiscard]] int frames() const { return animation_->script().frames; }
     [[nodiscard]] bool playing() const { return playing_; }
 
-    /// Pauses or plays on, after the end of a script that is no loop from the start.
+    /// Pauses or resumes. At the end of a script that does not loop, resumes from frame 0.
     void toggle();
-    /// Pauses at the next frame; after the last comes the first.
+    /// Advances by one frame and pauses; the last frame is followed by the first.
     void step();
-    /// Pauses at this frame, 0 to frames() - 1.
+    /// Goes to this frame, 0 to frames() - 1, and pauses.
     void seek(int frame);
 
-    /// To be called before each of the window's frames: puts the world to the frame that is due, if that is
-    /// not the one that was shown last. At the end of a script that is no loop it pauses.
+    /// Call this before each frame of the window: sets the world to the current frame if it differs from the
+    /// one shown last. Pauses at the end of a script that does not loop.
     void advance(World& world);
 
  private:
@@ -36,7 +37,7 @@ class Playback {
     const Animation* animation_;
     int frame_ = 0;
     bool playing_ = true;
-    std::optional<int> shown_;  ///< none: the next frame is put, whichever was shown
+    std::optional<int> shown_;  ///< nullopt: the next frame must be applied
 };
 
 }  // namespace candela::sandbox

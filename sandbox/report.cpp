@@ -46,7 +46,7 @@ OrderedJson to_json(const LightReport& lights) {
             {"global", lights.global},
             {"tile_max", lights.tile_max},
             {"tile_mean", lights.tile_mean},
-            // Lists have no cap that they could overflow.
+            // Lists have no maximum length, so they cannot overflow.
             {"overflowed_tiles", 0}};
 }
 
@@ -108,7 +108,7 @@ std::string to_json(const RunReport& report) {
         {"vpls", report.state.vpls ? to_json(*report.state.vpls) : OrderedJson(nullptr)},
         {"lights", to_json(report.state.lights)},
         {"memory", to_json(report.state.memory)}};
-    // A path may hold bytes that are no text.
+    // A path may contain bytes that are not valid UTF-8.
     return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
@@ -132,7 +132,8 @@ double relative_residual(const EnergyAccount& flux) {
 }
 
 void check_energy(const std::string& scene, const Report& state) {
-    // Of surfels the account is as exact as they are dense: few of them are no fault.
+    // The account of surfels is only as accurate as they are dense: a residual with few surfels is not an
+    // error.
     const bool is_traced = state.vpls && state.vpls->paths > 0;
     const double most = is_traced ? 0.01 : std::numeric_limits<double>::max();
     const double residual = state.vpls ? relative_residual(state.vpls->flux) : 0.0;

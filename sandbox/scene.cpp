@@ -45,7 +45,7 @@ Entity find_camera(const World& world, const std::vector<Entity>& all, const std
     throw SceneError(fmt::format("no camera '{}'; the scene has {}", wanted, list_cameras(world, all)));
 }
 
-/// From above and a little to the right, just far enough back for the whole scene.
+/// Looks from above and slightly to the right, just far enough back to see the whole scene.
 Entity add_framing_camera(World& world, float aspect) {
     const glm::vec3 away = glm::normalize(glm::vec3(0.4F, 0.3F, 1.0F));
     const Bounds scene = bounds(world);

@@ -12,25 +12,26 @@
 
 namespace candela::sandbox {
 
-/// What the app shows: a world, where it came from, and how it moves.
+/// What the app shows: a world, the file it was read from, and its animation.
 struct Scene {
     std::filesystem::path path;
     World world;
-    std::vector<std::string> warnings;   ///< what the file has and the import left out, a line each
-    std::optional<Animation> animation;  ///< of the world
+    std::vector<std::string> warnings;   ///< what the import left out, one per line
+    std::optional<Animation> animation;  ///< refers to entities of `world`
 };
 
-/// The file of the scene's script, if it has one.
+/// The file of the animation script, if there is one.
 [[nodiscard]] std::optional<std::string> animation_of(const Scene& scene);
 
-/// A file of a folder that comes with the app, "scenes" or "animations": beside the executable, or, where
+/// A file in a folder that is shipped with the app, "scenes" or "animations": next to the executable, or, if
 /// there is none, in the source tree.
 [[nodiscard]] std::filesystem::path shipped_file(const std::string& folder, const std::string& name);
 
-/// Without an animation. Throws SceneError that names the file and the fault.
+/// Imports a glTF file, without an animation. Throws SceneError that names the file and the error.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
-/// The sphere around the box of all mesh instances, world space, metres. Radius 0 if there is nothing.
+/// The bounding sphere of the bounding box of all mesh instances; world space, metres. Radius 0 without
+/// meshes.
 struct Bounds {
     glm::vec3 centre{0.0F};
     float radius = 0.0F;
@@ -40,12 +41,13 @@ struct Bounds {
 /// The entities with a Camera, in the order of their creation.
 [[nodiscard]] std::vector<Entity> cameras(const World& world);
 
-/// The camera called `wanted`, or, where none has this name, the one of this number from 0 on; without a wish
-/// the first. A world without cameras gets one that sees everything at this aspect (width / height). Throws
-/// SceneError that lists the cameras if there is no such.
+/// The camera with the name `wanted`, or, if there is none, the camera with this index, counted from 0. The
+/// first camera if `wanted` is not set. If it is not set and the world has no camera, adds one that sees the
+/// whole scene at this aspect ratio (width / height). Throws SceneError that lists the cameras if there is no
+/// such camera.
 [[nodiscard]] Entity choose_camera(World& world, const std::optional<std::string>& wanted, float aspect);
 
-/// The entity's name, or "entity 3" where it has none.
+/// The entity's name, or "entity 3" if it has none.
 [[nodiscard]] std::string name_of(const World& world, Entity entity);
 
 }  // namespace candela::sandbox

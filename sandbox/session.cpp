@@ -33,7 +33,7 @@ constexpr int wrong_picture = 4;
 constexpr glm::ivec2 window_size{1280, 720};
 constexpr glm::ivec2 headless_size{512, 512};
 
-/// The exception's words, on one line.
+/// Prints the exception's message on one line.
 int report_fault(const std::exception& fault, int status) {
     std::string line = fault.what();
     for (char& c : line) c = c == '\n' ? ' ' : c;
@@ -67,7 +67,7 @@ bool wants_window(const Options& options) {
     return !options.headless && (options.context == ContextChoice::window || has_display());
 }
 
-/// A window, or null where the headless contexts are next. What failed goes into `tried`.
+/// A window, or null if headless contexts are to be tried. Adds error messages to `tried`.
 std::unique_ptr<Window> open_window(const Options& options, glm::ivec2 size,
                                     std::vector<std::string>& tried) {
     if (!wants_window(options)) return nullptr;
@@ -101,7 +101,7 @@ float aspect(glm::ivec2 size) {
     return static_cast<float>(size.x) / static_cast<float>(size.y);
 }
 
-/// The scene that the flags, or else the script, ask for, with the script's animation.
+/// The scene given by the options, else by the script, else the default scene; with the script's animation.
 Scene open_scene(const Options& options) {
     std::optional<Script> script;
     if (options.animate) script = load_script(*options.animate);

@@ -4,8 +4,8 @@
 
 namespace candela::sandbox {
 
-/// Does what the command line asks for, in a window or without one. The exit status: 0, or 2 for faulty
-/// input, 3 without a driver, 4 where light is lost unaccounted for, each with one line on stderr.
+/// Runs what the command line asks for, in a window or headless. Returns the exit status: 0 on success, 2 for
+/// invalid input, 3 without a driver, 4 if light is unaccounted for. Each error prints one line to stderr.
 [[nodiscard]] int run(const Options& options);
 
 }  // namespace candela::sandbox

@@ -27,7 +27,7 @@ std::optional<glm::vec2> project(const Viewport& viewport, const glm::vec3& poin
 
 Ray ray_through(const Viewport& viewport, glm::vec2 position) {
     const glm::vec2 ndc = glm::vec2(2.0F, -2.0F) * position / viewport.size + glm::vec2(-1.0F, 1.0F);
-    // Depth is reversed: 1 on the near plane, and half of that beyond it, whatever the projection.
+    // Depth is reversed: 1 on the near plane. A depth of 0.5 is beyond it, whatever the projection.
     const glm::vec4 near = viewport.world_from_clip * glm::vec4(ndc, 1.0F, 1.0F);
     const glm::vec4 beyond = viewport.world_from_clip * glm::vec4(ndc, 0.5F, 1.0F);
     const glm::vec3 origin = glm::vec3(near) / near.w;

@@ -12,8 +12,9 @@ struct GLFWwindow;
 
 namespace candela::sandbox {
 
-/// What people did, in their order, so that a slow frame loses nothing of it. Positions are in window
-/// coordinates: from the upper left corner, in the units of the desktop, of which a pixel may be a fraction.
+/// An input event. Events are queued in order, so that a slow frame loses none of them. Positions are in
+/// window coordinates: the origin is the upper left corner, and the unit is that of the desktop, which may be
+/// more than one pixel.
 struct InputEvent {
     enum class Kind : std::uint8_t { press, release, move, scroll, key };
     Kind kind = Kind::move;
@@ -26,8 +27,8 @@ struct InputEvent {
 /// A window with a current OpenGL 4.5 core context.
 class Window {
  public:
-    /// `size` in window coordinates. Throws ContextError with what GLFW says if there is no display or no
-    /// driver.
+    /// `size` is in window coordinates. Throws ContextError with the message of GLFW if there is no display
+    /// or no driver.
     Window(glm::ivec2 size, const std::string& title);
     ~Window();
     Window(const Window&) = delete;
@@ -41,13 +42,13 @@ class Window {
     [[nodiscard]] bool should_close() const;
     void close();
 
-    /// Input since the last call. Waits up to `seconds` for some.
+    /// Input since the last call. Waits up to `seconds` if there is none.
     [[nodiscard]] std::vector<InputEvent> take_events(double seconds);
-    /// Shows what was drawn.
+    /// Presents the frame.
     void swap();
 
  private:
-    /// GLFW itself, for as long as a window lives.
+    /// Initialises GLFW and terminates it with the window.
     struct Library {
         Library();
         ~Library();
@@ -61,8 +62,8 @@ class Window {
 
     Library library_;
     GLFWwindow* handle_ = nullptr;
-    glm::vec2 pointer_{
-        0.0F};  ///< at the last event: where it is by now does not tell where a button went down
+    /// At the last event. The current position does not tell where a button was pressed.
+    glm::vec2 pointer_{0.0F};
     std::vector<InputEvent> events_;
 };
 

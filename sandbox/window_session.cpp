@@ -25,7 +25,7 @@ namespace candela::sandbox {
 
 namespace {
 
-/// Compiling shaders takes a moment, in which the window says so.
+/// Compiling shaders takes a moment; the window says so meanwhile.
 Renderer open_renderer(Gui& gui, Window& window, const Scene& scene) {
     show_words(gui, window,
                fmt::format("{}: compiling shaders, placing virtual lights", scene.path.filename().string()));
@@ -64,7 +64,7 @@ class WindowSession {
 
  private:
     void step() {
-        // Nobody does anything: panels that show times still move on, slowly.
+        // While idle, the panels are still updated, slowly, because they show times.
         constexpr double idle_wait = 0.1;  // seconds
         const std::vector<InputEvent> events = window_.take_events(is_idle() ? idle_wait : 0.0);
         quiet_frames_ = events.empty() ? quiet_frames_ + 1 : 0;
@@ -95,7 +95,7 @@ class WindowSession {
         for (const std::string& fault : panel_.faults) fmt::print(stderr, "candela: {}\n", fault);
     }
 
-    /// The viewer goes with the camera that it started from, wherever it has strayed to since.
+    /// The viewer follows the animated camera that it started from, even if the user has moved away from it.
     void animate() {
         if (!playback_) return;
         const Entity camera = interaction_.camera();
@@ -104,8 +104,8 @@ class WindowSession {
         if (world_matrix(scene_.world, camera) != before) interaction_.look_from_camera(camera);
     }
 
-    /// Panels take two frames to settle after an event. A given number of frames is not waited for, nor is a
-    /// script that plays, nor a picture on which there was more to do than to show it again.
+    /// Panels need two frames to settle after an event. A run is not idle if a number of frames is requested,
+    /// a script is playing, or the last frame did more than to show the same picture again.
     [[nodiscard]] bool is_idle() const {
         constexpr int settled = 3;
         const auto& passes = renderer_.last_passes();
@@ -129,7 +129,7 @@ class WindowSession {
         if (key == GLFW_KEY_PERIOD) playback_->step();
     }
 
-    /// Times that have arrived; all of them where they go into a report, else the last.
+    /// Takes the frame times that have arrived. Keeps all of them for a report, else only the last one.
     void collect(bool wait) {
         for (FrameReport& frame : renderer_.take_frames(wait)) {
             if (!options_.report) frames_.clear();
@@ -137,7 +137,7 @@ class WindowSession {
         }
     }
 
-    /// In full, however short a frame's time was in the window.
+    /// At full quality, whatever the frame budget of the window is.
     void write_picture(const std::filesystem::path& path) {
         Configuration whole = renderer_.configuration();
         whole.frame_budget_ms = 0.0F;

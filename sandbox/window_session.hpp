@@ -8,11 +8,11 @@
 
 namespace candela::sandbox {
 
-/// Shows the scene, plays its animation and lets people change it until they close the window or the frames
-/// asked for are done. Configurations that `watch` gives go into force; faulty ones are reported in the panel
-/// and on stderr while the present one goes on. Then writes the last frame's picture (without panels), report
-/// and graph, as far as the options ask for them. Throws std::runtime_error for outputs that cannot be
-/// written, and gl::GlError.
+/// Shows the scene, plays its animation and handles the user's input until the window is closed or the
+/// requested number of frames is done. Applies the configurations that `watch` returns; errors in them are
+/// reported in the panel and on stderr, and the current configuration stays. Then writes the picture of the
+/// last frame (without panels), the report and the graph, as the options ask for. Throws std::runtime_error
+/// for outputs that cannot be written, gl::GlError, and EnergyError if the light does not add up.
 void run_window(Window& window, Scene& scene, Entity camera, const Configuration& configuration,
                 ConfigWatch& watch, const Options& options);
 

@@ -22,7 +22,7 @@ std::string_view environment(const char* variable) {
 }  // namespace
 
 std::uint32_t test_seed(std::uint32_t stream) {
-    // Multiples of an odd number are different for 2^32 streams.
+    // Multiples of an odd number differ for all 2^32 streams.
     return taken_seed + stream * 0x9e37'79b9U;
 }
 
@@ -36,8 +36,8 @@ bool take_test_seed() {
         }
     }
     fmt::print(stderr, "random tests draw from seed {} (CANDELA_TEST_SEED)\n",
-               taken_seed);  // stdout lists the tests
-    // RapidCheck would seed itself by chance.
+               taken_seed);  // stdout is for the list of tests
+    // By default RapidCheck uses a random seed.
     const std::string parameters = fmt::format("{} seed={}", environment("RC_PARAMS"), taken_seed);
     return setenv("RC_PARAMS", parameters.c_str(), 1) == 0;
 }

@@ -5,8 +5,8 @@
 
 namespace candela {
 
-/// Whether `call` throws an Exception whose message contains `part`; a message that does not is printed.
-/// Other exceptions pass through. (doctest's own check for this came with its version 2.4.9.)
+/// Whether `call` throws an Exception whose message contains `part`. Prints a message that does not contain
+/// it. Other exceptions propagate. (doctest has its own check for this since version 2.4.9.)
 template <class Exception, class Call>
 [[nodiscard]] bool throws(Call call, std::string_view part) {
     try {

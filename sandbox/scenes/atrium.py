@@ -1,4 +1,4 @@
-"""A court with arcades of two storeys around it, open to the sky."""
+"""A courtyard, open to the sky, with arcades of two storeys around it."""
 
 import math
 
@@ -36,7 +36,7 @@ def arch():
 
 
 def bays():
-    """The middle of each bay and the side it is on, as (x, z, degrees)."""
+    """The centre of each bay and the rotation of its side, as (x, z, degrees)."""
     width, depth = COURT
     long, short = round(2 * width / BAY), round(2 * depth / BAY)
     yield from ((BAY * (i + 0.5) - width, side * depth, 0) for side in (-1, 1) for i in range(long))
@@ -49,7 +49,7 @@ def corners():
 
 
 def columns():
-    """Where columns stand: at both ends of every bay, each place once."""
+    """The positions (x, z) of the columns: both ends of every bay, without duplicates."""
     ends = set(corners())
     for x, z, degrees in bays():
         step = BAY / 2

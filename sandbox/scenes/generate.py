@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Writes the scenes that figures are quoted on, as self-contained glTF. The same bytes every time.
+"""Writes the scenes of the tests and the study as self-contained glTF. The output is identical on every run.
 
     generate.py [--out DIR] [--lights N] [NAME...]
 
-Without names: the shipped scenes, beside this script. Lengths in metres, +Y up, lights in the units of
-KHR_lights_punctual, colours linear. Every scene has a camera of that name.
+Without names it writes the shipped scenes, by default next to this script. Lengths are in metres, +Y is up, lights
+have the units of KHR_lights_punctual, colours are linear. Every scene has one camera, named "camera".
 """
 
 import argparse
 import pathlib
 import sys
 
-sys.dont_write_bytecode = True  # or the modules beside this script would leave files among the sources
+sys.dont_write_bytecode = True  # otherwise importing the modules would leave files in the source folder
 
 from atrium import atrium
 from glass import glass
@@ -27,7 +27,7 @@ SHIPPED = {
     "fins": fins,
     "hall-256": lambda: hall(256),
 }
-# Large, or one of many.
+# Not shipped: large, or one of many sizes.
 ON_DEMAND = {"atrium": atrium, "hall-4096": lambda: hall(4096)}
 
 

@@ -1,4 +1,4 @@
-"""What is not opaque: tinted panes, and a trellis cut out by its image."""
+"""A scene with transparent materials: tinted panes, and a trellis with an alpha mask."""
 
 from gltf_writer import Scene
 from halls import hue
@@ -7,7 +7,7 @@ from shapes import box, flat, looking, pane, room, turn
 
 
 def trellis_texel(x, y):
-    """Two crossing laths to 32 x 32 texels; their alpha falls to 0 within a texel or two of their edges."""
+    """Two crossing laths per 32 x 32 texels; their alpha falls to 0 within one or two texels of their edges."""
     across = min((x + y) % 32, -(x + y) % 32)
     along = min((x - y) % 32, (y - x) % 32)
     shade = 150 if across < along else 120  # one lath runs in front of the other
@@ -16,8 +16,8 @@ def trellis_texel(x, y):
 
 
 def glass():
-    """A room with panes that overlap from the camera, one of them seen from its back, opaque things in between and
-    lights before and behind each. A cut-out trellis stands at the back."""
+    """A room with panes that overlap in the camera's view (one is seen from its back), with opaque objects between
+    them, and lights in front of and behind each pane. A trellis with an alpha mask stands at the back."""
     scene = Scene()
     plaster = scene.material("plaster", [0.65, 0.63, 0.6])
     brick, slate = scene.material("brick", [0.5, 0.2, 0.12]), scene.material("slate", [0.2, 0.25, 0.35])

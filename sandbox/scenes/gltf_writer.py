@@ -1,4 +1,4 @@
-"""glTF 2.0 documents in the making, with their buffer embedded."""
+"""Builds glTF 2.0 documents with an embedded buffer."""
 
 import base64
 import json
@@ -28,7 +28,7 @@ class Scene:
         return len(items) - 1
 
     def accessor(self, rows, component_type, code, target):
-        """One value or vector a row, in a buffer view of its own."""
+        """One value or vector per row, in a separate buffer view."""
         view = {"buffer": 0, "byteOffset": len(self.data), "target": target}
         for row in rows:
             self.data += struct.pack(f"<{len(row)}{code}", *row)
@@ -53,14 +53,14 @@ class Scene:
         return self.add("materials", {"name": name, "pbrMetallicRoughness": pbr, **properties})
 
     def texture(self, name, png):
-        """An image that repeats."""
+        """A texture that repeats."""
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(png)}
         self.data += png + bytes(-len(png) % 4)  # floats that follow stay aligned
         image = {"name": name, "mimeType": "image/png", "bufferView": self.add("bufferViews", view)}
         return self.add("textures", {"source": self.add("images", image)})
 
     def mesh(self, name, surface, material):
-        """A surface of shapes.py; its corners have texture coordinates where it gives them."""
+        """`surface` is a Surface of shapes.py; its texture coordinates are optional."""
         attributes = {"POSITION": self.vertices(surface.positions), "NORMAL": self.vertices(surface.normals)}
         if surface.uvs:
             attributes["TEXCOORD_0"] = self.vertices(surface.uvs)
@@ -72,7 +72,7 @@ class Scene:
         self.document["scenes"][0]["nodes"].append(self.add("nodes", {"name": name, **properties}))
 
     def place(self, name, surface, material, **transform):
-        """A mesh with the only node that shows it."""
+        """A mesh and the single node that uses it."""
         self.node(name, mesh=self.mesh(name, surface, material), **transform)
 
     def light(self, name, kind, colour, intensity, reach=None, cone=None, **transform):
@@ -88,7 +88,7 @@ class Scene:
         self.node(name, **transform, extensions={"KHR_lights_punctual": {"light": len(lights) - 1}})
 
     def camera(self, vertical_fov, near, **transform):
-        """The scene's view, in degrees and metres."""
+        """The scene's camera; `vertical_fov` in degrees, `near` in metres."""
         perspective = {"yfov": round(math.radians(vertical_fov), 6), "znear": near}
         camera = self.add("cameras", {"name": "camera", "type": "perspective", "perspective": perspective})
         self.node("camera", camera=camera, **transform)
@@ -100,5 +100,5 @@ class Scene:
 
 
 def single(vector):
-    """Rounded to single precision, as the buffer holds it; glTF wants `min` and `max` to agree."""
+    """Rounds to single precision, as stored in the buffer; glTF requires `min` and `max` to match the stored values."""
     return struct.unpack(f"<{len(vector)}f", struct.pack(f"<{len(vector)}f", *vector))

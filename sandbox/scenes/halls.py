@@ -1,4 +1,4 @@
-"""Scenes of many small lights, each of a range that leaves most of the picture dark."""
+"""Scenes with many lights of short range; each light reaches only a small part of the picture."""
 
 import colorsys
 import math
@@ -18,8 +18,9 @@ def point(*coordinates):
 
 
 def hall(count):
-    """A hall with pillars whose floor grows with the number of its lights: one light, every fourth of them a spot, to
-    2 m x 2 m of floor. With a range of about 3.5 m and 2 m above it, five or so reach each point of the floor."""
+    """A hall with pillars and one light per 2 m x 2 m of floor, so that the floor grows with the number of lights.
+    Every fourth light is a spot. With a range of about 3.5 m and 2 m above the floor, about five lights reach each
+    point of the floor."""
     spacing, height = 2.0, 4.0
     columns = max(math.isqrt(count // 4), 1)
     rows = math.ceil(count / columns)
@@ -28,7 +29,7 @@ def hall(count):
     scene = Scene()
     plaster, stone = scene.material("plaster", [0.6, 0.6, 0.6]), scene.material("stone", [0.5, 0.48, 0.45])
     scene.place("room", flat(room((-width / 2, 0, -depth), (width / 2, height, 0))), plaster)
-    # Pillars stand between the lights' cells, from which lights keep their distance.
+    # Pillars stand at the corners of the lights' cells. Lights keep a distance from the borders of their cells.
     pillar = scene.mesh("pillar", flat(box(0.5, height, 0.5)), stone)
     for row in range(2, rows, 2):
         for column in range(2, columns, 4):
@@ -52,13 +53,13 @@ def hall(count):
 
 
 def fins():
-    """A slope with rows of thin upright fins, seen from its foot. The eye looks through many rows, so that the pixels
-    of a tile lie at many depths, and lights reach few of them."""
+    """A slope with rows of thin upright fins, seen from its foot. The camera looks through many rows, so that the
+    pixels of a tile have many different depths, and each light reaches only few of them."""
     across, rows, pitch, spacing, slope = 60, 48, 0.2, 0.45, 8.0
     numbers = random.Random(1)
 
     def on_slope(x, height, distance):
-        """`height` above the slope, `distance` up it from its foot."""
+        """The point at `height` above the slope and at `distance` up the slope from its foot."""
         sine, cosine = math.sin(math.radians(slope)), math.cos(math.radians(slope))
         return point(x, height * cosine + distance * sine, height * sine - distance * cosine)
 
@@ -78,7 +79,7 @@ def fins():
         place = on_slope(shift, 0, (index + 1) * spacing)
         scene.node("row of fins", mesh=mesh, translation=place, rotation=tilt(slope))
 
-    # Lights keep to the middle between two rows, whichever of them is near the jittered place.
+    # Each light is near the middle between two rows; the gap is the one at its jittered distance.
     for index in range(512):
         far, side = divmod(index, 16)
         x = (side - 8 + numbers.random()) * across * pitch / 16

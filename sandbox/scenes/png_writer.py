@@ -10,13 +10,13 @@ def chunk(kind, content):
 
 
 def png(width, height, texel):
-    """`texel(x, y)` gives red, green, blue and alpha, each 0 to 255; y runs downwards."""
+    """`texel(x, y)` returns red, green, blue and alpha, each 0 to 255; row 0 is at the top."""
     rows = bytearray()
     for y in range(height):
         rows.append(0)  # this row is not filtered
         for x in range(width):
             rows += bytes(texel(x, y))
     header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
-    # Stored rather than compressed: versions of zlib differ in what they make of the same input.
+    # Stored without compression: versions of zlib compress the same input differently.
     packed = zlib.compress(rows, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")

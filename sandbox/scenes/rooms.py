@@ -11,7 +11,7 @@ DAYLIGHT = [1.0, 0.92, 0.8]
 
 
 def cornell():
-    """The box of Goral et al. (1984) as Cornell measured it later, scaled to a room of 2 m and open towards +Z."""
+    """The Cornell box (Goral et al. 1984) with its later measured data, scaled to 2 m and open towards +Z."""
     scene = Scene()
     white, red, green = scene.material("white", WHITE), scene.material("red", RED), scene.material("green", GREEN)
 
@@ -28,18 +28,18 @@ def cornell():
     scene.place("short block", short, white, translation=[0.33, 0.0, 0.39], rotation=turn(-17))
     scene.place("tall block", tall, white, translation=[-0.33, 0.0, -0.26], rotation=turn(17))
 
-    # Far enough below the ceiling that its spot there is a glow rather than a glare, above the tall block by enough
-    # that its shadow reaches the walls. 4 cd at 1.6 m make pi / 2 lux on the floor, which then shows a radiance of
-    # 0.36: middle grey once the box's own light is added and the picture tone-mapped.
+    # Far enough below the ceiling that the ceiling is not overexposed there, and far enough above the tall block that
+    # the block's shadow reaches the walls. 4 cd at 1.6 m give pi / 2 lux on the floor, a radiance of 0.36. That is
+    # middle grey after indirect light is added and the picture is tone-mapped.
     scene.light("ceiling light", "point", DAYLIGHT, 4.0, translation=[0.0, 1.6, 0.0])
-    # The opening, 2.9 m away, fills a square picture but for a thin margin.
+    # The opening, 2.9 m away, fills a square picture except for a thin margin.
     scene.camera(39.3, 0.01, translation=[0.0, 1.0, 3.9])
     return scene
 
 
 def corner():
-    """Two walls and a floor that meet at the origin, lit by a spot close to it: where light gathered from virtual
-    lights nearby grows without bound."""
+    """Two walls and a floor that meet at the origin, lit by a spot light close to it. There the light gathered from
+    nearby virtual lights grows without bound."""
     scene = Scene()
     white = scene.material("white", WHITE)
     rose, azure = scene.material("rose", [0.75, 0.4, 0.35]), scene.material("azure", [0.35, 0.5, 0.75])
@@ -57,14 +57,15 @@ def corner():
 
 
 def two_rooms():
-    """Two rooms of 4 m x 2.6 m x 4 m either side of a wall at x = 0, 0.2 m thick, with an opening of 0.9 m x 2 m. The
-    light is in one, the camera in the other. The door's hinge is the origin of its node; turned by 0 it is shut."""
+    """Two rooms of 4 m x 2.6 m x 4 m on both sides of a wall at x = 0, 0.2 m thick, with an opening of 0.9 m x 2 m. The
+    light is in one room, the camera in the other. The origin of the door's node is its hinge; at a rotation of 0 it is
+    closed."""
     scene = Scene()
     white, red, blue = scene.material("white", WHITE), scene.material("red", RED), scene.material("blue", BLUE)
     wood = scene.material("wood", [0.45, 0.26, 0.12])
 
     lit = room((-4.1, 0, -2), (-0.1, 2.6, 2))
-    # In place of its wall towards +X, what is left of that around the opening: ranges of z and y.
+    # Replace the wall towards +X by the parts around its opening, given as ranges of z and y.
     del lit[2]
     for (z0, z1), (y0, y1) in [((-2, -0.45), (0, 2.6)), ((0.45, 2), (0, 2.6)), ((-0.45, 0.45), (2, 2.6))]:
         lit.append([(-0.1, y0, z0), (-0.1, y0, z1), (-0.1, y1, z1), (-0.1, y1, z0)])
@@ -83,7 +84,7 @@ def two_rooms():
 
 
 def furnace():
-    """A closed box of one albedo with a light in it: with every bounce, as much light is absorbed as is emitted."""
+    """A closed box of uniform albedo with a light inside: summed over all bounces, all emitted light is absorbed."""
     scene = Scene()
     grey = scene.material("grey", [0.5, 0.5, 0.5])
     scene.place("room", flat(room((-1, -1, -1), (1, 1, 1))), grey)

@@ -1,5 +1,5 @@
-"""Surfaces, and rotations as quaternions (x, y, z, w). A quad is four corners in a plane, counter-clockwise from its
-front. Lengths in metres, +Y up, angles in degrees."""
+"""Surfaces, and rotations as quaternions (x, y, z, w). A quad is four coplanar corners, counter-clockwise as seen from
+the front. Lengths are in metres, +Y is up, angles are in degrees."""
 
 import math
 from dataclasses import dataclass, field
@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 @dataclass
 class Surface:
-    """Indexed triangles, counter-clockwise from the front."""
+    """Indexed triangles, counter-clockwise as seen from the front."""
 
     positions: list = field(default_factory=list)
     normals: list = field(default_factory=list)
     indices: list = field(default_factory=list)
-    uvs: list = field(default_factory=list)  # empty or one a position
+    uvs: list = field(default_factory=list)  # empty, or one per position
 
     def __add__(self, other):
         later = [index + len(self.positions) for index in other.indices]
@@ -38,11 +38,11 @@ def normal(quad):
     v = [d[i] - a[i] for i in range(3)]
     cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     length = math.sqrt(sum(x * x for x in cross))
-    return [x / length + 0.0 for x in cross]  # + 0.0 makes -0.0 plain
+    return [x / length + 0.0 for x in cross]  # + 0.0 turns -0.0 into 0.0
 
 
 def block(low, high):
-    """The six faces of a closed box between two corners: those towards +Z, -Z, +X, -X, +Y, -Y."""
+    """The six faces of a closed box between two corners, in the order +Z, -Z, +X, -X, +Y, -Y."""
     (a, b, c), (x, y, z) = low, high
     return [
         [(a, b, z), (x, b, z), (x, y, z), (a, y, z)],
@@ -71,7 +71,7 @@ def ground(low, high):
 
 
 def pane(width, height, repeats=None):
-    """An upright sheet that stands on the origin and faces +Z; its texture, if any, fits across it so many times."""
+    """An upright quad that stands on the origin and faces +Z; its texture, if any, repeats so many times across it."""
     x = width / 2
     surface = flat([[(-x, 0, 0), (x, 0, 0), (x, height, 0), (-x, height, 0)]])
     if repeats:
@@ -81,7 +81,7 @@ def pane(width, height, repeats=None):
 
 
 def lathe(profile, segments):
-    """A profile of (radius, height), from below, turned about +Y. Its normals are smooth."""
+    """A surface of revolution about +Y, with smooth normals. `profile` is a list of (radius, height), bottom first."""
     surface = Surface()
     for ring, (radius, height) in enumerate(profile):
         below, above = profile[max(ring - 1, 0)], profile[min(ring + 1, len(profile) - 1)]
@@ -101,19 +101,19 @@ def lathe(profile, segments):
 
 
 def turn(degrees):
-    """A turn about +Y."""
+    """A rotation about +Y."""
     half = math.radians(degrees) / 2
     return [0.0, round(math.sin(half), 7), 0.0, round(math.cos(half), 7)]
 
 
 def tilt(degrees):
-    """A turn about +X."""
+    """A rotation about +X."""
     x, y, z, w = turn(degrees)
     return [y, x, z, w]
 
 
 def aim(start, target):
-    """The rotation that takes -Z from `start` to `target` and keeps +X level, as cameras and lights want it."""
+    """The rotation that turns -Z from `start` towards `target` and keeps +X horizontal; for cameras and lights."""
     x, y, z = (b - a for a, b in zip(start, target))
     yaw, pitch = math.atan2(-x, -z) / 2, math.atan2(y, math.hypot(x, z)) / 2
     quaternion = [

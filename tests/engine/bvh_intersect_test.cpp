@@ -42,7 +42,7 @@ TEST_CASE("intersect: a hit solves the ray equation") {
         const Ray ray{1.5F * point(), point()};
         const glm::dmat3 system(triangle.b - triangle.a, triangle.c - triangle.a, -ray.direction);
         const glm::dvec3 uvt = glm::inverse(system) * glm::dvec3(ray.origin - triangle.a);
-        // How far inside. At the border, and on slivers, single precision may decide otherwise.
+        // How far inside the hit is. At the border, and for slivers, single precision may decide differently.
         const double inside = std::min({uvt.x, uvt.y, 1.0 - uvt.x - uvt.y, uvt.z});
         if (std::abs(inside) < 1e-3 || std::abs(glm::determinant(system)) < 1e-2) {
             continue;
@@ -54,7 +54,8 @@ TEST_CASE("intersect: a hit solves the ray equation") {
         }
         ++hits;
         CHECK(hit->triangle == 7);
-        // A determinant of 1e-2 from terms of order 1 costs two of the seven digits; 1e-4 leaves one more.
+        // A determinant of 1e-2 from terms of order 1 loses two of the seven digits; 1e-4 allows for one
+        // more.
         CHECK(std::abs(static_cast<double>(hit->u) - uvt.x) < 1e-4);
         CHECK(std::abs(static_cast<double>(hit->v) - uvt.y) < 1e-4);
         CHECK(std::abs(static_cast<double>(hit->t) - uvt.z) < 1e-4 * std::max(1.0, uvt.z));
@@ -62,8 +63,8 @@ TEST_CASE("intersect: a hit solves the ray equation") {
     CHECK(hits > 300);
 }
 
-// Exactly, for coordinates that are small integers: does the ray hit inside (+1), outside (-1), or on the
-// edge bc (0), where u + v = 1 and rounding decides? The other two edges and the vertex between them count as
+// For small integer coordinates this is exact: whether the ray hits inside (+1), outside (-1), or on the edge
+// bc (0), where u + v = 1 and rounding decides. The other two edges and the vertex between them count as
 // inside.
 int exact_side(const Triangle& triangle, const Ray& ray) {
     const glm::dvec3 ab = triangle.b - triangle.a;
@@ -83,7 +84,7 @@ int exact_side(const Triangle& triangle, const Ray& ray) {
 }
 
 TEST_CASE("intersect: rays through vertices and along faces of boxes lose no hit") {
-    // Determinants stay below 2^24, so that single precision has them exactly and tells u + v < 1 from 1.
+    // Determinants stay below 2^24, so single precision is exact and can tell u + v < 1 from u + v = 1.
     std::mt19937 engine(2);
     std::uniform_int_distribution<int> near(-2, 2);
     std::uniform_int_distribution<int> far(-40, 40);

@@ -44,7 +44,7 @@ Triangle triangle_near(const glm::vec3& centre, float reach, Random& random) {
     return {a, b, centre + random.point(reach)};
 }
 
-// Triangles of about `reach` metres scattered through a cube of edge 2 m around the origin.
+// Triangles of about `reach` metres, scattered in a cube of edge 2 m around the origin.
 Triangles soup(std::size_t n, float reach, Random& random) {
     Triangles triangles;
     for (std::size_t i = 0; i < n; ++i) {
@@ -58,7 +58,7 @@ Ray ray_through(Random& random) {
     return {origin, random.point(1.0F) - origin};
 }
 
-// Every triangle, without the hierarchy.
+// Tests every triangle, without the hierarchy.
 std::optional<Hit> brute_force(std::span<const Triangle> triangles, const Ray& ray) {
     std::optional<Hit> closest;
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
@@ -107,7 +107,7 @@ struct Shape {
     std::uint32_t largest_leaf = 0;
 };
 
-// Checks all that the header promises of the layout.
+// Checks everything that the header promises about the layout.
 Shape check_layout(const Bvh& bvh, std::size_t n) {
     REQUIRE(bvh.nodes.size() >= 1);
     CHECK(bvh.nodes.size() <= 2 * n - 1);
@@ -210,8 +210,8 @@ TEST_CASE("bvh: hits equal brute force in random scenes") {
     }
 }
 
-// Small integers make what real scenes are full of: shared planes and edges, duplicates, degenerate
-// triangles, rays along axes, in planes, through vertices.
+// Small integer coordinates produce what real scenes are full of: shared planes and edges, duplicates,
+// degenerate triangles, rays along axes, in planes, through vertices.
 glm::vec3 lattice_point(int reach) {
     const int x = *rc::gen::inRange(-reach, reach + 1);
     const int y = *rc::gen::inRange(-reach, reach + 1);
@@ -235,7 +235,7 @@ TEST_CASE("bvh: hits equal brute force on a lattice" * doctest::test_suite("rand
 }
 
 TEST_CASE("bvh: rays in the planes of triangles agree with brute force") {
-    // Their determinants are rounding errors, and so is what they seem to hit.
+    // Determinants of such rays are only rounding errors, and so are their hits.
     Random random(3);
     const Triangles triangles = soup(200, 0.5F, random);
     const Bvh bvh = build_bvh(triangles);
@@ -253,7 +253,7 @@ TEST_CASE("bvh: rays in the planes of triangles agree with brute force") {
 }
 
 TEST_CASE("bvh: axis-parallel rays hit the edges of boxes") {
-    // A unit square in each coordinate plane; every ray below runs within a face of some node's box.
+    // A unit square in each coordinate plane. Every ray below runs within a face of some node's box.
     const Triangles triangles{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                               {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}}, {{0, 0, 0}, {0, 1, 1}, {0, 0, 1}},
                               {{0, 0, 0}, {1, 0, 1}, {1, 0, 0}}, {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}}};
@@ -299,7 +299,7 @@ TEST_CASE("bvh: equal centroids are split into small leaves of little depth") {
         const glm::vec3 corner = random.point(1.0F);
         triangles.push_back({corner, -corner, glm::vec3(0.0F)});
     }
-    CHECK(check_build(triangles).depth == 8);  // 1000 / 4 leaves of a balanced tree
+    CHECK(check_build(triangles).depth == 8);  // a balanced tree with 1000 / 4 leaves
     CHECK(check_build(Triangles(4096, triangles.front())).depth == 10);
 }
 
@@ -318,8 +318,8 @@ TEST_CASE("bvh: degenerate triangles are kept and never hit") {
     }
 }
 
-// Triangles of edge and distance 2^-149 ... 2^60 m along each axis, `copies` of each. However a plane is
-// placed, almost all of them lie on one side of it.
+// Triangles with edge lengths and distances of 2^-149 ... 2^60 m along each axis, `copies` of each. Wherever
+// a plane is placed, almost all of them are on one side of it.
 Triangles geometric_progression(int copies) {
     Triangles triangles;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
@@ -333,7 +333,7 @@ Triangles geometric_progression(int copies) {
 }
 
 TEST_CASE("bvh: no input exceeds the bounds on depth and nodes") {
-    // By surface area alone they would be 76 and 84 levels deep.
+    // Splitting by surface area alone would give depths of 76 and 84.
     CHECK(check_build(geometric_progression(1)).depth == bvh_max_depth);
     CHECK(check_build(geometric_progression(100)).depth == bvh_max_depth);
 
@@ -375,7 +375,7 @@ TEST_CASE("bvh: refitting follows any motion") {
         check_boxes(bvh, triangles);
         CHECK(disagreements(bvh, triangles, 500, random) == 0);
     }
-    CHECK(sah_cost(bvh) > 2.0F * built);  // neighbours have been scattered over the whole cube
+    CHECK(sah_cost(bvh) > 2.0F * built);  // neighbours are now scattered over the whole cube
     CHECK(sah_cost(build_bvh(triangles)) < 2.0F * built);
 }
 
@@ -396,8 +396,8 @@ TEST_CASE("bvh: refitting to the same triangles changes nothing") {
 }
 
 TEST_CASE("bvh: the cost of a split is that of its boxes") {
-    // Boxes 1 × 1 × 0 (half area 1) at either end of one of 1 × 1 × 10 (half area 21): the root costs 1, each
-    // leaf its one triangle at 1/21.
+    // Boxes of 1 × 1 × 0 (half area 1) at both ends of a box of 1 × 1 × 10 (half area 21): the root costs 1,
+    // each leaf costs its one triangle times 1/21.
     const Triangles triangles{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 10}, {1, 0, 10}, {0, 1, 10}}};
     CHECK(sah_cost(build_bvh(triangles)) == doctest::Approx(1.0 + 2.0 / 21.0));
 }

@@ -20,7 +20,7 @@ namespace candela::test {
 using Json = nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
-/// A fresh directory, removed with all it holds.
+/// A new directory, removed with its contents on destruction.
 class TemporaryDirectory {
  public:
     TemporaryDirectory() {
@@ -70,7 +70,7 @@ inline Bytes to_bytes(const std::string& text) {
     return {text.begin(), text.end()};
 }
 
-/// A glTF file in the making: a JSON document to edit at will, and its only buffer.
+/// A glTF file under construction: a JSON document that tests may edit, and its only buffer.
 struct GltfBuilder {
     Json document = Json::parse(R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
                                     "nodes": [{"mesh": 0}], "meshes": [{"primitives": []}]})");
@@ -91,7 +91,7 @@ struct GltfBuilder {
                    {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", values.size() * sizeof(T)}});
     }
 
-    /// Tightly packed, in a buffer view of its own.
+    /// Tightly packed, in a separate buffer view.
     template <class T>
     std::size_t add_accessor(const std::vector<T>& values, int component_type, const char* type,
                              std::size_t components) {
@@ -174,7 +174,7 @@ inline GltfBuilder right_triangle() {
     return file;
 }
 
-/// A world with what the file holds, and the report.
+/// A world with the contents of a file, and the import report.
 struct Imported {
     World world;
     ImportReport report;
@@ -194,7 +194,7 @@ struct Imported {
     [[nodiscard]] const Mesh& mesh() const { return *world.get<MeshInstance>(report.entities.front()).mesh; }
     [[nodiscard]] const Primitive& primitive() const { return mesh().primitives.at(0); }
 
-    /// The corners of the first primitive's triangles, one after the other.
+    /// The corners of the first primitive's triangles, in order.
     [[nodiscard]] std::vector<Vertex> corners() const {
         std::vector<Vertex> corners;
         for (const std::uint32_t index : primitive().indices) {

@@ -1,4 +1,4 @@
-// What a running pass may touch and reserve.
+// What a running pass may access and reserve.
 
 #include <doctest/doctest.h>
 
@@ -45,7 +45,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, a
         return room;
     };
     CHECK(room_for(10) == 100);
-    CHECK(room_for(101) == 150);  // grows by half at least
+    CHECK(room_for(101) == 150);  // grows at least by half
     CHECK(room_for(101) == 150);
     CHECK(room_for(1000) == 1000);
     CHECK(room_for(1) == 1000);  // never shrinks
@@ -112,7 +112,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         pass.run([=](Execution& run) {
             attempt(run, drawn, TextureDesc{{8, 8}});
             attempt(run, transient, std::uint64_t{8});
-            run.reserve(written, 8);  // from version 0, in two steps
+            run.reserve(written, 8);  // version 2, written in two steps
         });
     });
     adopt();

@@ -1,4 +1,4 @@
-// From one graph to the next: what stays, what goes, and what a failure leaves.
+// Switching from one graph to the next: what is kept, what is dropped, and what a failure leaves behind.
 
 #include <doctest/doctest.h>
 
@@ -16,8 +16,8 @@ struct Light {
     int power = 0;
 };
 
-/// A configuration of the graph below: a light's shadow map is drawn by way of a transient, and kept; the
-/// picture is shaded by one of two paths.
+/// A configuration of the graph below: a light's shadow map, which is persistent, is drawn from a transient
+/// texture, and the picture is shaded by one of two paths.
 struct Configuration {
     int map_size = 8;
     int bias = 1;
@@ -125,9 +125,9 @@ TEST_CASE_FIXTURE(Fixture,
 TEST_CASE_FIXTURE(Fixture, "graph adoption: another parameter has its pass run, the same again does not") {
     start();
     adopt({.bias = 2});
-    CHECK(run() == "casters shadow-maps forward tone-map");  // what "casters" makes is transient
+    CHECK(run() == "casters shadow-maps forward tone-map");  // the result of "casters" is transient
     adopt({.bias = 2});
-    CHECK(run() == "forward tone-map");  // so is what "forward" makes
+    CHECK(run() == "forward tone-map");  // so is the result of "forward"
 }
 
 TEST_CASE_FIXTURE(Fixture, "graph adoption: another description is another resource") {

@@ -1,4 +1,4 @@
-// Planned barriers of random graphs against all pairs of accesses, in frames that repeat.
+// Compares the planned barriers of random graphs with all pairs of accesses, over repeated frames.
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ namespace {
 using namespace candela;
 using random_graph::Graph;
 
-/// One access of one object at one time. Passes are counted through all frames.
+/// One access of one object at one time. Time counts passes, continuously over all frames.
 struct Event {
     std::size_t time = 0;
     std::uint32_t object = 0;
@@ -21,7 +21,7 @@ struct Event {
     bool incoherent = false;
 };
 
-/// OpenGL 4.5, section 7.13.2, from the point of view of who accesses.
+/// The barrier bit that belongs to an access: OpenGL 4.5, section 7.13.2.
 Barrier bit_of(ResourceKind kind, Usage usage) {
     const bool texture = kind == ResourceKind::texture;
     if (usage == Usage::sampled) {
@@ -86,8 +86,8 @@ TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and no
                                   {.shuffle_seed = shuffled ? std::optional(std::uint64_t{7}) : std::nullopt})
                 .take();
         const auto& barriers = compiled.plan().barrier;
-        // A hazard spans two frames at most (of histories), so five frames show each of them in the midst of
-        // others.
+        // A hazard spans at most two frames (with histories), so five frames show each hazard together with
+        // the others.
         const std::vector<Event> events = unroll(graph, compiled, 5);
         std::vector<Barrier> needed(barriers.size(), Barrier::none);
         for (const Event& early : events) {
@@ -132,7 +132,7 @@ TEST_CASE("graph: a barrier serves all that was written before it") {
     read("use b", b, Usage::uniform);
     read("draw b", b, Usage::vertex);
     const auto compiled = compile(std::move(graph)).take();
-    // "a" and "b" overwrite what the frame before has read; one barrier serves both.
+    // "a" and "b" overwrite what the previous frame has read; one barrier covers both.
     CHECK(compiled.plan().barrier == std::vector{Barrier::storage, Barrier::none, Barrier::uniform,
                                                  Barrier::none, Barrier::vertex_attrib});
 }

@@ -1,5 +1,5 @@
-// What random graphs compute must be what a plain evaluation of the versions gives, however passes are
-// ordered, objects shared and passes skipped.
+// What random graphs compute must equal a plain evaluation of the versions, whatever the order of passes, the
+// sharing of objects and the skipping of passes.
 
 #include <doctest/doctest.h>
 
@@ -30,8 +30,8 @@ bool always(const Graph& graph, std::size_t pass) {
     return always;
 }
 
-/// Whether all values are the same in a second frame. An import that a pass has written is not what the first
-/// began with, and of values set in turn to one and another the last remains.
+/// Whether all values are the same in the second frame. An import that a pass has written does not start the
+/// second frame with its first contents, and a value that is set several times keeps the last one.
 bool values_stay_equal(const Graph& graph) {
     return std::ranges::none_of(graph.resources, [](const random_graph::Resource& resource) {
         return resource.lifetime == Lifetime::imported
@@ -40,8 +40,8 @@ bool values_stay_equal(const Graph& graph) {
     });
 }
 
-/// Of passes in this order those that run in every frame, and those that read what such a pass makes anew:
-/// for a texture or buffer that is a change, whatever is in it, for a value only where it may differ.
+/// The passes, visited in this order, that run in every frame, and those that read what such a pass writes
+/// again. For a texture or buffer every write counts as a change, for a value only one that may differ.
 std::set<std::size_t> made_anew(const Graph& graph, const std::vector<std::uint32_t>& order) {
     const bool stay_equal = values_stay_equal(graph);
     std::set<std::size_t> passes;
@@ -93,7 +93,7 @@ TEST_CASE("graph: frames that remember the last give what the declaration means,
                                              frame == 0 ? nullptr : &before);
             for (Machine* machine : {&straight, &shuffled}) {
                 machine->provide(host);
-                machine->runtime().invalidate();  // memories are not inputs: without them all would not run
+                machine->runtime().invalidate();  // run all: histories are not inputs
                 (void)machine->run();
                 machine->check(expected);
             }
@@ -103,7 +103,7 @@ TEST_CASE("graph: frames that remember the last give what the declaration means,
     }));
 }
 
-/// Whether nothing else is ever put into the object that holds the pass's result.
+/// Whether nothing else is ever written to the object that holds the pass's result.
 bool stays(const Graph& graph, const std::vector<std::uint32_t>& objects,
            const random_graph::Access& result) {
     return graph.resources[result.resource].versions == 1 &&
@@ -114,7 +114,7 @@ TEST_CASE(
     "graph: when nothing has changed, only those run that always do or read what those make, and those whose "
     "results another has taken the place of" *
     doctest::test_suite("random")) {
-    // Most passes of a small graph are made anew, which says nothing.
+    // In a small graph most passes run in every frame, which would test nothing.
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 60, .histories = false, .backward_afters = false});
         const Host host{0, std::vector<Content>(graph.resources.size(), 1)};

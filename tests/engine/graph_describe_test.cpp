@@ -1,4 +1,5 @@
-// Compiled graphs of every shape, as text. Each text below was derived by hand from the rules in compile.hpp.
+// Descriptions of compiled graphs of every shape. Each expected text was derived by hand from the rules in
+// compile.hpp.
 
 #include <doctest/doctest.h>
 
@@ -20,7 +21,7 @@ TextureHandle import_target(FrameGraph& graph) {
     return graph.texture("target", {{64, 32}, Format::rgba8}, Lifetime::imported);
 }
 
-/// Shows `source` on the target: the root of these graphs.
+/// Adds a pass that shows `source` on the target; it is the root of these graphs.
 void add_show(FrameGraph& graph, TextureHandle source, TextureHandle target) {
     graph.add("show", [&](Pass& pass) {
         pass.read(source, Usage::sampled);
@@ -176,8 +177,8 @@ TEST_CASE("graph description: systems, values and planned barriers") {
         pass.side_effect();
     });
     add_show(graph, lit, import_target(graph));
-    // Waiting for the frame before: "trace" overwrites what "light" and "count" read, "light" what "show"
-    // sampled.
+    // Some barriers wait for the previous frame: "trace" overwrites what "light" and "count" have read,
+    // "light" overwrites what "show" has sampled.
     CHECK(text_of(graph) == R"(
 passes
   0 gather-lights

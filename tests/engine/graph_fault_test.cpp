@@ -1,4 +1,4 @@
-// Every way to declare a graph wrongly, and what compiling says about it.
+// Every invalid declaration of a graph, and what compiling reports about it.
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ std::vector<Fault> faults_of(FrameGraph& graph) {
     return compile(std::move(graph)).faults;
 }
 
-/// The only fault of a graph.
+/// The only fault of a graph; it must have exactly one.
 Fault fault_of(FrameGraph& graph) {
     const std::vector<Fault> faults = faults_of(graph);
     REQUIRE(faults.size() == 1);
@@ -163,7 +163,7 @@ TEST_CASE("graph fault: histories of what has none, and writes of what is read o
     CHECK(faults[3].message == "pass 'host' writes value 'number', which the host sets");
 }
 
-/// Whether a pass that accesses an imported texture or buffer by `access` is at fault.
+/// Whether a pass that accesses an imported texture or buffer with `access` is invalid.
 template <class Access>
 bool faulty(const TextureDesc& desc, Access access) {
     FrameGraph graph;

@@ -23,7 +23,7 @@ inline std::string ran(const FrameRecord& record) {
     return names;
 }
 
-/// A graph to declare into, and a runtime to adopt it.
+/// A graph to declare passes in, and a runtime that runs it.
 struct GraphFixture {
     RecordingBackend backend;
     GraphRuntime runtime{backend};

@@ -8,7 +8,7 @@
 #include "tests/engine/graph_random.hpp"
 #include "tests/engine/recording_backend.hpp"
 
-/// Random graphs whose passes compute: each hashes what it reads into what it writes.
+/// Random graphs whose passes compute: each pass hashes what it reads into what it writes.
 namespace candela::random_graph {
 
 using Content = std::uint64_t;
@@ -18,8 +18,8 @@ inline Content mix(Content hash, Content value) {
     return hash ^ (hash >> 29U);
 }
 
-/// A pass's result, from the contents that `content_of(access)` gives for what it reads or changes. With
-/// histories, what was there before is read as well.
+/// The result of a pass, from the contents that `content_of(access)` returns for everything it reads or
+/// modifies, including histories.
 template <class ContentOf>
 Content evaluate(const Graph& graph, std::size_t pass, int number, ContentOf content_of) {
     Content hash = mix(1, pass);
@@ -34,24 +34,24 @@ Content evaluate(const Graph& graph, std::size_t pass, int number, ContentOf con
     return hash;
 }
 
-/// What a pass writes: few different values, so that they often stay equal where their inputs do not.
+/// What a pass writes. Values have few different results, so that they often stay equal while inputs change.
 inline Content result(const Resource& resource, std::size_t index, Content hash) {
     return resource.kind == ResourceKind::value ? mix(hash, index) % 3 : mix(hash, index);
 }
 
-/// What the host gives.
+/// What the host provides.
 struct Host {
     int number = 0;
     std::vector<Content> imports;  // by resource
 };
 
-/// By pass and by version of each resource, as the declaration means it.
+/// The expected contents, by pass and by version of each resource, as declared.
 struct Meaning {
     std::vector<Content> passes;
     std::vector<std::vector<Content>> versions;
 };
 
-/// `before` gives the histories.
+/// `before` holds the contents of the histories; null in the first frame.
 inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& order, const Host& host,
                        const Meaning* before) {
     Meaning now;
@@ -79,7 +79,7 @@ inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& ord
     return now;
 }
 
-/// A runtime with a back end of its own, which runs the graph's passes as computations.
+/// A runtime with its own backend, which runs the graph's passes as computations.
 class Machine {
  public:
     Machine(const Graph& graph, CompileOptions options) : graph_(graph), runtime_(backend_) {
@@ -98,7 +98,8 @@ class Machine {
         }
     }
 
-    /// Gives the host's things: values, and whatever of its objects has changed or was written by the graph.
+    /// Provides the host's inputs: values, and those of its objects that changed or that the graph has
+    /// written.
     void provide(const Host& host) {
         world_.set(entity_, Number{host.number});
         for (std::size_t index = 0; index < graph_.resources.size(); ++index) {
@@ -126,7 +127,7 @@ class Machine {
 
     const FrameRecord& run() { return runtime_.run(world_); }
 
-    /// Everything that can be seen from outside.
+    /// Checks everything that is visible from outside.
     void check(const Meaning& expected) const {
         check_use();
         for (const auto& [pass, hash] : seen_) {
@@ -137,7 +138,7 @@ class Machine {
         }
     }
 
-    /// That the back end was used as it may be.
+    /// Checks that the backend was used correctly.
     void check_use() const {
         RC_ASSERT(backend_.misuse.empty());
         RC_ASSERT(backend_.open_passes == 0);
@@ -146,7 +147,7 @@ class Machine {
     GraphRuntime& runtime() { return runtime_; }
     [[nodiscard]] const World& world() const { return world_; }
 
-    /// From now on the pass adds to its results what it has not declared.
+    /// From now on the results of this pass depend on something undeclared.
     void sabotage(std::size_t pass) { sabotaged_ = pass; }
 
  private:

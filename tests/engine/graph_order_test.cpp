@@ -1,5 +1,5 @@
-// Random graphs against slow, separate answers to the questions that compiling answers: which passes are
-// needed, which orders are legal, which resources may share an object.
+// Checks random graphs against slow, independent answers to the questions that compiling answers: which
+// passes are needed, which orders are legal, which resources may share an object.
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ namespace {
 using namespace candela;
 using random_graph::Graph;
 
-/// precedes[a][b]: a pass must run before another, directly or through others.
+/// precedes[a][b]: pass a must run before pass b, directly or through other passes.
 using Precedence = std::vector<std::vector<bool>>;
 
 bool must_precede(const Graph& graph, std::size_t a, std::size_t b) {
@@ -65,7 +65,7 @@ bool cyclic(const Precedence& precedes) {
     return false;
 }
 
-/// Whether the result of `writer` goes into `reader`.
+/// Whether `reader` uses a result of `writer`.
 bool feeds(const Graph& graph, std::size_t writer, std::size_t reader) {
     for (const random_graph::Access& made : graph.passes[writer].accesses) {
         for (const random_graph::Access& used : graph.passes[reader].accesses) {
@@ -134,7 +134,7 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
             use.last = position;
         }
     }
-    // The declaration numbers a history after its resource.
+    // In the declaration, the number of a history follows that of its resource.
     std::vector<std::uint32_t> object;
     std::uint32_t index = 0;
     for (const random_graph::Resource& resource : graph.resources) {
@@ -212,8 +212,8 @@ TEST_CASE("graph: seeds give different orders") {
     CHECK(order(1) != order(2));
 }
 
-/// Declares and compiles `count` passes of which each reads the `reads` before it, and gives the seconds that
-/// took.
+/// Declares and compiles `count` passes, each of which reads the results of the `reads` passes before it.
+/// Returns the time in seconds.
 double seconds_to_compile(std::size_t count, std::size_t reads) {
     const auto start = std::chrono::steady_clock::now();
     FrameGraph graph;
@@ -231,13 +231,13 @@ double seconds_to_compile(std::size_t count, std::size_t reads) {
     }
     const CompiledGraph compiled = compile(std::move(graph), {.shuffle_seed = 1}).take();
     CHECK(compiled.pass_count() == count);
-    CHECK(compiled.plan().owner.size() <= reads + 2);  // a window of results is alive at any time
+    CHECK(compiled.plan().owner.size() <= reads + 2);  // only a window of results is alive at any time
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 TEST_CASE("graph: ten thousand passes compile in an instant, also where paths double from pass to pass") {
-    // Quadratic time would take minutes here and doubling paths for ever; the bound leaves room for
-    // sanitizers.
+    // Quadratic time would take minutes, and following all paths, whose number doubles with each pass, would
+    // never end. The limit leaves a margin for sanitizers.
     CHECK(seconds_to_compile(10'000, 1) < 5.0);
     CHECK(seconds_to_compile(10'000, 2) < 5.0);
 }

@@ -10,10 +10,11 @@
 #include "engine/graph/compile.hpp"
 #include "engine/graph/execute.hpp"
 
-/// Random graphs, kept as plain lists beside what is declared, so that checks need not trust the declaration.
+/// Random graphs, kept as plain lists in addition to the declaration, so that checks do not rely on the
+/// latter.
 namespace candela::random_graph {
 
-/// What the passes of random graphs read of the world.
+/// The component that passes of random graphs read from the world.
 struct Number {
     int value = 0;
     bool operator==(const Number&) const = default;
@@ -22,14 +23,14 @@ struct Number {
 struct Resource {
     ResourceKind kind = ResourceKind::texture;
     Lifetime lifetime = Lifetime::transient;
-    bool deep = false;  // one of two descriptions
+    bool deep = false;  // selects one of two descriptions
     bool remembered = false;
     std::uint32_t versions = 0;
 };
 
 struct Access {
     std::size_t resource = 0;
-    std::uint32_t version = 0;  // read, or made
+    std::uint32_t version = 0;  // that is read or written
     Usage usage = Usage::sampled;
     bool write = false;
     bool past = false;
@@ -102,7 +103,7 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
     if (imported && !gpu) {
         access.write = false;
     }
-    for (const Access& other : pass.accesses) {  // no feedback, and one access a resource
+    for (const Access& other : pass.accesses) {  // no feedback, and one access per resource
         if (other.resource == access.resource) {
             return;
         }
@@ -125,7 +126,7 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
     pass.accesses.push_back(access);
 }
 
-/// Declared so that handles only flow forward; `after` may also point backward, and thus close cycles.
+/// Handles only flow forward; `after` may also point backward, and thus close cycles.
 inline Graph make(const Options& options) {
     Graph graph;
     const std::size_t count = choose(options.passes);
@@ -148,7 +149,7 @@ inline Graph make(const Options& options) {
     return graph;
 }
 
-/// Handles of a declared graph, by resource: the newest version, or the past.
+/// Handles of a declared graph, by resource: the newest version, and the history.
 struct Handles {
     std::vector<ResourceHandle> newest;
     std::map<std::size_t, ResourceHandle> past;
@@ -202,7 +203,7 @@ inline void declare(candela::Pass& pass, const Resource& resource, const Access&
     }
 }
 
-/// `make_run(pass, handles)` gives the function of the pass numbered `pass`.
+/// `make_run(pass, handles)` returns the function of pass number `pass`.
 template <class MakeRun>
 FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
     FrameGraph frame;

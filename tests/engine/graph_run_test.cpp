@@ -41,7 +41,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a component pool that changes dirtie
 
     CHECK(run() == "gather light show");
     CHECK(run() == "show");
-    world.set(entity, Name{"lamp"});  // a pool that nobody reads
+    world.set(entity, Name{"lamp"});  // a pool that no pass reads
     CHECK(run() == "show");
     world.set(entity, Light{2});
     CHECK(run() == "gather light show");
@@ -73,7 +73,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: what only culled passes read the hos
     graph.add("print", [&](Pass& pass) { pass.side_effect(); });
     adopt();
     CHECK(run() == "print");
-    runtime.set(exposure, 1.0F);  // allowed, and of no consequence
+    runtime.set(exposure, 1.0F);  // allowed, without effect
     runtime.bind(sky, 9, colour);
     CHECK(run() == "print");
 }
@@ -123,7 +123,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a bind is new content to the readers
 
 TEST_CASE_FIXTURE(GraphFixture,
                   "graph run: what shares an object is made again for a reader, and only for that") {
-    // "a" and "c" share an object: after a frame it holds "c".
+    // "a" and "c" share an object, which holds "c" after a frame.
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle a = draw("draw a", {}, texture("a"));
     const TextureHandle b = draw("draw b", {a}, texture("b"));
@@ -151,7 +151,7 @@ TEST_CASE_FIXTURE(GraphFixture,
     runtime.set(turn, 1);
     CHECK(runtime.object(a) == runtime.object(c));
     CHECK(run() == "draw a draw b draw c show late show late");
-    CHECK(run() == "show show late");  // what they read is still there
+    CHECK(run() == "show show late");  // their inputs are still there
     runtime.set(knob, 2);
     CHECK(run() == "show late show late");  // "b" is still there
 }
@@ -200,7 +200,7 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(run() == "opaque peek transparent tone-map show");
     CHECK(run() == "show");
     runtime.set(knob, 2);
-    CHECK(run() == "opaque peek show");  // "mapped" is still right, though "lit" is back to its first version
+    CHECK(run() == "opaque peek show");  // "mapped" stays valid, though "lit" is at its first version again
     CHECK(run() == "show");
 }
 
@@ -260,7 +260,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         runtime.set(knob, frame);
         CHECK(run() == "mix show");
     }
-    CHECK(run() == "show");  // a memory is no input
+    CHECK(run() == "show");  // a history is not an input
     CHECK(shown == 2);
     runtime.set(knob, 3);
     CHECK(run() == "mix show");
@@ -300,10 +300,10 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: what a pass throws leaves a runtime 
     CHECK(backend.open_passes == 0);
     CHECK_THROWS_AS(run(), std::runtime_error);
     fail = false;
-    runtime.set(knob, 1);  // what it ran with the last time that it came through
+    runtime.set(knob, 1);  // the input of the last successful run
     CHECK(run() == "filter show");
     CHECK(run() == "show");
-    CHECK(runtime.run(world).frame == 3);  // frames that came through
+    CHECK(runtime.run(world).frame == 3);  // counts successful frames only
 }
 
 TEST_CASE_FIXTURE(GraphFixture,

@@ -1,4 +1,4 @@
-// Verification: passes run again, and what they write is compared.
+// Verification: passes run again, and their results are compared.
 
 #include <doctest/doctest.h>
 
@@ -35,7 +35,7 @@ std::string verified(const FrameRecord& record) {
 struct VerifyFixture : GraphFixture {
     VerifyFixture() { runtime.set_verification(true); }
 
-    /// A frame and its verification; gives the passes that ran, and those that ran again.
+    /// Runs and verifies a frame. Returns the passes that ran, and those that ran again.
     std::string frame() {
         const FrameRecord& record = runtime.run(world);
         runtime.verify(world);
@@ -44,7 +44,7 @@ struct VerifyFixture : GraphFixture {
 
     std::uint64_t& content(ObjectId object) { return backend.objects.at(object).content; }
 
-    /// A pass that fills a texture with what `make` gives.
+    /// A pass that fills a texture with the result of `make`.
     template <class Make>
     TextureHandle fill(std::string_view name, TextureHandle target, Make make) {
         return graph.add(name, [&](Pass& pass) {
@@ -91,7 +91,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: a captured variable is an undecl
                          "changed, it gives texture 'lit' another content",
                          GraphError);
     CHECK(backend.open_passes == 0);
-    CHECK(frame() == "light show | light");  // it counts as not having run
+    CHECK(frame() == "light show | light");  // counts as not having run
     CHECK(frame() == "show | light");
 }
 
@@ -383,12 +383,12 @@ TEST_CASE("graph verify: random graphs with memories are not found at fault" *
     }));
 }
 
-/// A host whose things never change.
+/// A host whose inputs never change.
 Host still_host(const Graph& graph) {
     return {0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
 }
 
-/// Runs two frames of a still host, the first of them verified.
+/// Runs two frames with constant inputs, the first of them verified.
 const FrameRecord& second_frame(Machine& machine, const Graph& graph) {
     machine.runtime().set_verification(true);
     machine.provide(still_host(graph));
@@ -398,9 +398,9 @@ const FrameRecord& second_frame(Machine& machine, const Graph& graph) {
     return machine.run();
 }
 
-/// Whether verification can tell that the pass writes something else when it runs again: it must be one that
-/// runs again, and write something. Of what a pass with side effects has put into an import nobody can tell
-/// whether it is still the same, so that passes that read imports are left out.
+/// Whether verification can detect that the pass writes something else when it runs again. The pass must be
+/// one that runs again and writes something. Passes that read imports are excluded: another pass may have
+/// written to the import, and then it is unknown whether the import still has the same contents.
 bool can_be_found(const Graph& graph, std::size_t pass) {
     Machine machine(graph, {});
     const FrameRecord& record = second_frame(machine, graph);
@@ -417,7 +417,7 @@ bool can_be_found(const Graph& graph, std::size_t pass) {
            std::ranges::none_of(accesses, reads_import);
 }
 
-/// What verification says of a graph in whose second frame `culprit` begins to write something else.
+/// What verifying the second frame reports if pass `culprit` starts to write something else.
 std::string message_about(const Graph& graph, std::size_t culprit) {
     Machine machine(graph, {});
     (void)second_frame(machine, graph);

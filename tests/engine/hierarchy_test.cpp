@@ -18,7 +18,7 @@ using namespace candela;
 
 namespace {
 
-// The quaternion of a quarter turn about +Z: x becomes y.
+// The quaternion of a rotation by 90 degrees about +Z: x becomes y.
 const glm::quat quarter_turn(std::sqrt(0.5F), 0.0F, 0.0F, std::sqrt(0.5F));
 
 Transform moved(float x, float y, float z, Entity parent = {}) {
@@ -32,7 +32,7 @@ glm::vec3 apply(const glm::mat4& matrix, const glm::vec3& point) {
     return matrix * glm::vec4(point, 1.0F);
 }
 
-// Coordinates here are below 100: a few roundings of single precision stay within 1e-4.
+// Coordinates here are below 100, so a few single-precision roundings stay within 1e-4.
 bool close(const glm::vec3& a, const glm::vec3& b) {
     return glm::distance(a, b) < 1e-4F;
 }
@@ -72,7 +72,7 @@ TEST_SUITE("hierarchy") {
         transform.scale = {2.0F, 3.0F, 4.0F};
         transform.rotation = quarter_turn;
         transform.translation = {10.0F, 20.0F, 30.0F};
-        // (1, 1, 1) scaled is (2, 3, 4), turned is (-3, 2, 4).
+        // (1, 1, 1) scaled is (2, 3, 4), then rotated is (-3, 2, 4).
         CHECK(close(apply(local_matrix(transform), {1, 1, 1}), {7, 22, 34}));
     }
 
@@ -168,7 +168,7 @@ TEST_SUITE("decompose") {
             }
             const std::vector<Transform> transforms = decompose(matrix);
             RC_ASSERT(transforms.size() <= 2);
-            // Entries reach 10 and three single-precision matrices are multiplied: some 1e-6 × 10 × 3.
+            // Entries are up to 10 and three single-precision matrices are multiplied: about 1e-6 × 10 × 3.
             RC_ASSERT(largest_difference(product(transforms), matrix) < 1e-4);
         }));
     }

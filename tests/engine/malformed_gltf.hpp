@@ -10,8 +10,8 @@
 
 namespace candela::test {
 
-/// What the import has to say about the file; "imported" if nothing. Checks that a failure leaves the world
-/// alone and that its message is one line that starts with the file's name.
+/// What the import reports about the file; "imported" on success. Checks that a failure leaves the world
+/// unchanged, and that its message is one line that starts with the file's name.
 inline std::string fault_of(const Bytes& file) {
     World world;
     const Entity before = world.create();
@@ -36,7 +36,7 @@ inline std::string fault_of(const GltfBuilder& file) {
     return fault_of(file.gltf());
 }
 
-/// A file in which everything that the import reads occurs.
+/// A file that contains everything that the import reads.
 inline GltfBuilder complete_scene() {
     GltfBuilder file;
     file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0});                                           // accessor 0

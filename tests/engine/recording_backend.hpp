@@ -12,8 +12,8 @@
 
 namespace candela {
 
-/// A back end without a GPU. Notes what it is told, knows what lives, and gives every object a content: a
-/// number that tests write and read instead of texels.
+/// A backend without a GPU. Records calls, tracks live objects, and gives every object a content: a number
+/// that tests write and read instead of texels.
 class RecordingBackend final : public Backend {
  public:
     struct Object {
@@ -65,9 +65,9 @@ class RecordingBackend final : public Backend {
     Targets targets;                                  // of the last pass
     std::vector<std::pair<ObjectId, Binding>> bound;  // of the last pass
     std::size_t created = 0;
-    std::size_t creations_left = static_cast<std::size_t>(-1);  // until creating fails
+    std::size_t creations_left = static_cast<std::size_t>(-1);  // until a creation fails
     int open_passes = 0;
-    std::size_t digests = 0;  // asked for
+    std::size_t digests = 0;  // how many were requested
     std::string misuse;       // what the graph did wrong, if anything
 
  private:

@@ -14,16 +14,16 @@ using namespace candela::test;
 
 namespace {
 
-// Compiled where it lies, the test finds the shipped scenes from its own place.
+// The shipped scenes are found relative to this source file.
 const std::filesystem::path scenes =
     std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "sandbox" / "scenes";
 
 /// Triangle of a mesh instance in the world.
 struct WorldTriangle {
     glm::vec3 a, b, c;
-    glm::vec3 normal;  ///< as the vertices say, of unit length
+    glm::vec3 normal;  ///< from the vertices, unit length
 
-    /// Half the cross product of two sides: the area, along the front.
+    /// Half the cross product of two edges: its length is the area, and it points to the front.
     [[nodiscard]] glm::vec3 area() const { return 0.5F * glm::cross(b - a, c - a); }
 };
 
@@ -35,7 +35,7 @@ std::vector<WorldTriangle> triangles_of(const World& world, Entity entity) {
             return glm::vec3(matrix * glm::vec4(primitive.vertices.at(primitive.indices[i]).position, 1.0F));
         };
         for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
-            // The matrices here do not stretch, so that they turn normals as they turn positions.
+            // The matrices here do not scale, so they transform normals like positions.
             const glm::vec3 normal = glm::mat3(matrix) * primitive.vertices.at(primitive.indices[i]).normal;
             triangles.push_back({position(i), position(i + 1), position(i + 2), normal});
         }
@@ -97,7 +97,7 @@ TEST_SUITE("Cornell box") {
             CHECK(at.x == 0.0F);
             CHECK(at.z == 0.0F);
             CHECK(at.y < 2.0F);
-            // Straight below, the floor gets about pi / 2 lux.
+            // Directly below the light, the floor receives about pi / 2 lux.
             CHECK(light.intensity / (at.y * at.y) == doctest::Approx(1.57).epsilon(0.02));
         }
     }
@@ -135,9 +135,9 @@ TEST_SUITE("Cornell box") {
             }
             const bool block = name.ends_with("block");
             if (block) {
-                CHECK(glm::length(sum) < 1e-6F);  // closed: the areas of its sides cancel
+                CHECK(glm::length(sum) < 1e-6F);  // closed: the area vectors cancel
             } else {
-                CHECK(glm::dot(sum, glm::vec3(0, 1, 0) - centre) > 0.0F);  // towards the middle of the room
+                CHECK(glm::dot(sum, glm::vec3(0, 1, 0) - centre) > 0.0F);  // points to the middle of the room
             }
             for (const WorldTriangle& triangle : triangles) {
                 const glm::vec3 outwards = (triangle.a + triangle.b + triangle.c) / 3.0F - centre;

@@ -27,13 +27,13 @@ GltfBuilder square() {
     return file;
 }
 
-/// Makes the first primitive's texture coordinates of a triangle from one accessor.
+/// The imported texture coordinates of a triangle whose texture coordinates are this accessor.
 template <class T>
 std::vector<glm::vec2> texture_coordinates(const std::vector<T>& values, int component_type,
                                            bool normalised) {
     GltfBuilder file = right_triangle();
     const std::size_t accessor = file.add_accessor(values, component_type, "VEC2", 2);
-    // Rows of a vertex attribute start at multiples of 4 bytes.
+    // The rows of a vertex attribute are aligned to 4 bytes.
     if (sizeof(T) * 2 < 4) {
         file.document["bufferViews"].back()["byteStride"] = 4;
     }
@@ -142,7 +142,7 @@ TEST_SUITE("glTF geometry") {
                                        {"type", vec2 ? "VEC2" : "VEC3"}});
             offset += 12;
         }
-        // Normals come out at unit length.
+        // Normals are imported at unit length.
         CHECK(Imported(file).corners() == std::vector<Vertex>{{{0, 0, 0}, {0, 0, 1}, {0.25F, 0.5F}},
                                                               {{1, 0, 0}, {0, 1, 0}, {0.75F, 1.0F}},
                                                               {{0, 1, 0}, {1, 0, 0}, {-2.0F, 7.0F}}});
@@ -167,7 +167,7 @@ TEST_SUITE("glTF geometry") {
                               {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                               {"values", {{"bufferView", values}}}};
         CHECK(Imported(file).positions() == Points{{0, 0, 5}, {1, 0, 0}, {0, 1, 5}});
-        accessor.erase("bufferView");  // what is not listed is then zero
+        accessor.erase("bufferView");  // elements that are not listed are then zero
         accessor["sparse"]["indices"]["byteOffset"] = 0;
         CHECK(Imported(file).report.triangles == 1);
         CHECK(Imported(file).positions() == Points{{0, 0, 5}, {0, 0, 0}, {0, 1, 5}});
@@ -192,7 +192,7 @@ TEST_SUITE("glTF geometry") {
         const std::vector<Vertex> corners = Imported(file).corners();
         CHECK(corners[0].normal == glm::vec3(0, 0, 1));
         CHECK(corners[1].normal == glm::vec3(1, 0, 0));
-        CHECK(corners[2].normal == glm::vec3(1, 0, 0));  // short, but with a direction
+        CHECK(corners[2].normal == glm::vec3(1, 0, 0));  // short, but not zero
     }
 
     TEST_CASE("triangles without area are dropped, however small or large the others") {
@@ -224,7 +224,7 @@ TEST_SUITE("glTF scenes") {
         const auto in_world = [&](const char* name, const glm::vec3& point) {
             return glm::vec3(world_matrix(imported.world, imported.find(name)) * glm::vec4(point, 1.0F));
         };
-        // (1, 0, 0) turned is (0, 1, 0), doubled and moved (1, 4, 3). Tolerance: the file's eight digits.
+        // (1, 0, 0) rotated is (0, 1, 0), scaled and moved (1, 4, 3). Tolerance: the file's eight digits.
         CHECK(glm::distance(in_world("turned", {1, 0, 0}), glm::vec3(1, 4, 3)) < 1e-5F);
         // (1, 1, 1) is (-3, 2, 4) + (5, 6, 7) = (2, 8, 11) in the root.
         CHECK(glm::distance(in_world("by matrix", {1, 1, 1}), glm::vec3(5, 18, -19)) < 1e-4F);
@@ -238,7 +238,7 @@ TEST_SUITE("glTF scenes") {
         const Imported imported(file);
         CHECK(imported.report.entities.size() == 3);
         const glm::vec3 origin = world_matrix(imported.world, imported.find("child"))[3];
-        CHECK(glm::distance(origin, glm::vec3(10, 10, 7)) < 1e-5F);  // some roundings of numbers near 10
+        CHECK(glm::distance(origin, glm::vec3(10, 10, 7)) < 1e-5F);  // a few roundings of numbers near 10
     }
 
     TEST_CASE("only the default scene is imported, the first where none is named") {
@@ -325,7 +325,7 @@ TEST_SUITE("glTF scenes") {
         CHECK(camera(2).near_plane == 0.0F);
         CHECK(camera(2).far_plane == 8.0F);
         CHECK(imported.find("plan") ==
-              imported.report.entities[2]);  // a nameless node is called after its camera
+              imported.report.entities[2]);  // a node without a name gets that of its camera
     }
 
     TEST_CASE("extensions that are merely used are reported once each") {

@@ -14,7 +14,7 @@ using namespace candela::test;
 
 namespace {
 
-/// One change to the document of the complete scene and what must be said about it.
+/// One change to the document of the complete scene, and the error that must be reported.
 struct Defect {
     std::string where;  ///< JSON pointer
     std::string value;  ///< JSON text; empty: the member is removed
@@ -291,7 +291,7 @@ TEST_SUITE("malformed glTF") {
     TEST_CASE("a picture that promises more pixels than its bytes can hold is not allocated") {
         const Bytes png{0x89, 'P', 'N',  'G', 13,  10,   26,  10,  0, 0, 0, 13, 'I',
                         'H',  'D', 'R',  0,   0,   0x40, 0,                         //
-                        0,    0,   0x40, 0,   8,   6,    0,   0,   0, 0, 0, 0,  0,  // and data, of no bytes
+                        0,    0,   0x40, 0,   8,   6,    0,   0,   0, 0, 0, 0,  0,  // and data of 0 bytes
                         0,    0,   0,    0,   'I', 'D',  'A', 'T', 0, 0, 0, 0};
         GltfBuilder file = complete_scene();
         file.document["images"][0]["uri"] = "data:image/png;base64," + base64(png);

@@ -119,7 +119,7 @@ TEST_SUITE("glTF materials") {
         const Imported imported(textured(data_uri(jpeg({200, 100, 50, 255}))));
         REQUIRE(texture_of(imported).texels.size() == 64);
         for (const glm::u8vec4& texel : texture_of(imported).texels) {
-            // At quality 100 a constant block loses a rounding in each of three conversions.
+            // At quality 100, a constant block gets up to one rounding error in each of three conversions.
             for (int i = 0; i < 4; ++i) {
                 CHECK(std::abs(texel[i] - glm::u8vec4(200, 100, 50, 255)[i]) <= 3);
             }

@@ -20,7 +20,7 @@ Bytes read(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// A whole number below n, alike on every machine.
+/// An integer in [0, n), the same on every machine.
 std::size_t below(std::size_t n, std::mt19937& random) {
     return random() % n;
 }
@@ -48,8 +48,8 @@ void edit(Bytes& file, std::mt19937& random) {
     }
 }
 
-// Files that are sound but for a few edits either import or say what is wrong; a crash is for the sanitizers
-// to see.
+// A valid file with a few edits must either be imported or be rejected with a message. Sanitizers detect
+// crashes.
 void check_edited(const Bytes& sound, unsigned int seed, int rounds) {
     std::mt19937 random(seed);
     int refused = 0;
@@ -60,7 +60,7 @@ void check_edited(const Bytes& sound, unsigned int seed, int rounds) {
         }
         refused += fault_of(file) != "imported" ? 1 : 0;
     }
-    // Most edits hit something, but one in a number's last digit or in a name is harmless.
+    // Most edits cause an error, but an edit of a number's last digit or of a name is harmless.
     CHECK(refused > rounds / 4);
     CHECK(refused < rounds);
 }

@@ -63,7 +63,7 @@ inline std::vector<Triangle> all_triangles(const Loaded& scene) {
     return triangles;
 }
 
-/// Where all lights but the directional ones are.
+/// The positions of all lights except directional ones.
 inline std::vector<glm::vec3> light_positions(const Loaded& scene) {
     std::vector<glm::vec3> positions;
     for (auto [entity, light] : scene.world.view<PointLight>()) {
@@ -84,7 +84,7 @@ std::size_t count(const Loaded& scene) {
     return found;
 }
 
-/// Triangles that can be asked for what a ray meets.
+/// Triangles that can be intersected with rays.
 struct Target {
     std::vector<Triangle> triangles;
     Bvh bvh = build_bvh(triangles);
@@ -92,7 +92,7 @@ struct Target {
     [[nodiscard]] std::optional<Hit> first(const glm::vec3& from, const glm::vec3& direction) const {
         return closest_hit(bvh, triangles, {.origin = from, .direction = direction});
     }
-    /// Whether the first thing along the ray is the front of a triangle.
+    /// Whether the first hit along the ray is on the front of a triangle.
     [[nodiscard]] bool shows_front(const glm::vec3& from, const glm::vec3& direction) const {
         const std::optional<Hit> hit = first(from, direction);
         if (!hit) {
@@ -104,7 +104,7 @@ struct Target {
     }
 };
 
-/// Directions spread evenly over the sphere: equal steps in height, golden angles around it.
+/// Directions spread evenly over the sphere: equal steps in height, golden-angle steps around it.
 inline std::vector<glm::vec3> directions(int number) {
     std::vector<glm::vec3> spread;
     for (int i = 0; i < number; ++i) {
@@ -116,8 +116,8 @@ inline std::vector<glm::vec3> directions(int number) {
     return spread;
 }
 
-/// The direction through a pixel's centre of the scene's camera, in world space, not normalised: its depth is
-/// 1. Row 0 is at the top.
+/// The world-space direction from the scene's camera through a pixel centre. Not normalised: its component
+/// along the view direction is 1. Row 0 is at the top.
 inline glm::vec3 through_pixel(const Loaded& scene, glm::ivec2 pixel, glm::ivec2 size) {
     const Camera& camera = scene.world.get<Camera>(scene.called("camera").at(0));
     const float scale = 2.0F * std::tan(camera.vertical_fov / 2.0F) / float(size.y);

@@ -43,7 +43,7 @@ std::vector<fs::path> shipped_files() {
     return files;
 }
 
-/// Runs the generator. What it is told must need no quoting.
+/// Runs the generator. The arguments must not need quoting.
 void generate(const fs::path& out, const std::string& arguments) {
     const fs::path script = scenes() / "generate.py";
     const std::string command =
@@ -56,7 +56,7 @@ std::string contents(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// By the divergence theorem; negative where the triangles face inwards.
+/// By the divergence theorem; negative if the triangles face inwards.
 double enclosed_volume(const std::vector<Triangle>& triangles) {
     double volume = 0.0;
     for (const Triangle& t : triangles) {
@@ -65,7 +65,7 @@ double enclosed_volume(const std::vector<Triangle>& triangles) {
     return volume;
 }
 
-/// The fraction of a coarse picture that shows a surface's front.
+/// The fraction of a coarse picture's pixels that show the front of a surface.
 double covered(const Loaded& scene, const Target& target) {
     const glm::ivec2 size(32, 24);
     int shown = 0;
@@ -76,8 +76,8 @@ double covered(const Loaded& scene, const Target& target) {
     return double(shown) / (size.x * size.y);
 }
 
-/// How near the nearest surface comes, in metres, as far as a hundred rays can tell: a light that touches one
-/// makes a spot so bright that it swamps every measure of error.
+/// The distance to the nearest surface in metres, estimated with 100 rays. A light that almost touches a
+/// surface would make a highlight so bright that it dominates every measure of error.
 float room_around(const Target& target, const glm::vec3& place) {
     float nearest = std::numeric_limits<float>::infinity();
     for (const glm::vec3& direction : directions(100)) {
@@ -87,7 +87,7 @@ float room_around(const Target& target, const glm::vec3& place) {
     return nearest;
 }
 
-/// What everybody who quotes a figure on the scene may rely on.
+/// Properties of a scene that published figures rely on.
 struct Facts {
     std::string name;
     std::uint64_t triangles;
@@ -110,20 +110,20 @@ void check_facts(const Loaded& scene, const Facts& facts) {
     for (const Triangle& triangle : target.triangles) {
         box.grow(bounds(triangle));
     }
-    // Positions are floats of up to 256 m, rotations have seven digits.
+    // Coordinates are floats of up to 256 m, rotations have seven digits.
     CHECK(glm::distance(box.lower, facts.lower) < 1e-4F);
     CHECK(glm::distance(box.upper, facts.upper) < 1e-4F);
-    // Lights of the open scenes hang over what they light, not outside it.
+    // Lights of the open scenes, too, are inside the scene's bounding box.
     for (const glm::vec3& light : light_positions(scene)) {
         CHECK(glm::all(glm::greaterThan(light, facts.lower)));
         CHECK(glm::all(glm::lessThan(light, facts.upper)));
         CHECK(room_around(target, light) > 0.1F);
     }
-    // The Cornell box is framed for a square, which has 3/4 of this picture.
+    // The Cornell box is framed for a square picture, which is 3/4 of this one.
     CHECK(covered(scene, target) > 0.7);
 }
 
-/// Whether each vertex normal is on the front of the triangles that use it.
+/// Whether each vertex normal is on the front side of the triangles that use it.
 bool normals_agree(const Primitive& primitive) {
     std::vector<Triangle> triangles;
     append(triangles, primitive, glm::mat4(1.0F));
@@ -137,7 +137,7 @@ bool normals_agree(const Primitive& primitive) {
     return true;
 }
 
-/// How many lights send anything to a point, shadows aside.
+/// How many lights reach a point, ignoring shadows.
 int lights_reaching(const Loaded& scene, const glm::vec3& point) {
     int reaching = 0;
     for (auto [entity, light] : scene.world.view<PointLight>()) {
@@ -153,7 +153,7 @@ int lights_reaching(const Loaded& scene, const glm::vec3& point) {
     return reaching;
 }
 
-/// The mean of lights_reaching over 24 × 24 points of the parallelogram of two edges from a corner.
+/// The mean of lights_reaching over 24 × 24 points of a parallelogram, given by a corner and two edges.
 double mean_reaching(const Loaded& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v) {
     int sum = 0;
     for (int i = 0; i < 24 * 24; ++i) {
@@ -264,13 +264,12 @@ TEST_SUITE("shipped scenes") {
             for (const glm::vec3& direction : directions(20000)) {
                 const std::optional<Hit> hit = target.first(lamp, direction);
                 REQUIRE(hit);
-                // The door itself, shut, lies between 0.1 m and 0.15 m.
+                // The closed door is between x = 0.1 m and x = 0.15 m.
                 beyond += lamp.x + hit->t * direction.x > 0.15F ? 1 : 0;
             }
             return beyond;
         };
-        // The opening is of the order of 0.9 m × 2 m seen from 2 m: a fraction 1.8 / (4 pi 4) or so of
-        // 20,000.
+        // The opening is about 0.9 m × 2 m, seen from 2 m: a fraction of about 1.8 / (4 pi 4) of 20,000 rays.
         CHECK(lit_beyond() > 300);
         Transform shut = scene.world.get<Transform>(door);
         shut.rotation = {1.0F, 0.0F, 0.0F, 0.0F};
@@ -281,15 +280,15 @@ TEST_SUITE("shipped scenes") {
     TEST_CASE("a few lights reach each point of the halls and of the slope") {
         const TemporaryDirectory directory;
         generate(directory / "", "hall --lights 64");
-        // The halls agree, or growing them would change more than their size. Each light has 4 square metres;
-        // a point light reaches a disc of radius sqrt(3.5² - 2²), a spot about one of 2 m · tan 55°: 6.4 on
-        // average, less near walls.
+        // The halls must agree, otherwise another number of lights would change more than the size. There is
+        // one light per 4 square metres. A point light reaches a disc of radius sqrt(3.5² - 2²), a spot about
+        // one of 2 m · tan 55°: 6.4 lights on average, fewer near walls.
         for (const Loaded& hall : {Loaded(shipped("hall-256")), Loaded(directory / "hall-64.gltf")}) {
             const double reaching = mean_reaching(hall, {-1, 0, -28}, {2, 0, 0}, {0, 0, 24});
             CHECK(reaching > 4.0);
             CHECK(reaching < 8.0);
         }
-        // 512 lights over 12 m × 21.6 m, each of which reaches a disc of radius sqrt(1.05² - 0.28²): 6.4.
+        // 512 lights over 12 m × 21.6 m; each reaches a disc of radius sqrt(1.05² - 0.28²): 6.4 on average.
         const float slope = glm::radians(8.0F);
         const glm::vec3 upwards(0.0F, std::sin(slope), -std::cos(slope));
         const glm::vec3 corner = glm::vec3(-5, 0, 0) + 2.0F * upwards;
@@ -315,7 +314,8 @@ TEST_SUITE("shipped scenes") {
                     nearest = std::min(nearest, hit ? hit->t : nearest);
                     farthest = std::max(farthest, hit ? hit->t : farthest);
                 }
-                // Of a plane alone that is seen at 8° or more, 16 pixels of 30° / 480 span less than 1.15.
+                // On a plane alone, seen at 8° or more, depths over 16 pixels of 30° / 480 differ by a factor
+                // below 1.15.
                 spread += farthest > 1.3F * nearest ? 1 : 0;
                 ++tiles;
             }

@@ -191,7 +191,7 @@ TEST_CASE("world: a view walks the smallest pool in its packed order") {
     }
     CHECK(entities_of<Height>(world) == entities);
 
-    world.remove<Height>(entities[1]);  // the last fills the gap
+    world.remove<Height>(entities[1]);  // the last one fills the gap
     CHECK(entities_of<Height>(world) == std::vector{entities[0], entities[4], entities[2], entities[3]});
 
     for (const int i : {3, 1, 0}) {
@@ -235,7 +235,7 @@ TEST_CASE("world: a copy keeps entities and ticks and goes its own way") {
     CHECK(moved.size() == 1);
 }
 
-// The plain model: what each component type holds, by entity, and who was ever created.
+// The reference model: the contents of each component type, by entity, and all entities ever created.
 template <class C>
 using Column = std::map<Entity, C>;
 
@@ -281,7 +281,7 @@ void check_contents(const World& world, const Model& model, const Column<C>& col
     }
 }
 
-// Revision and ticks move exactly where the contents did, and forwards.
+// The revision and the ticks advance exactly where the contents have changed.
 template <class C>
 void check_stamps(const Stamps<C>& before, const Stamps<C>& after, const Column<C>& old,
                   const Column<C>& now) {
@@ -365,7 +365,7 @@ bool refused(const Edit& edit, const Model& model) {
     return !model.alive.at(edit.entity) || lacks_height;
 }
 
-// An entity that exists or once did; the value is small, so that equal values are frequent.
+// An entity that exists or existed. The value is small, so that equal values are frequent.
 Edit make_edit(std::uint8_t action, std::uint8_t pick, std::uint8_t value, const Model& model) {
     const auto count = static_cast<std::uint8_t>(Action::count);
     if (model.alive.empty()) {

@@ -8,14 +8,14 @@
 
 namespace candela::reference {
 
-/// A camera's rays. Its pose has no scale: it looks along its -Z, and its up vector is its +Y, made
-/// perpendicular.
+/// The rays of a camera. Its pose has no scale: it looks along its -Z, and its up vector is its +Y, made
+/// perpendicular to that.
 class Viewpoint {
  public:
     Viewpoint(const Camera& camera, const glm::mat4& to_world, glm::uvec2 size);
 
-    /// Through the centre of the pixel, row 0 at the top, from the near plane to the far plane. Distances
-    /// along it are depths in metres.
+    /// The ray through the centre of the pixel (row 0 at the top), from the near plane to the far plane.
+    /// Distances along the ray are depths in metres.
     [[nodiscard]] Ray through(glm::uvec2 pixel) const;
 
  private:
@@ -23,7 +23,7 @@ class Viewpoint {
     glm::dvec2 size_;
     glm::dvec3 eye_;
     glm::dvec3 right_, up_, forward_;
-    double half_height_;  ///< of what is seen; perspective: at unit depth
+    double half_height_;  ///< of the view; perspective: at unit depth
 };
 
 }  // namespace candela::reference

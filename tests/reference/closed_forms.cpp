@@ -17,14 +17,14 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// What floats leave: a cosine is good to some 3e-7, the ramp of the spot's cone magnifies that by 7.7, and
-/// where the square of the ramp is a hundredth, by 2 / 0.1.
+/// Floating-point error: a cosine is accurate to about 3e-7. The ramp of the spot's cone amplifies that by
+/// 7.7, and, where the square of the ramp is 0.01, by another 2 / 0.1.
 constexpr double float_tolerance = 1e-4;
 constexpr double standard_errors = 4.0;
 
 using Irradiance = std::function<double(glm::dvec3)>;
 
-/// Lambert's law under a light of 1 cd.
+/// The irradiance, by Lambert's law, of a light of 1 cd on a surface that faces +Y.
 double lambert(glm::dvec3 light, glm::dvec3 at) {
     const glm::dvec3 to_light = light - at;
     return to_light.y / std::pow(glm::length(to_light), 3.0);
@@ -47,7 +47,7 @@ bool shows(const candela::Scene& scene, const Irradiance& irradiance, Defect def
         trace(Scene(scene.world), scene.camera, {.size = size, .samples = 2, .bounces = 0, .defect = defect});
     const auto brighter = [](glm::vec3 a, glm::vec3 b) { return a.r < b.r; };
     const glm::vec3 peak = *std::max_element(expected.pixels.begin(), expected.pixels.end(), brighter);
-    // Where a falloff runs out to zero its terms cancel: there, relative to a hundredth of the peak.
+    // Where a falloff reaches zero its terms cancel: there, the error is relative to 1 % of the peak.
     const double floor = 0.01 * static_cast<double>(peak.r);
     const double error = worst_error(estimate.direct, expected, estimate.hit, floor);
     MESSAGE("worst error of the plane: ", error);
@@ -77,17 +77,17 @@ candela::Scene sphere_around_light(double albedo) {
     return scene;
 }
 
-/// Discs of radius 1 m, 1 m apart, facing each other. Light comes in between them at a slant, so that the
-/// shadow of the upper one falls beside the lower one, which is lit evenly. The upper one faces away from the
-/// light.
+/// Discs of radius 1 m, 1 m apart, facing each other. The light arrives at a slant between them, so that the
+/// shadow of the upper disc falls next to the lower one, which is lit uniformly. The upper disc faces away
+/// from the light.
 struct Discs {
     static constexpr double radius = 1.0;
     static constexpr double distance = 1.0;
     static constexpr double lower_albedo = 0.8;
     static constexpr double upper_albedo = 0.5;
     static constexpr double illuminance = 4.0;
-    static constexpr double cosine =
-        0.31622776601683794;  // of atan 3: the shadow is 3 m aside, more than 2 radii
+    /// Of atan 3: the shadow is offset by 3 m, more than 2 radii.
+    static constexpr double cosine = 0.31622776601683794;
 };
 
 /// A disc in the plane y = 0 that faces +Y, as a polygon whose area is that of the circle to 2e-5.
@@ -122,8 +122,8 @@ candela::Scene two_discs() {
     return scene;
 }
 
-/// From an element to a parallel disc, `aside` off its axis: Howell, "A Catalog of Radiation Heat Transfer
-/// Configuration Factors", B-13.
+/// The form factor from an element to a parallel disc, with the element `aside` from the disc's axis: Howell,
+/// "A Catalog of Radiation Heat Transfer Configuration Factors", B-13.
 double element_to_disc(double aside) {
     const double a = aside * aside;
     const double h = Discs::distance * Discs::distance;
@@ -131,14 +131,14 @@ double element_to_disc(double aside) {
     return 0.5 * (1.0 - (a + h - r) / std::sqrt(std::pow(a + h + r, 2.0) - 4.0 * r * a));
 }
 
-/// Between two equal discs: the same catalogue, C-41.
+/// The form factor between two equal discs: the same catalogue, C-41.
 double disc_to_disc() {
     const double r = Discs::radius / Discs::distance;
     const double s = 2.0 + 1.0 / (r * r);
     return 0.5 * (s - std::sqrt(s * s - 4.0));
 }
 
-/// Radiance of the upper disc for a form factor.
+/// The radiance of the upper disc for a form factor.
 double upper_radiance(double form_factor) {
     return Discs::upper_albedo / pi * Discs::lower_albedo * Discs::illuminance * Discs::cosine * form_factor;
 }
@@ -200,7 +200,7 @@ bool plane_under_directional_light(Defect defect) {
 bool sphere_furnace(double albedo, Defect defect) {
     const candela::Scene scene = sphere_around_light(albedo);
     const double direct = albedo / pi * 3.0 / 4.0;
-    // Facets' centres are nearer to the light by up to 0.03 %, and light falls on them at up to 1.3°.
+    // The centres of facets are nearer to the light by up to 0.03 %, and light hits them at up to 1.3°.
     constexpr double facets = 1e-3;
     bool agrees = true;
     double reflected = 0.0;
@@ -233,8 +233,7 @@ bool box_furnace(double albedo, Defect defect) {
         walls.value += (mean.value + direct) / 6.0;
         walls.error = std::hypot(walls.error, mean.error / 6.0);
     }
-    // The light of 1 cd sends out 4π lm, over 24 m². Sums over pixels integrate its irradiance to a
-    // thousandth.
+    // The light of 1 cd emits 4π lm onto 24 m². Sums over pixels integrate its irradiance to 0.1 %.
     const double arriving = 4.0 * pi / 24.0 / (1.0 - albedo);
     return is_within(walls, albedo / pi * arriving, 1e-3);
 }
@@ -245,9 +244,9 @@ bool parallel_discs(Defect defect) {
     const Estimate estimate = trace_discs(scene, defect);
     const double ratio = noise_ratio(estimate, expected, estimate.hit);
     MESSAGE("squared error of the disc: ", ratio, " times its noise");
-    // 12,900 pixels: the ratio of two sums of squares strays by √(4 / 12900) = 2 %.
+    // 12,900 pixels: the ratio of two sums of squares has a standard deviation of √(4 / 12900) = 2 %.
     const bool point_by_point = ratio < 1.1;
-    // 128 × 128 pixels sample the disc to some 1e-4.
+    // 128 × 128 pixels sample the disc to about 1e-4.
     return point_by_point &&
            is_within(mean_indirect(estimate, estimate.hit), upper_radiance(disc_to_disc()), 5e-4);
 }

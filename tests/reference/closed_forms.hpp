@@ -4,28 +4,28 @@
 
 namespace candela::reference {
 
-// Checks of the path tracer against closed forms. Each tells whether the tracer, with this defect, agrees
-// within its own noise: four standard errors, which chance exceeds once in 16,000 times, or what floats
-// leave.
+// Checks of the path tracer against closed forms. Each returns whether the tracer, with this defect, agrees
+// within its own noise (four standard errors, which random errors exceed once in 16,000 times) or within
+// floating-point error.
 
-/// A plane of albedo 1/2 under a light: ρ/π · E at every pixel.
+/// A plane of albedo 1/2 under a light: radiance ρ/π · E at every pixel.
 [[nodiscard]] bool plane_under_point_light(Defect defect = Defect::none);
 [[nodiscard]] bool plane_under_ranged_light(Defect defect = Defect::none);
 [[nodiscard]] bool plane_under_spot_light(Defect defect = Defect::none);
 [[nodiscard]] bool plane_under_directional_light(Defect defect = Defect::none);
 
-/// A sphere lit from its centre: after B bounces the indirect light is direct · (ρ + ... + ρᴮ), and with all
-/// of them the total is direct / (1 - ρ), everywhere.
+/// A sphere lit from its centre: after B bounces the indirect light is direct · (ρ + ... + ρᴮ), and with
+/// unlimited bounces the total is direct / (1 - ρ), everywhere.
 [[nodiscard]] bool sphere_furnace(double albedo, Defect defect = Defect::none);
 
-/// A closed box of one albedo: what arrives at all its walls is the light's flux / (1 - ρ).
+/// A closed box of uniform albedo: the flux that arrives at all walls is the light's flux / (1 - ρ).
 [[nodiscard]] bool box_furnace(double albedo, Defect defect = Defect::none);
 
-/// Two coaxial parallel discs, one of which is lit evenly: the other shows the form factor, point by point
-/// and in the mean.
+/// Two coaxial parallel discs, one of them lit uniformly: the radiance of the other one follows the form
+/// factor, at every point and in the mean.
 [[nodiscard]] bool parallel_discs(Defect defect = Defect::none);
 
-/// What the halves say of the discs' noise is what it is.
+/// Whether the noise that the halves predict for the discs is the actual noise.
 [[nodiscard]] bool noise_of_discs();
 
 }  // namespace candela::reference

@@ -14,7 +14,7 @@ using reference::Estimate;
 
 namespace {
 
-constexpr glm::uvec2 size{33, 33};  // whose middle pixel looks along the camera's axis
+constexpr glm::uvec2 size{33, 33};  // the middle pixel looks along the camera's axis
 constexpr std::size_t middle = 33 * 16 + 16;
 
 Estimate traced(const Scene& scene, std::uint32_t samples = 2, std::uint32_t bounces = 0) {
@@ -30,7 +30,7 @@ std::shared_ptr<const Material> made_of(glm::vec4 colour, AlphaMode mode, bool d
     return std::make_shared<const Material>(std::move(material));
 }
 
-/// A camera 3 m above a ground of albedo 1/2 under a light of π lx from straight above: the ground shows 1/2.
+/// A camera 3 m above a ground of albedo 1/2, under a light of π lx from above: the ground has radiance 1/2.
 Scene lit_ground() {
     Scene scene = ground();
     scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
@@ -46,7 +46,7 @@ Entity add_pane(Scene& scene, std::shared_ptr<const Material> material, bool fac
                MeshInstance{square(0.5F, std::move(material))});
 }
 
-/// The middle of the direct light, which is grey here.
+/// The direct light at the middle pixel. It is grey here.
 float seen(const Scene& scene) {
     return traced(scene).direct.pixels[middle].g;
 }
@@ -70,7 +70,7 @@ TEST_SUITE("reference: conventions") {
         CHECK(seen(scene) == doctest::Approx(0.5F));
         SUBCASE("single-sided") {
             add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 1}, AlphaMode::opaque, false), false);
-            CHECK(seen(scene) == 0.0F);  // the ground in the pane's shadow
+            CHECK(seen(scene) == 0.0F);  // sees the ground in the pane's shadow
         }
         SUBCASE("double-sided") {
             add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 1}, AlphaMode::opaque, true), false);
@@ -83,14 +83,15 @@ TEST_SUITE("reference: conventions") {
     }
 
     TEST_CASE("the back of a single-sided surface reflects nothing of bounced light") {
-        // A pane that stands upside down over the ground reflects light back to it with its front only.
+        // A pane above the ground reflects light to the ground only if its front faces down or it is
+        // double-sided.
         for (const bool faces_down : {true, false}) {
             for (const bool double_sided : {true, false}) {
                 CAPTURE(faces_down);
                 CAPTURE(double_sided);
                 Scene scene = lit_ground();
                 add_pane(scene, made_of(glm::vec4(0.9F), AlphaMode::opaque, double_sided), !faces_down);
-                // Beside the pane, where the camera sees lit ground.
+                // Next to the pane, where the camera sees lit ground.
                 scene.world.set(scene.camera, looking({0.8F, 3, 0}, {0.8F, 0, 0}, {0, 0, -1}));
                 const bool reflects = faces_down || double_sided;
                 CHECK((traced(scene, 256, 2).indirect.pixels[middle].g > 0.0F) == reflects);
@@ -101,7 +102,7 @@ TEST_SUITE("reference: conventions") {
     TEST_CASE("a mask makes holes for the eye and for light") {
         Scene scene = lit_ground();
         const Entity pane = add_pane(scene, with_holes());
-        // Texel centres lie a quarter of the square from its middle.
+        // Texel centres are a quarter of the square's side away from its middle.
         for (const glm::vec2 aside :
              {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(-1, 1), glm::vec2(1, 1)}) {
             CAPTURE(aside.x);
@@ -130,7 +131,7 @@ TEST_SUITE("reference: conventions") {
         std::size_t same = 0;
         for (std::size_t i = 0; i < with.hit.size(); ++i)
             same += with.indirect.pixels[i] == without.indirect.pixels[i] ? 1 : 0;
-        // All but the pixels that look through it: it takes up about a tenth of the picture.
+        // All pixels except those that see the pane, which covers about a tenth of the picture.
         CHECK(same > with.hit.size() * 3 / 4);
         CHECK(same < with.hit.size());
     }
@@ -138,10 +139,10 @@ TEST_SUITE("reference: conventions") {
     TEST_CASE("a blended surface receives indirect light itself") {
         Scene scene = lit_ground();
         add_pane(scene, made_of(glm::vec4(0.5F), AlphaMode::blend, false), false);
-        // From below, the pane's front looks at the lit ground.
+        // Seen from below, the pane shows its front, which faces the lit ground.
         scene.world.set(scene.camera, looking({0, 0.5F, 0}, {0, 1, 0}, {0, 0, 1}));
         const Estimate estimate = traced(scene, 512, 1);
-        // Ground as far as ±4 m: form factor 0.94 (Howell B-4); what is behind is black.
+        // The ground extends to ±4 m: form factor 0.94 (Howell B-4). What is behind the pane is black.
         CHECK(estimate.indirect.pixels[middle].g ==
               doctest::Approx(0.5F * 0.5F * 0.5F * 0.94F).epsilon(0.05));
     }
@@ -175,7 +176,7 @@ TEST_SUITE("reference: conventions") {
         Scene scene = lit_ground();
         add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 1}, AlphaMode::opaque, false));
         scene.world.set(scene.camera, Camera{.near_plane = 2.5F});
-        CHECK(seen(scene) == 0.0F);  // the ground in the pane's shadow
+        CHECK(seen(scene) == 0.0F);  // sees the ground in the pane's shadow
         scene.world.set(scene.camera, Camera{.near_plane = 0.1F, .far_plane = 1.5F});
         CHECK(std::ranges::count(traced(scene).hit, 1) == 0);
     }
@@ -183,7 +184,7 @@ TEST_SUITE("reference: conventions") {
     TEST_CASE("row 0 is at the top") {
         Scene scene = lit_ground();
         add(scene.world, at({0, 1, -1}), PointLight{.colour = {1, 0, 0}});
-        // The camera looks down with -Z up: what lies towards -Z is in the upper half.
+        // The camera looks down, with -Z up: what is towards -Z is in the upper half.
         const Estimate estimate = traced(scene);
         CHECK(estimate.direct.pixels[16].r > estimate.direct.pixels[33 * 32 + 16].r);
     }
@@ -194,7 +195,7 @@ TEST_SUITE("reference: conventions") {
         add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 1}, AlphaMode::opaque, false));
         const Estimate estimate = traced(scene);
         CHECK(estimate.edge[middle] == 0);
-        // The pane is 1 m wide, 2 m away: 33 pixels span 1.66 m there.
+        // The pane is 1 m wide and 2 m away, where 33 pixels span 1.66 m.
         const auto marked = std::ranges::count(estimate.edge, 1);
         CHECK(marked > 4 * 20 * 2);
         CHECK(marked < 4 * 20 * 6);

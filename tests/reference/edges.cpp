@@ -11,7 +11,7 @@ namespace {
 
 using Layer = PixelTrait::Layer;
 
-/// Sine of the steepest bend that is no edge.
+/// Sine of the largest bend that does not count as an edge.
 constexpr float flat_sine = 0.1F;
 
 bool is_flat(const Layer& a, const Layer& b) {
@@ -20,7 +20,8 @@ bool is_flat(const Layer& a, const Layer& b) {
     return std::abs(glm::dot(between, a.face)) <= reach && std::abs(glm::dot(between, b.face)) <= reach;
 }
 
-/// Whether a light that shines on both sides is hidden on one of them. Both lists are in the lights' order.
+/// Whether a light that faces both sides is occluded on only one of them. Both lists are in the lights'
+/// order.
 bool is_shadow_edge(const std::vector<LightState>& a, const std::vector<LightState>& b) {
     auto at = b.begin();
     return std::ranges::any_of(a, [&](const LightState& state) {
@@ -37,7 +38,7 @@ bool is_edge(const PixelTrait& a, const PixelTrait& b) {
     return !std::ranges::equal(a.layers, b.layers, are_alike);
 }
 
-/// The greatest value of each pixel's neighbourhood along one axis, of `count` pixels `stride` apart.
+/// Replaces each of `count` pixels, `stride` apart, by the maximum within `radius` along this axis.
 void spread(std::vector<std::uint8_t>& mask, std::size_t first, std::size_t stride, int count, int radius) {
     std::vector<std::uint8_t> line(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < line.size(); ++i) line[i] = mask[first + i * stride];

@@ -9,7 +9,7 @@
 
 namespace candela::reference {
 
-/// What makes a pixel differ in kind from its neighbours.
+/// What distinguishes a pixel from its neighbours.
 struct PixelTrait {
     struct Layer {
         glm::vec3 position;
@@ -17,12 +17,12 @@ struct PixelTrait {
         std::uint32_t part;
         std::vector<LightState> lights;
     };
-    std::vector<Layer> layers;  ///< of what is seen, the nearest first
+    std::vector<Layer> layers;  ///< visible surfaces, nearest first
 };
 
-/// 1 for pixels that are at most `radius` away, along x and along y, from one of a pair of neighbours between
-/// which another surface begins, the surface bends by more than 6°, or one of the lights begins or ends to be
-/// hidden.
+/// A mask that is 1 within `radius` pixels, along x and along y, of an edge. An edge is between two
+/// neighbouring pixels if they show different surfaces, if the surface bends by more than 6° between them, or
+/// if a light is occluded at only one of them.
 [[nodiscard]] std::vector<std::uint8_t> find_edges(const std::vector<PixelTrait>& pixels, glm::uvec2 size,
                                                    int radius);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Embree 3 and 4: their queries are the same, and are handed over differently.
+// Embree 3 and 4 have the same queries, but pass the filter and its context differently.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -24,7 +24,7 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
     rtcOccluded1(scene, &ray);
 }
 
-/// Every surface met is put to `filter`, which finds `context` in its arguments.
+/// Calls `filter` for every hit; it finds `context` in its arguments.
 inline void intersect(RTCScene scene, RTCRayHit& query, QueryContext& context, RTCFilterFunctionN filter) {
     rtcInitRayQueryContext(&context);
     RTCIntersectArguments arguments;
@@ -41,7 +41,7 @@ using QueryContext = RTCIntersectContext;
 /// Flag of scenes that are queried with a filter.
 constexpr int filtered_queries = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
-/// Every surface met is put to `filter`, if there is one, which finds `context` in its arguments.
+/// Calls `filter`, unless it is null, for every hit; it finds `context` in its arguments.
 inline void intersect(RTCScene scene, RTCRayHit& query, QueryContext& context, RTCFilterFunctionN filter) {
     rtcInitIntersectContext(&context);
     context.filter = filter;

@@ -22,7 +22,7 @@ float flux(const Light& light, const Sphere& bounds) {
     return intensity * (directional ? pi * bounds.radius * bounds.radius : light.solid_angle);
 }
 
-/// Evenly distributed in the cone of this solid angle around the axis.
+/// Uniformly distributed in the cone of this solid angle (sr) around the axis.
 glm::vec3 direction_in_cone(glm::vec3 axis, float solid_angle, glm::vec2 u) {
     const float cosine = 1.0F - u.x * solid_angle / (2.0F * pi);
     const float sine = std::sqrt(std::max(1.0F - cosine * cosine, 0.0F));

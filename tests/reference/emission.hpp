@@ -9,8 +9,9 @@
 
 namespace candela::reference {
 
-/// Rays of light as they leave the lights: a light is drawn in proportion to its flux, and a ray of it evenly
-/// among its directions or, for a directional one, among the places at which it meets the scene.
+/// Samples rays that leave the lights. A light is drawn with a probability proportional to its flux. Its ray
+/// is uniformly distributed over its directions or, for a directional light, over the cross section of the
+/// scene's bounding sphere.
 class Emission {
  public:
     Emission(const std::vector<Light>& lights, const Sphere& bounds);
@@ -19,11 +20,11 @@ class Emission {
         std::uint32_t light;  ///< index
         Ray ray;
     };
-    /// The scene must have lights. All of `u` in [0, 1).
+    /// The scene must have lights. `which` and both components of `u` are in [0, 1).
     [[nodiscard]] Draw draw(float which, glm::vec2 u) const;
 
-    /// Density, by area, with which rays of the light meet a surface that they reach, 1/m². `cosine` is that
-    /// between the surface's normal and the light.
+    /// The density per area (1/m²) with which rays of the light hit a surface that they reach. `cosine` is
+    /// the cosine between the surface normal and the direction to the light.
     [[nodiscard]] float density(std::uint32_t light, const Arrival& arrival, float cosine) const;
 
  private:

@@ -21,20 +21,21 @@ constexpr std::uint32_t masked_group = 1;
 constexpr std::uint32_t blended_group = 2;
 
 RTCDevice new_device() {
-    // One thread builds: the scenes are small, and the order of the tree must not vary.
+    // A single thread builds: the scenes are small, and the hierarchy must always be the same.
     const RTCDevice device = rtcNewDevice("threads=1");
     if (device == nullptr) throw std::runtime_error("Embree gives no device");
     return device;
 }
 
-/// Normals transform by the cofactors of the matrix; those of a mirrored placement are turned back.
+/// Normals are transformed by the cofactors of the matrix. Mirroring flips their sign, which is undone here.
 glm::mat3 normal_matrix(const glm::mat3& placement) {
     const glm::mat3 cofactors(glm::cross(placement[1], placement[2]), glm::cross(placement[2], placement[0]),
                               glm::cross(placement[0], placement[1]));
     return glm::determinant(placement) < 0.0F ? -cofactors : cofactors;
 }
 
-/// Corners in the world, counter-clockwise from the front; mirroring has turned them round.
+/// Corners in world space, counter-clockwise as seen from the front. Mirroring flips their order, which is
+/// undone here.
 std::array<Triangle::Corner, 3> placed_corners(const Primitive& primitive, std::size_t first,
                                                const glm::mat4& to_world) {
     const glm::mat3 to_normal = normal_matrix(glm::mat3(to_world));
@@ -74,7 +75,7 @@ RTCRayHit to_embree_query(const Ray& ray) {
     return query;
 }
 
-/// A look's context: what the filter needs beside Embree's own.
+/// The context of a look() query: what the filter needs in addition to Embree's context.
 struct LookContext {
     embree::QueryContext embree;
     const Geometry* geometry;
@@ -82,7 +83,7 @@ struct LookContext {
     std::vector<Hit>* blended;
 };
 
-/// A ray through the edge between two triangles meets both.
+/// Removes duplicates: a ray through the edge between two triangles hits both of them.
 void drop_doubles(std::vector<Hit>& hits, const Geometry& geometry) {
     const auto is_same = [&](const Hit& a, const Hit& b) {
         const bool same_part = geometry.triangle(a.triangle).part == geometry.triangle(b.triangle).part;
@@ -223,7 +224,7 @@ std::optional<Hit> Geometry::closest(const Ray& ray) const {
 bool Geometry::is_blocked(const Ray& ray) const {
     RTCRay query = to_embree(ray);
     embree::occluded(solids_.get(), query);
-    return query.tfar < 0.0F;  // Embree's mark of a ray that met something
+    return query.tfar < 0.0F;  // Embree's mark of a hit
 }
 
 Sight Geometry::look(const Ray& ray) const {

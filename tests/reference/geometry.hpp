@@ -15,17 +15,17 @@
 
 namespace candela::reference {
 
-/// In world space, counter-clockwise from the front.
+/// In world space, counter-clockwise as seen from the front.
 struct Triangle {
     struct Corner {
         glm::vec3 position;
-        glm::vec3 normal;  ///< as the mesh has it, not of unit length
+        glm::vec3 normal;  ///< as in the mesh, not of unit length
         glm::vec2 uv;
     };
     std::array<Corner, 3> corners;
     glm::vec3 front;         ///< unit normal of the plane
     std::uint32_t material;  ///< index
-    std::uint32_t part;      ///< one number for each primitive of each placed mesh
+    std::uint32_t part;      ///< one number per primitive of each placed mesh
 };
 
 struct Ray {
@@ -47,7 +47,7 @@ struct Sight {
     std::optional<Hit> solid;
 };
 
-/// Around all triangles; radius 0 if there are none.
+/// A sphere around all triangles; radius 0 if there are none.
 struct Sphere {
     glm::vec3 centre{0.0F};  ///< metres
     float radius = 0.0F;     ///< metres
@@ -56,24 +56,24 @@ struct Sphere {
 /// All triangles of a scene and Embree's hierarchies over them.
 class Geometry {
  public:
-    /// Throws SceneError for faulty transforms and std::runtime_error where Embree fails.
+    /// Throws SceneError for invalid transforms and std::runtime_error if Embree fails.
     explicit Geometry(const World& world);
-    Geometry(const Geometry&) = delete;  // Embree knows it by its address
+    Geometry(const Geometry&) = delete;  // Embree stores its address
     Geometry& operator=(const Geometry&) = delete;
     ~Geometry() = default;
 
-    /// Nearest opaque or masked surface, whichever side it shows.
+    /// The nearest opaque or masked surface, from either side.
     [[nodiscard]] std::optional<Hit> closest(const Ray& ray) const;
-    /// Whether an opaque or masked surface is on the ray.
+    /// Whether the ray hits an opaque or masked surface.
     [[nodiscard]] bool is_blocked(const Ray& ray) const;
-    /// What is seen: backs of single-sided surfaces are not.
+    /// What a camera sees: backs of single-sided surfaces are invisible.
     [[nodiscard]] Sight look(const Ray& ray) const;
 
     [[nodiscard]] const Triangle& triangle(std::uint32_t index) const { return triangles_[index]; }
     [[nodiscard]] const SurfaceMaterial& material(const Triangle& triangle) const {
         return materials_[triangle.material];
     }
-    /// By how much rays start above a surface, metres: some hundred times the rounding of positions.
+    /// The distance in metres at which rays start above a surface: about 100 times the rounding of positions.
     [[nodiscard]] float ray_offset() const { return 1e-5F * bounds_.radius; }
     [[nodiscard]] const Sphere& bounds() const { return bounds_; }
 
@@ -85,7 +85,8 @@ class Geometry {
     using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release>;
     using Accelerator = std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>;
 
-    /// Triangles of one alpha mode, which follow each other; the place in the array is Embree's id.
+    /// The triangles of one alpha mode, which are consecutive. The index of the group is Embree's geometry
+    /// id.
     struct Group {
         std::uint32_t first;
         std::uint32_t count;
@@ -113,7 +114,7 @@ class Geometry {
     Accelerator all_;
 };
 
-/// Position, metres, `weights` of the second and third corner.
+/// The position in metres; `weights` are those of the second and third corner.
 [[nodiscard]] glm::vec3 position_at(const Triangle& triangle, glm::vec2 weights);
 [[nodiscard]] glm::vec3 normal_at(const Triangle& triangle, glm::vec2 weights);
 [[nodiscard]] glm::vec2 uv_at(const Triangle& triangle, glm::vec2 weights);

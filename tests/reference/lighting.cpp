@@ -11,7 +11,7 @@ namespace candela::reference {
 
 namespace {
 
-/// What a surface reflects of a light, unoccluded.
+/// The radiance that a surface reflects of a light, without occlusion.
 glm::vec3 reflected(const Arrival& light, const Surface& surface, Defect defect) {
     const float cosine = glm::dot(surface.normal, light.direction);
     if (cosine <= 0.0F) return glm::vec3(0.0F);
@@ -23,27 +23,28 @@ glm::vec3 reflected(const Arrival& light, const Surface& surface, Defect defect)
 bool is_lit(const Geometry& geometry, const Surface& surface, const Arrival& light) {
     if (glm::dot(surface.face, light.direction) <= 0.0F) return false;  // the triangle itself is in the way
     Ray ray = ray_from(surface, light.direction, geometry);
-    ray.farthest = light.distance - 2.0F * geometry.ray_offset();  // a light on a surface is not behind it
+    ray.farthest = light.distance - 2.0F * geometry.ray_offset();  // the light may be on a surface
     return !geometry.is_blocked(ray);
 }
 
-/// Of the light that a surface would reflect unoccluded, less than this share makes no visible edge: its
-/// square, the relative error of a pixel on the wrong side, is below the 1e-4 that is asked of direct light
-/// away from edges.
+/// A light that contributes less than this share of the unoccluded light makes no visible edge: the square of
+/// the share, which is the relative error of a pixel on the wrong side of the edge, is below 1e-4, the error
+/// that direct light may have away from edges.
 constexpr float faint_share = 0.005F;
 
 float power_of(glm::vec3 light) {
     return light.r + light.g + light.b;
 }
 
-/// What a surface reflects of one light.
+/// The radiance that a surface reflects of one light.
 struct Reflected {
     std::uint32_t light = 0;  ///< index
     Arrival arrival{};
     glm::vec3 radiance{0.0F};
 };
 
-/// Share that looking around has in the density with which both ways find `struck` and the light.
+/// The weight of looking around: its share in the sum of the densities with which both ways find `struck` and
+/// the light.
 float share_of_looking_around(const SceneContent& scene, const Surface& receiver, const Surface& struck,
                               const Reflected& light) {
     const glm::vec3 between = struck.position - receiver.position;
@@ -61,7 +62,7 @@ bool are_connected(const Geometry& geometry, const Surface& a, const Surface& b)
     const bool face_each_other = glm::dot(a.normal, between) > 0.0F && glm::dot(a.face, between) > 0.0F &&
                                  glm::dot(b.face, between) < 0.0F;
     if (!face_each_other) return false;
-    // From above the one to above the other: at a slant the ray would else end in the other's own triangle.
+    // The ray ends above `b`, too: at a slant it would otherwise hit the triangle of `b` itself.
     const float offset = geometry.ray_offset();
     const glm::vec3 origin = a.position + offset * a.face;
     const glm::vec3 way = b.position + offset * b.face - origin;
@@ -70,7 +71,7 @@ bool are_connected(const Geometry& geometry, const Surface& a, const Surface& b)
         {.origin = origin, .direction = way, .nearest = share, .farthest = 1.0F - share});
 }
 
-/// Leaves the states of the lights that give more than a faint share of all `powers`.
+/// Keeps the states of lights that contribute at least the faint share of the sum of `powers`.
 void drop_faint(std::vector<LightState>& states, const std::vector<float>& powers) {
     const float least = faint_share * std::accumulate(powers.begin(), powers.end(), 0.0F);
     std::size_t kept = 0;
@@ -101,7 +102,7 @@ Direct direct_light(const SceneContent& scene, const Surface& surface, Defect de
 
 glm::vec3 light_by_looking_around(const SceneContent& scene, const Surface& receiver, const Surface& struck,
                                   Sampler& sampler, Defect defect) {
-    // Weighted reservoir sampling: the light kept last is drawn in proportion to its power.
+    // Weighted reservoir sampling: the light kept last is drawn with a probability proportional to its power.
     Reflected drawn;
     float total = 0.0F;
     for (std::uint32_t i = 0; i < scene.lights.size(); ++i) {

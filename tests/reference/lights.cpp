@@ -17,7 +17,7 @@ namespace {
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// A point light here, looking along its -Z; what differs is filled in by the others.
+/// A point light with the entity's pose, which looks along its -Z. The callers fill in what differs.
 Light placed(const World& world, Entity entity, glm::vec3 intensity, bool casts_shadow) {
     const glm::mat4 to_world = world_matrix(world, entity);
     return {.kind = Light::Kind::point,
@@ -41,7 +41,7 @@ Light spot(const World& world, Entity entity, const SpotLight& source) {
     Light light = placed(world, entity, source.colour * source.intensity, source.casts_shadow);
     light.kind = Light::Kind::spot;
     light.range = source.range;
-    // The extension's reference code, its guard against equal cones included.
+    // As in the reference code of KHR_lights_punctual, including its guard against equal cones.
     const float ramp = std::cos(source.inner_cone) - std::cos(source.outer_cone);
     light.cone_scale = 1.0F / std::max(ramp, 1e-3F);
     light.solid_angle = 2.0F * pi * (1.0F - std::cos(source.outer_cone));

@@ -16,13 +16,13 @@ struct Light {
     glm::vec3 direction;  ///< unit, the way the light travels
     glm::vec3 intensity;  ///< candela; directional: lux
     float range;          ///< metres
-    float solid_angle;    ///< that it shines into, of points and spots, sr
-    float cone_scale;     ///< of the ramp between a spot's cones, in the cosine
+    float solid_angle;    ///< of the emission of points and spots, sr
+    float cone_scale;     ///< of a spot: falloff = (cosine * scale + offset)²
     float cone_offset;
     bool casts_shadow;
 };
 
-/// What a light sends to a point where nothing is in the way.
+/// The light that arrives at a point without occlusion.
 struct Arrival {
     glm::vec3 direction;   ///< unit, towards the light
     float distance;        ///< metres to the light, infinite for directional ones
@@ -31,7 +31,7 @@ struct Arrival {
 
 [[nodiscard]] std::vector<Light> lights_of(const World& world);
 
-/// KHR_lights_punctual: I / d², the cone's falloff and the window of a range.
+/// KHR_lights_punctual: I / d² times the cone's falloff and the window of the range.
 [[nodiscard]] Arrival arrival(const Light& light, glm::vec3 position);
 
 }  // namespace candela::reference

@@ -9,7 +9,7 @@ namespace candela::reference {
 
 namespace {
 
-/// IEC 61966-2-1.
+/// Decodes sRGB: IEC 61966-2-1.
 float linear(std::uint8_t encoded) {
     const double value = encoded / 255.0;
     return static_cast<float>(value > 0.04045 ? std::pow((value + 0.055) / 1.055, 2.4) : value / 12.92);
@@ -19,7 +19,7 @@ glm::vec4 decode(glm::u8vec4 texel) {
     return {linear(texel.r), linear(texel.g), linear(texel.b), static_cast<float>(texel.a) / 255.0F};
 }
 
-/// `i` brought into [0, count).
+/// Wraps `i` into [0, count).
 int wrapped(int i, int count, Wrap mode) {
     if (mode == Wrap::clamp_to_edge) return std::clamp(i, 0, count - 1);
     const int period = mode == Wrap::repeat ? count : 2 * count;

@@ -11,12 +11,12 @@
 
 namespace candela::reference {
 
-/// An image decoded to linear light.
+/// An image, decoded to linear light.
 class Texture {
  public:
     explicit Texture(const Image& image);
-    /// Between the centres of texels linear; `uv` has its origin at the image's top left. Not minified: a
-    /// texture finer than the pixels is sampled at their centres, as all else is.
+    /// Bilinear; the origin of `uv` is the top left corner of the image. There is no minification filter: a
+    /// texture finer than the pixels is sampled at pixel centres, like everything else.
     [[nodiscard]] glm::vec4 at(glm::vec2 uv) const;
 
  private:
@@ -28,7 +28,7 @@ class Texture {
     std::vector<glm::vec4> texels_;
 };
 
-/// What a surface is made of.
+/// The material of a surface.
 struct SurfaceMaterial {
     glm::vec4 base_colour;
     std::shared_ptr<const Texture> texture;  ///< null: none
@@ -36,7 +36,7 @@ struct SurfaceMaterial {
     AlphaMode alpha_mode;
     float alpha_cutoff;
 
-    /// Linear, with alpha.
+    /// Linear RGB, with alpha.
     [[nodiscard]] glm::vec4 colour(glm::vec2 uv) const {
         return texture ? base_colour * texture->at(uv) : base_colour;
     }
@@ -48,7 +48,7 @@ struct SurfaceMaterial {
 /// The materials of a scene; every image is decoded once.
 class MaterialList {
  public:
-    /// Place of the material in the list, added if it is new.
+    /// The index of the material in the list; adds it if it is new.
     [[nodiscard]] std::uint32_t index_of(const std::shared_ptr<const Material>& material);
     [[nodiscard]] std::vector<SurfaceMaterial> take() { return std::move(materials_); }
 

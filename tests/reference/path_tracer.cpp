@@ -15,7 +15,7 @@ namespace candela::reference {
 
 namespace {
 
-/// One picture in the making. Threads write to pixels of their own.
+/// A picture in progress. Each thread writes to different pixels.
 struct Trace {
     const SceneContent& scene;
     const Settings& settings;
@@ -63,7 +63,7 @@ glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen
     return sum / static_cast<double>(samples);
 }
 
-/// Direct light of all layers, noting what tells the pixel from its neighbours.
+/// Sums the direct light of all layers, and records what distinguishes the pixel from its neighbours.
 glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, PixelTrait& trait) {
     glm::vec3 sum(0.0F);
     for (const SeenSurface& layer : seen) {
@@ -90,7 +90,7 @@ void trace_pixel(Trace& trace, glm::uvec2 pixel) {
         0.5F * (trace.estimate.halves[0].pixels[i] + trace.estimate.halves[1].pixels[i]);
 }
 
-/// Rows go to whichever thread is free: each pixel's numbers depend on its place alone.
+/// Free threads take the next row: the random numbers of a pixel depend only on its position and the seed.
 void trace_rows(Trace& trace) {
     std::atomic<std::uint32_t> next_row{0};
     const auto work = [&] {

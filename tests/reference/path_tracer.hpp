@@ -12,45 +12,46 @@
 
 namespace candela::reference {
 
-/// What tests break on purpose, to see that the checks notice.
+/// Deliberate defects, with which tests verify that the checks detect them.
 enum class Defect : std::uint8_t {
     none,
     drop_cosine,  ///< surfaces receive light as if they always faced the light
-    drop_pi,      ///< surfaces reflect albedo in place of albedo / π of what they receive from lights
+    drop_pi,      ///< surfaces reflect albedo instead of albedo / π of the light from lights
     drop_bounce   ///< indirect light lacks its first bounce: light → surface → seen surface
 };
 
 struct Settings {
     glm::uvec2 size{1};          ///< pixels, neither side 0
-    std::uint32_t samples = 64;  ///< paths a pixel, even: half of them go into each half
-    /// Of indirect light: 0 none, 1 light → surface → seen surface. Without a value any number.
+    std::uint32_t samples = 64;  ///< paths per pixel; even, as half of them go into each half
+    /// Bounces of indirect light: 0 none, 1 light → surface → seen surface. Unlimited if not set.
     std::optional<std::uint32_t> bounces{};
     std::uint32_t seed = 0;
-    unsigned threads = 0;  ///< 0: as many as the machine has cores; the result does not depend on it
+    unsigned threads = 0;  ///< 0: one per core; the result does not depend on it
     Defect defect = Defect::none;
 };
 
-/// Linear radiance, no tone mapping; where nothing is hit all pictures are black.
+/// Linear radiance, without tone mapping. All pictures are black where nothing is hit.
 struct Estimate {
-    sandbox::Picture direct;                 ///< exact: every light of a scene is a point or a direction
+    sandbox::Picture direct;                 ///< exact: every light is a point or a direction
     sandbox::Picture indirect;               ///< the mean of both halves
     std::array<sandbox::Picture, 2> halves;  ///< independent estimates of the indirect light
     std::vector<std::uint8_t> hit;           ///< 1 where the pixel's centre shows a surface
-    std::vector<std::uint8_t> edge;  ///< 1 within `edge_radius` pixels of a silhouette or a shadow's edge
-    double seconds = 0.0;            ///< of wall time
+    std::vector<std::uint8_t> edge;  ///< 1 within `edge_radius` pixels of a silhouette or a shadow edge
+    double seconds = 0.0;            ///< wall time
 };
 
-/// Pixels, along x and along y, that `Estimate::edge` reaches from an edge.
+/// The reach of `Estimate::edge` around an edge, in pixels along x and along y.
 inline constexpr int edge_radius = 2;
 
 /// Traces what the camera sees through the centres of its pixels. Direct light: every light at the first
-/// surface, with a shadow ray. Indirect light: paths that go on from there, unclamped, and find the light by
-/// looking around and by looking from the lights (see lighting.hpp); ended by roulette, which leaves the mean
-/// as it is. Throws std::invalid_argument for odd or no samples and for an empty picture, SceneError if
-/// `camera` is no camera of the scene.
+/// surface, with a shadow ray. Indirect light: unclamped paths that continue from there, and that sample the
+/// light by looking around and by looking from the lights (see lighting.hpp). Russian roulette ends paths
+/// without bias. Throws std::invalid_argument if the number of samples is odd or 0 or if the picture is
+/// empty, and SceneError if `camera` is not a camera of the scene.
 ///
-/// Where it differs from the renderer: the mesh's normals never lighten what its triangles face away from;
-/// images are sampled at the pixel's centre, without mip maps; blended surfaces are ordered pixel by pixel.
+/// Differences from the renderer: a triangle that faces away from a light is never lit, whatever the normals
+/// of the mesh; images are sampled at the pixel's centre, without mip maps; blended surfaces are sorted per
+/// pixel.
 [[nodiscard]] Estimate trace(const Scene& scene, Entity camera, const Settings& settings);
 
 /// Direct and indirect light together.

@@ -9,14 +9,15 @@ namespace candela::reference {
 
 namespace {
 
-// Paths that carry less than this end by chance, in proportion to what they still carry.
+// Below this throughput, paths end by Russian roulette, with a survival probability proportional to it.
 constexpr float little = 0.25F;
-// After so many bounces some end whatever they carry: in a white room they would not.
+// After this many bounces, paths may end whatever their throughput: in a white room they would not end
+// otherwise.
 constexpr std::uint32_t many_bounces = 16;
 constexpr float survival_after_many = 0.9F;
 
-/// The next surface of a path; none where it leaves the scene, or where the mesh's normal leads below the
-/// triangle.
+/// The next surface of a path; nullopt if the path leaves the scene, or if the direction around the mesh's
+/// normal points below the triangle.
 std::optional<Surface> next_surface(const Geometry& geometry, const Surface& from, Sampler& sampler) {
     const glm::vec3 direction = cosine_direction(from.normal, sampler.next_direction());
     if (glm::dot(direction, from.face) <= 0.0F) return std::nullopt;
@@ -24,7 +25,7 @@ std::optional<Surface> next_surface(const Geometry& geometry, const Surface& fro
     return hit ? std::optional(struck_surface(geometry, *hit, direction)) : std::nullopt;
 }
 
-/// Ends the path (false), or weights it up by those that have ended.
+/// Ends the path (false), or divides its throughput by the probability of survival.
 bool survives(glm::vec3& carried, std::uint32_t bounce, Sampler& sampler) {
     const float largest = std::max({carried.r, carried.g, carried.b});
     const float survival = std::min(largest / little, bounce > many_bounces ? survival_after_many : 1.0F);

@@ -4,9 +4,8 @@
 
 namespace candela::reference {
 
-/// Radiance that a surface reflects of light which has bounced before, by one path: it goes on from the
-/// surface along directions distributed as the cosine and asks for the lights at every surface that it
-/// strikes.
+/// The radiance that a surface reflects of indirect light, from one path. The path continues from the surface
+/// in cosine-distributed directions, and samples the lights at every surface that it hits.
 [[nodiscard]] glm::vec3 indirect_light(const SceneContent& scene, const Surface& seen, Sampler& sampler,
                                        const Settings& settings);
 

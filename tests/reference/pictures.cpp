@@ -11,7 +11,7 @@ double red(const sandbox::Picture& picture, std::size_t pixel) {
     return static_cast<double>(picture.pixels[pixel].r);
 }
 
-/// Of the mean of the halves, from their difference.
+/// The error of the mean of both halves, estimated from their difference.
 double error_of_mean(const Estimate& estimate, std::size_t pixel) {
     return 0.5 * (red(estimate.halves[0], pixel) - red(estimate.halves[1], pixel));
 }

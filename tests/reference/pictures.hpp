@@ -6,27 +6,29 @@
 
 namespace candela::reference {
 
-/// The renderer's picture, whose row 0 is at the bottom, as the reference has it.
+/// The renderer's picture, whose row 0 is at the bottom, with the row order of the reference.
 [[nodiscard]] sandbox::Picture flipped(const candela::Picture& picture);
 
-/// Where both are 1 and 0, respectively.
+/// 1 where `mask` is 1 and `removed` is 0.
 [[nodiscard]] std::vector<std::uint8_t> without(const std::vector<std::uint8_t>& mask,
                                                 const std::vector<std::uint8_t>& removed);
 
-/// A mean over the pixels in `mask` of the indirect light's first channel, with its standard error, both from
-/// what the halves differ by. Pixels are independent of each other.
+/// The mean of the indirect light's red channel over the pixels in `mask`. The standard error is estimated
+/// from the difference of the halves; pixels are independent of each other.
 struct NoisyMean {
     double value;
     double error;
 };
 [[nodiscard]] NoisyMean mean_indirect(const Estimate& estimate, const std::vector<std::uint8_t>& mask);
 
-/// Mean over `mask` of the squared error against `truth`, divided by the mean of what the halves say it is: 1
-/// for a reference that knows its noise.
+/// The mean squared error against `truth` over `mask`, divided by the one that the halves predict: 1 if the
+/// prediction is right.
 [[nodiscard]] double noise_ratio(const Estimate& estimate, const sandbox::Picture& truth,
                                  const std::vector<std::uint8_t>& mask);
 
-/// Largest |a - b| / max(b, floor) of the first channel over `mask`.
+/// The largest
+/// a - b
+/// / max(b, floor) of the red channel over `mask`.
 [[nodiscard]] double worst_error(const sandbox::Picture& a, const sandbox::Picture& b,
                                  const std::vector<std::uint8_t>& mask, double floor);
 

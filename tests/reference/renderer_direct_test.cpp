@@ -12,17 +12,18 @@ using namespace candela;
 
 namespace {
 
-// A pixel is the mean of so many samples along each side. At a shadow's edge one sample is all or nothing, in
-// either picture, and in a picture that is mostly black one pixel on the wrong side outweighs all others.
+// A pixel is the mean of this many samples along each side. At a shadow edge a single sample is all or
+// nothing, in either picture, and in a mostly black picture one pixel on the wrong side would dominate the
+// error.
 constexpr int samples_across = 4;
-// An even width and an odd height: the creases of rooms run along the diagonals of their pictures and would
-// else meet pixels' centres, where it is up to rounding which of two walls is seen.
+// An even width and an odd height: the edges of rooms run along the diagonals of their pictures and would
+// otherwise pass through pixel centres, where rounding decides which of two walls is seen.
 constexpr glm::uvec2 sampled_size{640, 479};
 
 /// relMSE of the renderer's direct light.
 struct DirectErrors {
-    double samples;  ///< sample by sample, away from edges
-    double pixels;   ///< of pixels, everywhere
+    double samples;  ///< per sample, away from edges
+    double pixels;   ///< per pixel, everywhere
 };
 
 class DirectLight : public PathFixture {
@@ -43,8 +44,8 @@ class DirectLight : public PathFixture {
                     .rel_mse};
     }
 
-    /// The bounds that are asked for hold at the last of the resolutions, and the error falls on the way
-    /// there, unless nothing but rounding is left of it.
+    /// The required bounds must hold at the last resolution, and the error must decrease with each
+    /// resolution, unless only rounding error is left.
     void check_scene(const Scene& scene, const std::vector<std::uint32_t>& resolutions) {
         const reference::Estimate truth = trace(reference::Scene(scene.world), scene.camera,
                                                 {.size = sampled_size, .samples = 2, .bounces = 0});
@@ -61,7 +62,7 @@ class DirectLight : public PathFixture {
         CHECK(found.pixels <= 0.01);
     }
 
-    /// Albedos are half floats, good to 2⁻¹¹, whose square this is.
+    /// Albedos are half floats with an error of 2⁻¹¹; this is its square.
     static constexpr double rounding = 2.4e-7;
 };
 
@@ -87,7 +88,7 @@ TEST_SUITE("reference: the renderer's direct light") {
         Scene scene = shipped_scene("fins");
         std::vector<Entity> lights;
         for (auto [entity, light] : scene.world.view<PointLight>()) lights.push_back(entity);
-        // Every eighth of the 512: the shadow maps of all would take longer than all other tests.
+        // Every eighth of the 512 lights: the shadow maps of all would take longer than all other tests.
         for (std::size_t i = 0; i < lights.size(); ++i) {
             if (i % 8 != 0) scene.world.destroy(lights[i]);
         }

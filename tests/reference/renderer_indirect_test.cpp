@@ -15,8 +15,8 @@ constexpr glm::uvec2 size{32, 32};
 constexpr std::array<std::uint32_t, 4> vpl_counts{64, 256, 1024, 4096};
 constexpr std::uint32_t seeds = 8;
 
-/// Two squares of 2 m × 2 m that face each other, 1 m apart, and a light between them. What a VPL shines on
-/// is at least 1 m away: its own plate lies in its plane.
+/// Two squares of 2 m × 2 m that face each other, 1 m apart, and a light between them. What a VPL lights is
+/// at least 1 m away, as its own plate is in its plane.
 Scene facing_plates() {
     Scene scene;
     add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse({0.8F, 0.6F, 0.4F}))});
@@ -29,8 +29,8 @@ Scene facing_plates() {
     return scene;
 }
 
-/// A sphere of radius 2 m around its light; the camera stands off the centre. Seen from the surface, every
-/// other part of it is lit through the same geometry term, 1 / (4 R²), however near it is.
+/// A sphere of radius 2 m around its light, with the camera off the centre. The geometry term between any two
+/// points of the sphere is the same, 1 / (4 R²), however near they are.
 Scene furnace_sphere() {
     Scene scene;
     add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 5, diffuse(glm::vec3(0.6F)))});
@@ -39,7 +39,7 @@ Scene furnace_sphere() {
     return scene;
 }
 
-/// Slope of the line through the logarithms, by least squares.
+/// The slope of the least-squares line through the logarithms.
 template <std::size_t N>
 double log_slope(const std::array<std::uint32_t, N>& x, const std::array<double, N>& y) {
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -66,8 +66,8 @@ class RendererIndirect : public RenderFixture {
         return study::measure(reference::flipped(render(scene, size)), truth.indirect, truth.hit).rel_mse;
     }
 
-    /// The relMSE, averaged over seeds, falls at least as 1 / N^0.9, whether VPLs are points or stand for
-    /// discs that shrink with their number. Both sides make the same number of bounces.
+    /// The relMSE, averaged over seeds, must fall at least as 1 / N^0.9, whether VPLs are points or represent
+    /// discs that shrink as their number grows. Renderer and reference use the same number of bounces.
     void check_convergence(const Scene& scene, std::uint32_t bounces, std::uint32_t samples) {
         CAPTURE(bounces);
         const reference::Estimate truth = trace(reference::Scene(scene.world), scene.camera,
@@ -85,7 +85,7 @@ class RendererIndirect : public RenderFixture {
                 MESSAGE(vpl_counts[i], " VPLs: relMSE ", errors[i], ", of which the reference's noise ",
                         noise);
             }
-            // The reference's own noise adds to each, which can only make the slope less steep.
+            // The reference's noise is part of each error, which can only make the slope less steep.
             CHECK(noise < 0.5 * errors.back());
             CHECK(log_slope(vpl_counts, errors) <= -0.9);
             MESSAGE("slope ", log_slope(vpl_counts, errors));

@@ -26,9 +26,9 @@ std::uint32_t reversed(std::uint32_t x) {
     return x << 16U | x >> 16U;
 }
 
-/// A permutation in which a bit depends on itself and lower ones only: Owen's scrambling of a number whose
-/// bits are reversed. Vegdahl's constants ("Building a Better LK Hash", 2021): the first ones published are
-/// biased.
+/// A permutation in which a bit depends only on itself and lower bits: Owen scrambling of a number whose bits
+/// are reversed. The constants are Vegdahl's ("Building a Better LK Hash", 2021), because the ones that were
+/// published first are biased.
 std::uint32_t permuted(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeaU;
     x += seed;
@@ -37,8 +37,8 @@ std::uint32_t permuted(std::uint32_t x, std::uint32_t seed) {
     return x ^ (x * 0x53a22864U);
 }
 
-/// Product with Pascal's triangle modulo 2, which generates Sobol's second dimension: bit i becomes the
-/// parity of the bits whose numbers contain i.
+/// The product with Pascal's triangle modulo 2, which generates Sobol's second dimension: bit i becomes the
+/// parity of the bits whose index has all bits of i set.
 std::uint32_t pascal(std::uint32_t x) {
     x ^= x >> 16U;
     x ^= (x & 0xff00ff00U) >> 8U;
@@ -47,7 +47,7 @@ std::uint32_t pascal(std::uint32_t x) {
     return x ^ ((x & 0xaaaaaaaaU) >> 1U);
 }
 
-/// The upper 24 bits, so that 1 is out of reach.
+/// Uses the upper 24 bits, so that the result is below 1.
 float unit(std::uint32_t bits) {
     return static_cast<float>(bits >> 8U) * 0x1p-24F;
 }

@@ -8,17 +8,18 @@
 
 namespace candela::reference {
 
-/// Random numbers of one half of a pixel's paths. The first directions of its paths have well-spread points:
-/// Sobol's first two dimensions, Owen-scrambled by hashing and shuffled anew for every direction (Burley,
-/// "Practical Hash-based Owen Scrambling", JCGT 2020). All else is plain random.
+/// Random numbers for one half of a pixel's paths. The first directions of its paths use well-distributed
+/// points: the first two dimensions of Sobol's sequence, Owen-scrambled by hashing and shuffled differently
+/// for every direction (Burley, "Practical Hash-based Owen Scrambling", JCGT 2020). Everything else is
+/// pseudo-random.
 class Sampler {
  public:
     /// Different seeds give independent numbers.
     explicit Sampler(std::uint64_t seed);
 
-    /// Begins path `index`.
+    /// Starts path `index`.
     void start(std::uint32_t index);
-    /// In [0, 1)², for the path's next direction.
+    /// A point in [0, 1)², for the path's next direction.
     [[nodiscard]] glm::vec2 next_direction();
     /// In [0, 1).
     [[nodiscard]] float next();
@@ -34,14 +35,14 @@ class Sampler {
     std::size_t direction_ = 0;
 };
 
-/// The seed of a pixel's half.
+/// The seed for one half of a pixel's paths.
 [[nodiscard]] std::uint64_t pixel_seed(std::uint32_t seed, glm::uvec2 pixel, std::uint32_t half);
 
-/// The vector of this length at right angles to a unit vector, at an angle (radians) from a fixed one of
-/// those.
+/// A vector of this length, perpendicular to the unit vector `axis`. `angle` (radians) is measured from a
+/// fixed perpendicular direction.
 [[nodiscard]] glm::vec3 across(glm::vec3 axis, float length, float angle);
 
-/// Direction above a surface, distributed as the cosine to its unit normal.
+/// A cosine-distributed direction above a surface with this unit normal.
 [[nodiscard]] glm::vec3 cosine_direction(glm::vec3 normal, glm::vec2 u);
 
 }  // namespace candela::reference

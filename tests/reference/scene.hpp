@@ -8,11 +8,11 @@ namespace candela::reference {
 
 struct SceneContent;
 
-/// A world as the path tracer sees it. Keeps what it needs: the world may go away. Tracing does not change
-/// it, so that several threads may trace the same scene.
+/// A world, prepared for the path tracer. Copies what it needs: the world may be destroyed. Tracing does not
+/// change the scene, so several threads may trace it at once.
 class Scene {
  public:
-    /// Throws SceneError if a transform is faulty and std::runtime_error where Embree fails.
+    /// Throws SceneError if a transform is invalid and std::runtime_error if Embree fails.
     explicit Scene(const World& world);
     ~Scene();
     Scene(Scene&& other) noexcept;

@@ -15,7 +15,7 @@ struct PlacedCamera {
     glm::mat4 to_world;
 };
 
-/// What a Scene holds.
+/// The contents of a Scene.
 struct SceneContent {
     explicit SceneContent(const World& world);
 

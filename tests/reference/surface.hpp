@@ -10,8 +10,8 @@ namespace candela::reference {
 /// A point from which light is reflected.
 struct Surface {
     glm::vec3 position;  ///< metres
-    glm::vec3 face;      ///< unit normal of the triangle, on the side that is looked at
-    glm::vec3 normal;    ///< unit, by which light is weighted
+    glm::vec3 face;      ///< unit normal of the triangle, on the side that the ray hit
+    glm::vec3 normal;    ///< unit normal that light is weighted with
     glm::vec3 albedo;    ///< linear
 };
 
@@ -22,16 +22,16 @@ struct SeenSurface {
     std::uint32_t part;  ///< of the geometry
 };
 
-/// What is seen along a ray, the nearest first: blended surfaces, each in front of what their alpha leaves of
-/// those behind, then the solid one. They are shaded by the normals of the mesh.
+/// The surfaces seen along a ray, nearest first: blended surfaces, each weighted by the transparency of those
+/// in front of it, then the solid one. They are shaded with the normals of the mesh.
 [[nodiscard]] std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray);
 
-/// A surface that light bounces off: flat, as its triangle is. The back of a single-sided one is black.
+/// A surface for bounced light, with the flat normal of its triangle. The back of a single-sided surface is
+/// black.
 [[nodiscard]] Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction);
 
-/// The ray that leaves the surface on the side that is looked at. It starts above its own triangle, and a
-/// little on its way, so that of two walls that meet in a corner neither hides what lies in the corner
-/// itself.
+/// A ray that leaves the surface on the side that was hit. It starts above its own triangle, and a little
+/// along its direction, so that where two walls meet in a corner, neither hides points in the corner itself.
 [[nodiscard]] inline Ray ray_from(const Surface& surface, glm::vec3 direction, const Geometry& geometry) {
     const float offset = geometry.ray_offset();
     return {.origin = surface.position + offset * surface.face,

@@ -28,7 +28,7 @@ bool is_same(const Estimate& a, const Estimate& b) {
            a.hit == b.hit && a.edge == b.edge;
 }
 
-/// Correlation of the errors that the halves make, over the red of all pixels.
+/// The correlation of the errors of two halves, over the red channel of all pixels.
 double correlation(const sandbox::Picture& a, const sandbox::Picture& b, const sandbox::Picture& truth) {
     double ab = 0.0;
     double aa = 0.0;
@@ -68,8 +68,8 @@ TEST_SUITE("reference: tracer") {
         const Estimate truth = traced(scene, {.size = size, .samples = 512, .bounces = 2});
         const Estimate one = traced(scene, {.size = size, .samples = 16, .bounces = 2, .seed = 1});
         const Estimate two = traced(scene, {.size = size, .samples = 16, .bounces = 2, .seed = 2});
-        // Of 2,304 pairs the correlation has a standard error of 2 %, or some more where a few of them weigh
-        // most.
+        // With 2,304 pairs the correlation has a standard error of 2 %, or somewhat more if a few of them
+        // dominate.
         CHECK(std::abs(correlation(one.halves[0], one.halves[1], truth.indirect)) < 0.15);
         CHECK(std::abs(correlation(one.halves[0], two.halves[0], truth.indirect)) < 0.15);
     }
@@ -97,15 +97,15 @@ TEST_SUITE("reference: tracer") {
             CHECK(mean > last);
             last = mean;
         }
-        // 0.5⁶ of the light is left after six bounces.
+        // After six bounces, 0.5⁶ of the light is left.
         const reference::NoisyMean all = indirect(std::nullopt);
         CHECK(all.value > last);
         CHECK(all.value - last < all.value / 64.0 + 4.0 * all.error);
     }
 
     TEST_CASE("paths end without a loss in a white room, however long they get") {
-        // Half of each wall is open, so that all light leaves in the end: roulette after many bounces must
-        // not show.
+        // In a closed box of albedo 0.97 paths get long: Russian roulette after many bounces must not change
+        // the mean.
         Scene scene;
         add(scene.world, Transform{}, MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.97F)))});
         scene.light = add(scene.world, Transform{}, PointLight{});
@@ -114,7 +114,7 @@ TEST_SUITE("reference: tracer") {
             const Estimate estimate = traced(scene, {.size = {16, 16}, .samples = 128, .bounces = bounces});
             return reference::mean_indirect(estimate, estimate.hit);
         };
-        // Of what arrives after bounce 400, 0.97⁴⁰⁰ = 5e-6 is left.
+        // After bounce 400, 0.97⁴⁰⁰ = 5e-6 of the light is left.
         const reference::NoisyMean limited = mean(400);
         const reference::NoisyMean any = mean(std::nullopt);
         CHECK(std::abs(any.value - limited.value) < 4.0 * std::hypot(any.error, limited.error));

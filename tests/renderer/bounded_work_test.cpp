@@ -1,5 +1,5 @@
-// Software drivers end all loops of an invocation together after 65,535 turns, and say nothing. More VPLs,
-// lights and tree nodes than that are the sum of their parts all the same.
+// Software drivers silently end all loops of a shader invocation after 65,535 iterations in total. Sums over
+// more VPLs, lights and tree nodes than that must still be complete.
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr glm::uvec2 size{8, 6};
 
-/// So near to the back wall that the light of a VPL is the same in all the picture.
+/// A view of the back wall so narrow that the light of a VPL is the same in the whole picture.
 Scene patch_of_wall() {
     Scene scene = cornell_box();
     scene.camera =
@@ -22,7 +22,7 @@ Scene patch_of_wall() {
     return scene;
 }
 
-/// Lights `first` to `last` of a sequence of dim ones around the ground's middle.
+/// Lights `first` to `last` (exclusive) of a sequence of dim ones around the middle of the ground.
 Scene lit_ground(std::uint32_t first, std::uint32_t last, float range) {
     Scene scene = ground();
     for (std::uint32_t i = first; i < last; ++i) {
@@ -46,7 +46,7 @@ class BoundedWork : public PathFixture {
  protected:
     Picture picture(const Scene& scene, const Configuration& configuration, glm::uvec2 of_size = size) {
         configure(configuration);
-        renderer.invalidate();  // the scene may stand where the last one stood
+        renderer.invalidate();  // the scene may have the address of the previous one
         return render(scene, of_size);
     }
 };
@@ -66,7 +66,8 @@ TEST_SUITE("bounded work") {
             configuration.visibility.method = VplVisibility::rays;
             configuration.vpls.count = 8192;
         }
-        // Each of 64 classes asks so few that nothing is bounded, and on a plane they add up to all.
+        // Each of the 64 classes gathers so few VPLs that no bound applies, and on a plane they add up to all
+        // VPLs.
         configuration.interleave = Interleave::eight;
         constexpr glm::uvec2 whole_classes{16, 12};
         const Picture shared = picture(scene, configuration, whole_classes);
@@ -75,8 +76,8 @@ TEST_SUITE("bounded work") {
         for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
             CAPTURE(to_string(path));
             configuration.path = path;
-            // The light of the nearest VPL changes by 1e-4 over the picture; 100,000 floats are added up in
-            // another order.
+            // The light of the nearest VPL varies by 1e-4 over the picture, and 100,000 floats are added up
+            // in another order.
             CHECK(worst_error(picture(scene, configuration, whole_classes), shared, 1e-12) < 1e-3);
         }
     }
@@ -102,8 +103,8 @@ TEST_SUITE("bounded work") {
             CAPTURE(to_string(path));
             Configuration configuration = direct_only();
             configuration.path = path;
-            // Each of so many like terms is rounded to half a unit in the last place of the sum so far: 7e4 ·
-            // 2⁻²⁵ at most.
+            // Each of so many equal terms is rounded to half a unit in the last place of the sum so far: at
+            // most 7e4 · 2⁻²⁵.
             CHECK(worst_error(picture(scene, configuration), expected, 1e-12) < 2.5e-3);
         }
     }
@@ -127,7 +128,7 @@ TEST_SUITE("bounded work") {
         const Picture whole = picture(behind_a_pane(lit_ground(0, most, range)), direct_only());
         CHECK(mean(whole) > 0.01);
         CHECK(worst_error(whole, sum(parts), 1e-12) <
-              1e-3);  // 16,384 roundings of the sum, each 2⁻²⁵ of it at most
+              1e-3);  // 16,384 roundings of at most 2⁻²⁵ of the sum each
         renderer.invalidate();
         CHECK_THROWS_WITH_AS(static_cast<void>(render(behind_a_pane(lit_ground(0, most + 1, range)), size)),
                              "16385 lights: where there are blended surfaces, 16384 are possible",
@@ -144,6 +145,6 @@ TEST_SUITE("bounded work") {
         const EnergyAccount flux = renderer.report().vpls->flux;
         const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;
         CHECK(flux.emitted.g > 1.0);
-        CHECK(glm::abs(rest.g) < 1e-4 * flux.emitted.g);  // sums of some hundred floats
+        CHECK(glm::abs(rest.g) < 1e-4 * flux.emitted.g);  // sums of a few hundred floats
     }
 }

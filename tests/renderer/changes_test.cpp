@@ -124,7 +124,8 @@ TEST_SUITE("changes") {
         lights.entries[2].light.position = {1, 2, 3};
         CHECK(plan_paths(lights, 0.6F, settings) == before);
 
-        // A light 1 % brighter takes a path or two from the others; the points of their sequences stay.
+        // A light that is 1 % brighter takes one or two paths from the others. The points of their sequences
+        // stay.
         lights.entries[2].flux *= 1.01F;
         const auto points_of = [](const VplPlan& plan) {
             std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> points;

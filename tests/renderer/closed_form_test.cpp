@@ -15,12 +15,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr glm::uvec2 size{96, 64};
-// What is asked for. Floats and the albedo's half floats (2⁻¹¹) leave room: acne and leaks do not.
+// The required accuracy. It allows for floats and for albedos in half floats (2⁻¹¹), not for acne or leaks.
 constexpr double tolerance = 0.005;
 
 using Irradiance = std::function<double(glm::dvec3 point)>;
 
-/// A flat surface in the world.
+/// A plane in world space.
 struct Plane {
     glm::dvec3 point{0.0};
     glm::dvec3 normal{0.0, 1.0, 0.0};
@@ -33,8 +33,7 @@ double point_irradiance(glm::dvec3 light, glm::dvec3 at, glm::dvec3 normal) {
     return std::max(glm::dot(to_light, normal), 0.0) / (r * r * r);
 }
 
-/// KHR_lights_punctual: the square of a ramp in the cosine, 1 from the inner cone on, 0 outside the outer
-/// one.
+/// KHR_lights_punctual: the square of a ramp in the cosine, 1 inside the inner cone, 0 outside the outer one.
 double cone(double cosine, double inner, double outer) {
     const double x = (cosine - std::cos(outer)) / (std::cos(inner) - std::cos(outer));
     return std::pow(std::clamp(x, 0.0, 1.0), 2.0);
@@ -42,7 +41,7 @@ double cone(double cosine, double inner, double outer) {
 
 class ClosedForm : public RenderFixture {
  protected:
-    /// Both paths, shadows and all, without indirect light, against ρ/π · E at every pixel.
+    /// Compares both paths, with shadows and without indirect light, with ρ/π · E at every pixel.
     void check(const Scene& scene, const Plane& plane, double albedo, const Irradiance& irradiance) {
         const Picture expected = expected_picture(scene, size, plane.point, plane.normal, [&](glm::dvec3 at) {
             return glm::dvec3(albedo / pi * irradiance(at));
@@ -56,8 +55,9 @@ class ClosedForm : public RenderFixture {
             Configuration configuration = linear_configuration(path);
             configuration.indirect = false;
             configure(configuration);
-            renderer.invalidate();  // the scenes of a loop lie at one address
-            // Where falloffs run out to zero they cancel in floats: there, relative to 10⁻⁴ of the peak.
+            renderer.invalidate();  // the scenes of a loop have the same address
+            // Where a falloff reaches zero its float terms cancel: there, the error is relative to 10⁻⁴ of
+            // the peak.
             CHECK(worst_error(render(scene, size), expected, std::max(1e-4 * peak, 1e-9)) < tolerance);
         }
     }
@@ -92,7 +92,7 @@ TEST_SUITE("closed forms") {
         struct Cone {
             float inner, outer;
         };
-        // The last is wider than a flat map can hold: its shadow comes from a cube.
+        // The last one is wider than a flat map can cover: its shadow comes from a cube map.
         for (const Cone& angles : {Cone{0.3F, 0.6F}, Cone{0.0F, 0.7854F}, Cone{0.2F, 1.4F}}) {
             const Transform pose = looking({0.6F, 1.5F, 0.3F}, {0.1F, 0.0F, -0.3F});
             scene.world.set(scene.light, pose);
@@ -156,7 +156,8 @@ TEST_SUITE("closed forms") {
         for (const float mirror : {1.0F, -1.0F}) {
             CAPTURE(mirror);
             Scene scene;
-            // Turned within a parent that scales unevenly: neither rotation nor scale transforms the normal.
+            // Rotated in a parent with non-uniform scale: neither rotation nor scale alone transforms the
+            // normal.
             const Entity parent = add(scene.world, Transform{.scale = {mirror * 1.5F, 0.6F, 1.2F}});
             const glm::quat turn = glm::angleAxis(0.5F, glm::normalize(glm::vec3(1.0F, 0.3F, 0.4F)));
             const Entity plane =
@@ -164,7 +165,7 @@ TEST_SUITE("closed forms") {
                     MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
             scene.light = add(scene.world, at(light), PointLight{});
             scene.camera = add(scene.world, looking({0.2F, 2.5F, 0.6F}, {0, 0, 0}), Camera{});
-            // The plane from its tangents.
+            // The normal of the plane, from its tangents.
             const glm::dmat4 matrix(world_matrix(scene.world, plane));
             glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(matrix[2]), glm::dvec3(matrix[0])));
             normal *= normal.y < 0.0 ? -1.0 : 1.0;
@@ -192,7 +193,7 @@ TEST_SUITE("closed forms") {
     }
 
     TEST_CASE_FIXTURE(ClosedForm, "images are decoded from sRGB and lie as glTF says") {
-        // Blocks of 4 × 4 texels, so that their middles are free of filtering.
+        // Blocks of 4 × 4 texels, so that filtering does not reach their middles.
         constexpr std::uint32_t texels = 16;
         constexpr float half = 2.0F;
         Image image{.width = texels, .height = texels, .texels = {}};
@@ -212,10 +213,10 @@ TEST_SUITE("closed forms") {
         add(scene.world, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}), DirectionalLight{.illuminance = 3.0F});
         scene.camera = add(scene.world, looking({0.1F, 3.0F, 0.9F}, {0, 0, 0}), Camera{});
 
-        // The image's bytes in the middle of each block; -1 elsewhere.
+        // The bytes of the image in the middle of each block; -1 elsewhere.
         const Picture expected = expected_picture(scene, size, {}, {0, 1, 0}, [&](glm::dvec3 p) {
             const glm::dvec2 at = (glm::dvec2(p.x, p.z) / (2.0 * static_cast<double>(half)) + 0.5) * 16.0;
-            // Filtering reaches half a texel; a texel is 8 pixels wide at least, so nothing is minified.
+            // Filtering reaches half a texel. A texel is at least 8 pixels wide, so nothing is minified.
             const glm::dvec2 from_middle = glm::abs(glm::mod(at, 4.0) - 2.0);
             const bool outside = std::min({at.x, at.y, 16.0 - at.x, 16.0 - at.y}) < 0.0;
             if (outside || std::max(from_middle.x, from_middle.y) > 1.4) return glm::dvec3(-1.0);
@@ -243,7 +244,7 @@ TEST_SUITE("closed forms") {
                 }
             }
             CHECK(compared > picture.pixels.size() / 4);
-            // Drivers decode by approximation: half a step of the eight bits is theirs.
+            // Drivers may approximate the decoding by up to half a step of 8 bits.
             CHECK(worst < 0.5);
         }
     }

@@ -21,7 +21,7 @@ Faults faults_of(std::string_view json) {
     return result.faults;
 }
 
-/// A configuration that differs from the default in everything.
+/// A configuration in which every setting differs from the default.
 Configuration unusual() {
     Configuration c;
     c.path = ShadingPath::forward;
@@ -158,7 +158,7 @@ TEST_SUITE("configuration") {
             for (const PassRecord& pass : renderer.last_passes()) {
                 names += names.empty() ? "" : " ";
                 names += pass.name;
-                // Each has its paragraph, in the same order.
+                // Each pass has a paragraph, in the same order.
                 at = text.find(" " + std::string(pass.name) + "\n", at);
                 CHECK(at != std::string::npos);
             }
@@ -190,7 +190,7 @@ TEST_SUITE("configuration") {
             }
             return barriers;
         };
-        // The first of each is about the frame before, whose VPLs and radiance are overwritten.
+        // The first barrier of each waits for the previous frame, whose VPLs and radiance are overwritten.
         CHECK(barriers_of(ShadingPath::deferred) ==
               "surfel-light: storage\nsurfel-bounce: storage\ndeferred: image access + storage\ntransparent: "
               "framebuffer\n"

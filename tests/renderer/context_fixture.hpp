@@ -9,7 +9,8 @@
 
 namespace candela {
 
-/// The kind of context that this run of the tests asks for: `--context=egl|osmesa`.
+/// The kind of context that this run of the tests uses: `--context=egl
+/// osmesa`.
 [[nodiscard]] ContextKind tested_context();
 void set_tested_context(ContextKind kind);
 
@@ -17,7 +18,7 @@ void set_tested_context(ContextKind kind);
 [[nodiscard]] bool tests_verify();
 void set_tests_verify(bool on);
 
-/// A renderer as this run of the tests asks for it.
+/// A renderer with the options of this run of the tests.
 class TestedRenderer : public Renderer {
  public:
     explicit TestedRenderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {})
@@ -29,8 +30,8 @@ class TestedRenderer : public Renderer {
 /// Makes a context of the tested kind current.
 [[nodiscard]] std::unique_ptr<HeadlessContext> make_current_context();
 
-/// A context of its own, current, and a device for each test case. At the end of the test case nothing may be
-/// left of the objects made for the device, and the driver must have had nothing to complain about.
+/// Each test case has its own current context and device. At the end of the test case all objects made for
+/// the device must be gone, and the driver must not have reported anything.
 class GlFixture {
  public:
     GlFixture();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr glm::uvec2 size{48, 36};
 
-/// A small picture by every path and every visibility of VPLs, and by each path interleaved.
+/// Small configurations: every path, every VPL visibility, and each path interleaved.
 std::vector<Configuration> configurations() {
     std::vector<Configuration> all;
     for (const ShadingPath path : all_shading_paths) {
@@ -36,7 +36,7 @@ struct Shown {
     std::vector<Picture> pictures;
 };
 
-/// The Cornell box in a context of that kind. The light then moves, so that VPLs are brought after it.
+/// The Cornell box in a context of that kind. Then the light moves, so that VPLs are updated.
 Shown show(ContextKind kind) {
     const auto context = HeadlessContext::create(kind, {.debug = true});
     context->make_current();

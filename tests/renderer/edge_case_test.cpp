@@ -21,8 +21,8 @@ bool is_black(const Picture& picture) {
                                [](const glm::vec3& pixel) { return pixel == glm::vec3(0.0F); });
 }
 
-/// Whether no light gets into a box from -1 to 1. Shadow maps leak within a texel or two of a silhouette: the
-/// seams of the walls are left out, to a hundredth.
+/// Whether no light gets into a box from -1 to 1. Shadow maps leak within one or two texels of a silhouette,
+/// so pixels within 0.01 of the seams between walls are ignored.
 bool is_dark_inside(const Scene& scene, const Picture& picture) {
     for (std::uint32_t i = 0; i < picture.pixels.size(); ++i) {
         const PixelRay ray =
@@ -36,8 +36,7 @@ bool is_dark_inside(const Scene& scene, const Picture& picture) {
     return true;
 }
 
-/// The same light, surfaces and view, `factor` times as large; with intensities by its square, just as
-/// bright.
+/// The Cornell box, `factor` times as large. Intensities are scaled by factor², so that it is as bright.
 Scene scaled_cornell_box(float factor) {
     Scene scene = cornell_box();
     std::vector<Entity> all;
@@ -55,7 +54,7 @@ Scene scaled_cornell_box(float factor) {
 
 class EdgeCases : public RenderFixture {
  protected:
-    /// In both paths, which must agree.
+    /// Renders with both paths, which must agree.
     Picture render_both(const Scene& scene, Configuration configuration = linear_configuration()) {
         configuration.path = ShadingPath::forward;
         configure(configuration);
@@ -125,7 +124,7 @@ TEST_SUITE("edge cases") {
             scene.world.set(scene.light, at(position));
             const Picture picture = render_both(scene, configuration);
             CHECK(mean(picture) > 1e-3);
-            // All the light is accounted for, wherever it went.
+            // All light is accounted for, wherever it went.
             const EnergyAccount flux = renderer.report().vpls->flux;
             const glm::dvec3 sum = flux.absorbed + flux.escaped + flux.truncated + flux.roulette;
             CHECK(std::abs(sum.r / flux.emitted.r - 1.0) < 1e-3);
@@ -139,7 +138,7 @@ TEST_SUITE("edge cases") {
         Configuration configuration = linear_configuration();
         configuration.show = Show::direct;
         CHECK(is_dark_inside(scene, render_both(scene, configuration)));
-        // The walls' backs, which it shines on, reflect nothing.
+        // The backs of the walls, which the light reaches, reflect nothing.
         configuration.show = Show::total;
         CHECK(is_dark_inside(scene, render_both(scene, configuration)));
         scene.world.remove<PointLight>(scene.light);
@@ -157,14 +156,14 @@ TEST_SUITE("edge cases") {
             configure(linear_configuration(path));
             for (const glm::uvec2 odd :
                  {glm::uvec2(1, 1), glm::uvec2(4096, 1), glm::uvec2(1, 300), glm::uvec2(7, 5)}) {
-                // The whole width shows the box.
+                // The box fills the whole width.
                 const float aspect = static_cast<float>(odd.x) / static_cast<float>(odd.y);
                 scene.world.set(scene.camera, Camera{.vertical_fov = 0.6F / std::max(aspect, 1.0F)});
                 const Picture picture = render(scene, odd);
                 CHECK(is_sane(picture));
                 CHECK(mean(picture) > 0.01);
             }
-            // One pixel is the middle one of three by three, whose centre it shares.
+            // The single pixel has the same centre as the middle pixel of 3 × 3.
             CHECK(worst_error({{1, 1}, {render(scene, {3, 3}).at(1, 1)}}, render(scene, {1, 1}), 1e-4) <
                   1e-3);
         }
@@ -205,8 +204,8 @@ TEST_SUITE("edge cases") {
             CAPTURE(factor);
             const Picture picture = render_both(scaled_cornell_box(factor));
             CHECK(std::abs(mean(picture) / mean(usual) - 1.0) < 2e-3);
-            // Pixels on edges fall to either side by rounding, and texels of shadow maps: fewer than one in a
-            // hundred.
+            // Rounding puts pixels on edges, and texels of shadow maps, on either side: less than 1 % of the
+            // pixels.
             std::size_t off = 0;
             for (std::size_t i = 0; i < usual.pixels.size(); ++i) {
                 const glm::vec3 d = glm::abs(picture.pixels[i] - usual.pixels[i]);
@@ -231,7 +230,8 @@ TEST_SUITE("edge cases") {
             CHECK(worst_error(picture, usual, 1e-6) < 1e-3);
             if (factor < 1.0F) continue;
             configure({});
-            // All that is lit is white: not black or random, as where the curve divides infinity by itself.
+            // All lit pixels are white, not black or random, as they would be if the tone curve divided
+            // infinity by itself.
             CHECK(worst_error(render(scene, size), lit, 1.0) < 1e-5);
         }
     }
@@ -270,7 +270,7 @@ TEST_SUITE("edge cases") {
         add(scene.world, looking({0, 1.5F, 1}, {0, 0, 0}),
             SpotLight{.intensity = 0.6F, .casts_shadow = false});
         Configuration configuration = linear_configuration();
-        // A cube of 512² texels takes 6 MiB, a map of 1024² takes 4.
+        // A cube map of 512² texels takes 6 MiB, a map of 1024² takes 4 MiB.
         struct Case {
             std::uint32_t budget, with, without;
         };
@@ -304,7 +304,7 @@ TEST_SUITE("edge cases") {
         }
         Picture many = render_both(scene, configuration);
         for (glm::vec3& pixel : many.pixels) pixel /= 300.0F;
-        // A sum of 300 floats. A cube of 16² takes 6 KiB: 170 of them fill the budget.
+        // A sum of 300 floats. A cube map of 16² takes 6 KiB: 170 of them fill the budget.
         CHECK(worst_error(many, one, 1e-6) < 1e-4);
         CHECK(renderer.report().lights.with_shadow == 170);
         CHECK(renderer.report().lights.without_shadow == 130);

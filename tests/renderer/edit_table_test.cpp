@@ -1,4 +1,4 @@
-// Which passes run after which edit, in the frame right after it, by the graph's own record.
+// Which passes run in the frame after each edit, according to the graph's own record.
 
 #include <doctest/doctest.h>
 
@@ -19,15 +19,15 @@ using namespace candela;
 
 namespace {
 
-// x: runs, by every path that has such a pass; .: does not. `surfaces` are gbuffer and depth-prepass,
-// `shading` forward, deferred and transparent. Of the lists of lights, `tiles` and `clusters` are those
-// unbound in depth, `bounded` those that the depth of surfaces bounds, which `depths` tells, and `blended`
-// those of the blended surfaces in front.
+// x: the pass runs, in every path that has it; .: it does not run. `surfaces` stands for gbuffer and
+// depth-prepass, `shading` for forward, deferred and transparent. Of the light lists, `tiles` and `clusters`
+// are not bounded by the depths of surfaces, `bounded` are bounded by the depths that `depths` computes, and
+// `blended` are those for blended surfaces in front of them.
 //
-// Passes that read transforms (scene-gather, lights, view) look again whenever one has changed, and stop
-// there if theirs is where it was. What only the picture's size and settings change is shaded anew from
-// surfaces that are found anew, as the targets in between are not kept. Of the passes of VPLs, those from
-// paths to vpl-maps are of traced ones, and those from motion on of surfels.
+// Passes that read transforms (scene-gather, lights, view) run whenever a transform has changed; passes that
+// depend on them run only if their results differ. After a change of the picture's size or of a setting, the
+// surfaces are rendered and shaded again, because intermediate targets are not kept. Of the VPL passes, those
+// from `paths` to `vpl-maps` belong to traced VPLs, those from `motion` on to surfels.
 constexpr std::string_view table = R"(
                      gather upload instances bvh lights plan shadows light-upload view view-upload view-cull paths trace vpl-constants vpl-maps motion spread surfels visibility surfel-light surfel-bounce surfel-constants surfel-maps surfaces tiles tile-grid clusters cluster-grid depths bounded blended shading tone-map
 first frame            x      x        x      x    x     x      x         x        x        x          x       x     x         x          x       x      x       x        x           x             x              x              x         x       x       x        x          x         x       x       x       x       x
@@ -53,7 +53,7 @@ more VPLs              .      .        .      .    .     .      .         .     
 another path           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         x       .       .        .          .         .       .       .       x       x
 )";
 
-/// The column of a path's pass.
+/// The column for a pass of a path.
 std::string column_of(std::string_view pass, const Configuration& configuration) {
     const ShadingPath path = configuration.path;
     static const std::map<std::string_view, std::string> columns{
@@ -164,7 +164,7 @@ class EditTable : public RenderFixture {
             {"target doubles",
              [&] {
                  size_ = {88, 60};
-             }},  // the view's matrices stay
+             }},  // the view's matrices do not change
             {"indirect light shown", [&] { configuration_.show = Show::indirect; }},
             {"exposure changes", [&] { configuration_.tone_map.exposure_ev += 1.0F; }},
             {"more VPLs", [&] { configuration_.vpls.count += 8; }},
@@ -176,7 +176,7 @@ class EditTable : public RenderFixture {
         };
     }
 
-    /// The first frame, and each edit in a scene at rest.
+    /// Checks the first frame, and each edit after all work is done.
     void check_all() {
         check("first frame");
         for (const Edit& edit : edits()) {
@@ -186,7 +186,7 @@ class EditTable : public RenderFixture {
         }
     }
 
-    /// A frame; checks its passes against the row of that name.
+    /// Renders a frame and compares its passes with the row of that name.
     void check(const std::string& name) {
         CAPTURE(name);
         configure(configuration_);
@@ -201,7 +201,7 @@ class EditTable : public RenderFixture {
         checked_.insert(name);
     }
 
-    /// Renders until all work that was left is done.
+    /// Renders until no work is left.
     void come_to_rest() {
         for (int frame = 0; frame < 100; ++frame) {
             static_cast<void>(render(scene_, size_));

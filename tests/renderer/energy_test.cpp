@@ -14,7 +14,9 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr glm::uvec2 size{4, 4};
 
-/// Largest |a - b| over the channels, relative to b's largest.
+/// The largest
+/// a - b
+/// over the channels, relative to the largest channel of b.
 double relative_error(glm::dvec3 a, glm::dvec3 b) {
     const glm::dvec3 d = glm::abs(a - b);
     return std::max({d.r, d.g, d.b}) / std::max({b.r, b.g, b.b});
@@ -41,8 +43,8 @@ class Energy : public RenderFixture {
     }
 };
 
-/// Three walls and a floor of different albedos under lights of every kind: paths escape, and roulette is not
-/// even.
+/// Three walls and a floor of different albedos, with lights of every kind: paths escape, and Russian
+/// roulette is not uniform.
 Scene open_scene() {
     Scene scene = cornell_box();
     add(scene.world, looking({0.5F, 1.2F, 1.5F}, {-0.3F, 0.4F, 0}),
@@ -61,21 +63,23 @@ TEST_SUITE("energy") {
                 CAPTURE(bounces);
                 const VplReport vpls = trace(furnace_box(albedo), {.count = 500, .bounces = bounces});
                 const EnergyAccount& flux = vpls.flux;
-                // A light of 1 cd emits 4π; sums of a few hundred floats.
+                // A light of 1 cd emits 4π lm; these are sums of a few hundred floats.
                 CHECK(relative_error(flux.emitted, glm::dvec3(4.0 * pi)) < 1e-4);
                 CHECK(relative_error(accounted(flux), flux.emitted) < 1e-3);
                 CHECK(flux.escaped == glm::dvec3(0.0));
-                // All paths carry the same, so that roulette returns exactly what it takes, up to rounding.
+                // All paths carry the same flux, so roulette returns exactly what it takes, except for
+                // rounding.
                 CHECK(relative_error(flux.roulette + flux.emitted, flux.emitted) < 1e-4);
                 const double left = std::pow(static_cast<double>(albedo), bounces);
                 CHECK(relative_error(flux.truncated, left * flux.emitted) < 1e-3);
-                CHECK(vpls.rays == vpls.alive);  // every ray meets a wall
+                CHECK(vpls.rays == vpls.alive);  // every ray hits a wall
             }
         }
     }
 
     TEST_CASE_FIXTURE(Energy, "what leaves an open scene counts as escaped") {
-        // Half of a light's rays meet an endless plane; of one 8 m wide at 0.1 m, all but 0.6 % of that half.
+        // Half of a light's rays hit an infinite plane. A plane 8 m wide, 0.1 m away, gets all but 0.6 % of
+        // that half.
         Scene scene = ground();
         scene.world.set(scene.light, at({0, 0.1F, 0}));
         scene.world.set(scene.light, PointLight{.intensity = 2.0F});
@@ -85,9 +89,9 @@ TEST_SUITE("energy") {
         CHECK(vpls.alive < 2000);
         CHECK(relative_error(flux.emitted, glm::dvec3(8.0 * pi)) < 1e-4);
         CHECK(relative_error(accounted(flux), flux.emitted) < 1e-3);
-        // Solid angle of a square of half width a at height h: 4 asin(a² / (a² + h²)).
+        // The solid angle of a square of half width a at height h: 4 asin(a² / (a² + h²)).
         const double met = 4.0 * std::asin(16.0 / (16.0 + 0.01)) / (4.0 * pi);
-        // 4,000 low-discrepancy points on a sphere: an error of the order of 1/N · log N.
+        // 4,000 low-discrepancy points on a sphere: an error of the order of log N / N.
         CHECK(relative_error(flux.escaped, (1.0 - met) * flux.emitted) < 3e-3);
         CHECK(relative_error(flux.absorbed, 0.5 * met * flux.emitted) < 3e-3);
     }
@@ -95,7 +99,7 @@ TEST_SUITE("energy") {
     TEST_CASE_FIXTURE(Energy, "a range holds light back") {
         Scene scene = furnace_box(0.5F);
         scene.world.set(scene.light, at({0, 0, 0}));
-        scene.world.set(scene.light, PointLight{.range = 0.9F});  // the walls are at 1 m and more
+        scene.world.set(scene.light, PointLight{.range = 0.9F});  // the walls are at least 1 m away
         const EnergyAccount flux = trace(scene, {.count = 300, .bounces = 3}).flux;
         CHECK(relative_error(flux.escaped, flux.emitted) < 1e-4);
     }
@@ -107,7 +111,7 @@ TEST_SUITE("energy") {
             const double inner = 0.3, outer = 0.7;
             scene.world.set(scene.light,
                             SpotLight{.intensity = 6.0F, .inner_cone = 0.3F, .outer_cone = 0.7F});
-            // ∫ I dω: 2π (1 - cos inner), and the square of a linear ramp over the ring.
+            // ∫ I dω: 2π (1 - cos inner), plus the square of a linear ramp between the cones.
             const double flux =
                 6.0 * 2.0 * pi * ((1.0 - std::cos(inner)) + (std::cos(inner) - std::cos(outer)) / 3.0);
             CHECK(relative_error(trace(scene, {}).flux.emitted, glm::dvec3(flux)) < 1e-4);
@@ -147,7 +151,7 @@ TEST_SUITE("energy") {
                 CAPTURE(bounces);
                 const VplReport vpls = trace(scene, {.count = count, .bounces = bounces});
                 if (bounces == 0) CHECK(vpls.alive == 0);
-                // Paths that go on leave the box: up to a third of them through its open front.
+                // Paths that continue can leave the box: up to a third of them through its open front.
                 if (bounces > 0 && count >= 64) CHECK(vpls.alive > count / 2);
             }
         }

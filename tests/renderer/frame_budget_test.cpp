@@ -1,4 +1,4 @@
-// What frames are rendered with where time is short: decisions, and the pictures that they lead to.
+// How the quality of frames is chosen under a time budget, and the pictures that result.
 
 #include "renderer/frame_budget.hpp"
 
@@ -19,7 +19,7 @@ constexpr glm::uvec2 size{96, 64};
 
 class FrameBudgetTests : public PathFixture {
  protected:
-    /// A budget that no frame keeps, or one that every frame does.
+    /// Pass a budget that no frame can keep, or one that every frame keeps.
     void start(float budget_ms) {
         Configuration configuration = few_vpls();
         configuration.frame_budget_ms = budget_ms;
@@ -28,7 +28,7 @@ class FrameBudgetTests : public PathFixture {
     void move_camera() {
         scene.world.edit<Transform>(scene.camera, [](Transform& pose) { pose.translation.x += 0.01F; });
     }
-    /// Frames of a moving camera until their times are known.
+    /// Renders frames of a moving camera until their times are known.
     Picture moving() {
         Picture picture;
         for (int i = 0; i < 3; ++i) {
@@ -38,7 +38,7 @@ class FrameBudgetTests : public PathFixture {
         }
         return picture;
     }
-    /// The same, made by a renderer without a budget that has seen nothing else.
+    /// The same view, by a new renderer without a budget.
     Picture fresh_picture() {
         TestedRenderer fresh(context->get_proc());
         Configuration configuration = renderer.configuration();
@@ -99,21 +99,21 @@ TEST_SUITE("frame budget") {
         const Quality whole{1.0F, 1};
         CHECK(choose_quality(cost, whole, 1, 1000.0) == whole);
         CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});  // 92.5 ms
-        CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.8F, 8});  // 92.5 would be, by a hair
+        CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.8F, 8});  // 92.5 ms leave too little margin
         CHECK(choose_quality(cost, whole, 1, 40.0) == Quality{0.5F, 8});
-        CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // nothing does
-        // Where frames interleave anyway, more of that gains nothing.
+        CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // no quality does
+        // If frames are interleaved anyway, more interleaving gains nothing.
         CHECK(choose_quality(cost, {1.0F, 8}, 8, 1000.0) == whole);
         CHECK(choose_quality(cost, {1.0F, 8}, 8, 150.0).scale < 1.0F);
     }
 
     TEST_CASE("a better quality is not taken that would be left again at once") {
-        // What half of the sides takes leaves room for 65 %, in which little is left to spare.
+        // Judging by the cost at half the sides, 65 % would fit, but with little margin.
         const FrameCost cost{.gather = 0.0, .pixels = 48.0, .rest = 0.0};
         CHECK(expected_ms(cost, {0.5F, 8}, {0.65F, 8}) == doctest::Approx(81.12));
         CHECK(choose_quality(cost, {0.5F, 8}, 1, 100.0) == Quality{0.5F, 8});
         CHECK(choose_quality(cost, {0.5F, 8}, 1, 120.0) == Quality{0.65F, 8});
-        // Once there, it stays.
+        // Once at 65 %, it stays there.
         const FrameCost there{.gather = 0.0, .pixels = 81.12, .rest = 0.0};
         CHECK(choose_quality(there, {0.65F, 8}, 1, 100.0) == Quality{0.65F, 8});
     }

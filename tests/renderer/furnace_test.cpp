@@ -16,12 +16,12 @@ constexpr double pi = std::numbers::pi;
 constexpr glm::uvec2 size{48, 48};
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// A light of 3 cd at the centre of a sphere of radius 2 m, and a camera within, off the centre.
+/// A light of 3 cd at the centre of a sphere of radius 2 m, and a camera inside, off the centre.
 ///
-/// The facets of 20,480 cost little: their corners are at most 2.2° apart, so that their centres are too near
-/// by 1 - cos 1.3° = 0.03 % and up to 0.06 % brighter. VPLs on neighbouring facets, whose true normals differ
-/// from the pixel's by as much as their distance, are what remains: a share of the flux that falls with their
-/// number.
+/// With 20,480 facets, the error of the facets is small: their corners are at most 2.2° apart, so their
+/// centres are nearer to the light by 1 - cos 1.3° = 0.03 % and up to 0.06 % brighter. What remains is the
+/// error of VPLs on neighbouring facets, whose true normals differ from the pixel's by as much as their
+/// distance: a share of the flux that falls with the number of VPLs.
 Scene furnace_sphere(float albedo) {
     Scene scene;
     add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 5, diffuse(glm::vec3(albedo)))});
@@ -30,7 +30,7 @@ Scene furnace_sphere(float albedo) {
     return scene;
 }
 
-/// Enough bounces that what is left after them is far below the tolerances: ρ⁶⁴ = 6·10⁻⁷ at 0.8.
+/// With this many bounces, the light left after them is far below the tolerances: ρ⁶⁴ = 6·10⁻⁷ for ρ = 0.8.
 Configuration furnace_configuration(std::uint32_t vpls) {
     Configuration configuration = linear_configuration();
     configuration.vpls.placement = VplPlacement::paths;
@@ -41,7 +41,7 @@ Configuration furnace_configuration(std::uint32_t vpls) {
 
 class Furnace : public RenderFixture {
  protected:
-    /// Worst pixel of the sphere's picture, against radiance ρ/π · I/R² · 1/(1 - ρ).
+    /// The worst pixel of the sphere's picture, compared with radiance ρ/π · I/R² · 1/(1 - ρ).
     double sphere_error(const Scene& scene, double albedo, std::uint32_t vpls, float bound) {
         Configuration configuration = furnace_configuration(vpls);
         configuration.geometry_bound = bound;
@@ -51,7 +51,7 @@ class Furnace : public RenderFixture {
         return worst_error(render(scene, size), expected, 1e-6);
     }
 
-    /// Flux that arrives at the six walls of `furnace_box`, of light as configured.
+    /// The flux that arrives at the six walls of `furnace_box`, of the light that the configuration shows.
     double arriving(Scene& scene, double albedo) {
         const double pixel_area = 4.0 / (size.x * size.y);
         double flux = 0.0;
@@ -73,8 +73,9 @@ TEST_SUITE("furnace") {
             CAPTURE(albedo);
             const Scene scene = furnace_sphere(static_cast<float>(albedo));
             renderer.invalidate();
-            // Seen from the sphere every VPL has the same geometry term: points have no noise but that of
-            // facets and of where paths end. Bounded ones lose what is near, less the more there are.
+            // From any point of the sphere, every VPL has the same geometry term: VPLs that are points have
+            // only the noise of facets and of where paths end. Bounded ones lose the light of nearby
+            // surfaces, less with more VPLs.
             const double points = sphere_error(scene, albedo, 1024, infinity);
             const double few = sphere_error(scene, albedo, 128, 1.0F);
             const double many = sphere_error(scene, albedo, 1024, 1.0F);
@@ -100,7 +101,7 @@ TEST_SUITE("furnace") {
             configuration.show = Show::direct;
             configure(configuration);
             const double direct = arriving(scene, albedo);
-            // A light of 1 cd emits 4π lm; sums over pixels integrate its smooth irradiance to a thousandth.
+            // A light of 1 cd emits 4π lm. Sums over pixels integrate its smooth irradiance to 0.1 %.
             CHECK(std::abs(direct / (4.0 * pi) - 1.0) < 1e-3);
             const auto error = [&](std::uint32_t vpls, float bound) {
                 configuration = furnace_configuration(vpls);
@@ -109,8 +110,8 @@ TEST_SUITE("furnace") {
                 configure(configuration);
                 return arriving(scene, albedo) / direct / (albedo / (1.0 - albedo)) - 1.0;
             };
-            // VPLs that are points lose nothing. Bounded ones lose in proportion to their R, which is that to
-            // 1/√N: half as much with four times as many, within what their noise leaves of it.
+            // VPLs that are points lose nothing. Bounded ones lose in proportion to their R, which is
+            // proportional to 1/√N: half as much with four times as many VPLs, within the noise.
             const double points = error(1024, infinity);
             const double few = error(1024, 1.0F);
             const double many = error(4096, 1.0F);

@@ -15,7 +15,7 @@ using namespace candela;
 
 namespace {
 
-/// A context and what lives in it.
+/// A context with a device and a buffer in it.
 struct Place {
     explicit Place(ContextKind kind, std::uint32_t mark) : context(HeadlessContext::create(kind)) {
         context->make_current();
@@ -35,7 +35,7 @@ struct Place {
     gl::Buffer buffer;
 };
 
-/// Each place keeps its own objects and hears of its own errors, in whatever order they are visited.
+/// Each context keeps its own objects and receives its own errors, in whatever order they become current.
 void check_that_places_keep_apart(const std::vector<ContextKind>& kinds) {
     std::vector<std::unique_ptr<Place>> places;
     places.reserve(kinds.size());
@@ -56,7 +56,7 @@ void check_that_places_keep_apart(const std::vector<ContextKind>& kinds) {
         }
     }
     for (const auto& place : places) CHECK(place->device->live()[gl::ObjectKind::buffer] == 1);
-    std::swap(places.front(), places.back());  // the end comes in another order than the beginning
+    std::swap(places.front(), places.back());  // destroy them in a different order
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ bool holds_error(const std::vector<gl::DebugMessage>& messages) {
                        [](const gl::DebugMessage& message) { return message.type == GL_DEBUG_TYPE_ERROR; });
 }
 
-/// An invalid call, whose error flag is taken off again.
+/// An invalid call; its error flag is cleared again.
 void provoke_error(const Device& device) {
     device.gl().Enable(GL_RENDERER);  // no capability
     CHECK(device.gl().GetError() == GL_INVALID_ENUM);
@@ -55,7 +55,7 @@ Proc proc_without_context(const char* name) {
     return std::strcmp(name, "glGetString") == 0 ? reinterpret_cast<Proc>(&no_string) : old_proc(name);
 }
 
-/// A host's own listener.
+/// A debug callback of the host.
 struct HostLog {
     mutable int messages = 0;
     static void APIENTRY receive(GLenum, GLenum, GLuint, GLenum, GLsizei, const GLchar*, const void* user) {
@@ -75,7 +75,7 @@ TEST_SUITE("gl device") {
     TEST_CASE_FIXTURE(GlFixture, "a device knows its driver") {
         CHECK_FALSE(device.renderer().empty());
         CHECK_FALSE(device.version().empty());
-        // Minimum maxima of the OpenGL 4.5 core specification, tables 23.53 and following.
+        // The minimum values of the OpenGL 4.5 core specification, tables 23.53 and following.
         const gl::Limits& limits = device.limits();
         CHECK(limits.texture_size >= 16384);
         CHECK(limits.texture_layers >= 2048);

@@ -83,8 +83,8 @@ TEST_SUITE("gl graph backend") {
         backend.destroy_texture(target[0]);
         CHECK(device.live()[ObjectKind::framebuffer] == 0);
 
-        // A driver gives the freed name out again: the framebuffer of the old texture must not stand in its
-        // way.
+        // The driver reuses the freed name: the framebuffer of the old texture must not be found for the new
+        // one.
         target = {backend.create_texture("next", desc)};
         clear_pass(device, backend, {.colour = target, .size = {4, 4}}, 2.0F);
         CHECK(backend.texture(target[0]).read_floats() == std::vector<float>(16, 2.0F));

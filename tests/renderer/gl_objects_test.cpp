@@ -16,12 +16,12 @@ using namespace candela::gl;
 
 namespace {
 
-/// Objects of one kind that are alive.
+/// The number of live objects of one kind.
 std::uint32_t alive(const Device& device, ObjectKind kind) {
     return device.live()[kind];
 }
 
-/// Bytes 0, 1, 2, ... as one layer of one level.
+/// Bytes 0, 1, 2, ... for one layer of one level.
 std::vector<std::byte> ramp(std::size_t count) {
     std::vector<std::byte> bytes(count);
     for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<std::byte>(i);
@@ -154,7 +154,7 @@ TEST_SUITE("gl objects") {
         for (std::size_t i = 0; i < 16; ++i) texels[i] = static_cast<float>(i);
         texture.upload(std::as_bytes(std::span(texels)));
         texture.generate_mips();
-        // Means of small integers over powers of two: exact in binary.
+        // Means of 4 or 16 small integers: exact in binary.
         CHECK(texture.read_floats(1) == std::vector{2.5F, 4.5F, 10.5F, 12.5F});
         CHECK(texture.read_floats(2) == std::vector{7.5F});
     }

@@ -21,7 +21,7 @@ std::string text_of(const std::vector<EmbeddedShader>& files, std::string_view n
     return assemble(ShaderLibrary{files}, name, defines).text;
 }
 
-/// What keeps a stage from being assembled.
+/// The error when assembling a stage.
 std::string fault_of(const std::vector<EmbeddedShader>& files, std::string_view name) {
     try {
         static_cast<void>(text_of(files, name));
@@ -31,7 +31,7 @@ std::string fault_of(const std::vector<EmbeddedShader>& files, std::string_view 
     return {};
 }
 
-/// What keeps a program from being made.
+/// The error when making a program.
 std::string fault_of(Device& device, const std::vector<EmbeddedShader>& files,
                      const std::vector<std::string>& stages) {
     try {

@@ -13,7 +13,7 @@ using namespace candela::gl;
 
 namespace {
 
-/// Frames of two passes, which clear something.
+/// Times frames of two passes, which clear a texture.
 void time_frames(Device& device, Timer& timer, std::uint64_t first, std::uint64_t count) {
     const Texture texture(device, "work", {.size = {64, 64}});
     for (std::uint64_t frame = first; frame < first + count; ++frame) {
@@ -51,13 +51,13 @@ TEST_SUITE("gl timer") {
             CHECK(times[i].passes[0].pass == 7);
             CHECK(times[i].passes[1].pass == 3);
             CHECK(times[i].passes[0].ms >= 0.0);
-            // Passes lie within their frame; the microsecond covers the rounding of the sums.
+            // Passes are inside their frame; the microsecond allows for the rounding of the sums.
             CHECK(times[i].passes[0].ms + times[i].passes[1].ms <= times[i].ms + 1e-3);
         }
     }
 
     TEST_CASE_FIXTURE(GlFixture, "nothing is asked of a query that has no result yet") {
-        // A driver whose results never arrive, and which would wait for ever if it were asked for one.
+        // A driver whose results never arrive, and which would wait forever if it were asked for one.
         static bool asked;
         asked = false;
         const auto slow = [proc = context->get_proc()](const char* name) -> void (*)() {

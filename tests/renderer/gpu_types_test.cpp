@@ -19,7 +19,7 @@ struct Member {
     std::size_t offset;
 };
 
-/// A struct of shaders/types.glsl as C++ lays its twin out.
+/// The layout of the C++ counterpart of a struct in shaders/types.glsl.
 struct Layout {
     std::string name;
     std::size_t stride;
@@ -126,7 +126,7 @@ const std::vector<Layout>& layouts() {
     return all;
 }
 
-/// A shader that copies one element over another, so that nothing of it can be left out.
+/// A shader that copies one element over another, so that the compiler cannot remove any member.
 std::string copying_shader(const std::string& type) {
     return fmt::format(
         "#include \"types.glsl\"\n"
@@ -147,7 +147,7 @@ std::string shader_with_constants(const std::string& type) {
         type);
 }
 
-/// What the driver says about members of a program's buffers, or of its uniform blocks.
+/// What the driver reports about members of a program's buffers, or of its uniform blocks.
 class BlockMembers {
  public:
     BlockMembers(const gl::Functions& gl, GLuint program, GLenum interface = GL_BUFFER_VARIABLE)

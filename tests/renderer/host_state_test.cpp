@@ -17,7 +17,7 @@ namespace {
 
 constexpr glm::uvec2 size{32, 24};
 
-/// All that rendering might touch, as the GL tells it.
+/// All GL state that rendering might change.
 struct HostView {
     std::vector<GLfloat> values;
     bool operator==(const HostView&) const = default;
@@ -43,7 +43,7 @@ HostView host_view(const gl::Functions& gl) {
     for (const int what : {GL_VIEWPORT, GL_SCISSOR_BOX, GL_COLOR_WRITEMASK, GL_COLOR_CLEAR_VALUE}) {
         add_values(what, 4);
     }
-    std::array<GLint, 2> polygon_mode{};  // some drivers still tell front and back apart
+    std::array<GLint, 2> polygon_mode{};  // some drivers still return front and back separately
     gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode.data());
     view.values.push_back(static_cast<GLfloat>(polygon_mode[0]));
     for (const int what :
@@ -55,7 +55,7 @@ HostView host_view(const gl::Functions& gl) {
     return view;
 }
 
-/// A host with objects of its own.
+/// A host with its own objects.
 struct Host {
     const gl::Functions& gl;
     GLuint vertex_array;

@@ -12,7 +12,7 @@ using namespace candela;
 
 namespace {
 
-// GCC defines the one, Clang has the other.
+// GCC defines the macro, Clang has the feature.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool is_sanitized = true;
 #elif !defined(__has_feature)
@@ -25,7 +25,7 @@ constexpr bool is_sanitized = false;
 
 constexpr glm::uvec2 size{16, 12};
 
-/// Bytes of this process in memory.
+/// Resident memory of this process, bytes.
 std::uint64_t resident_bytes() {
     std::uint64_t total = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> total >> resident;
@@ -51,8 +51,8 @@ TEST_SUITE("lifetime") {
     TEST_CASE_FIXTURE(RenderFixture, "a thousand configurations and two hundred sizes leave nothing behind") {
         const Scene scene = cornell_box();
         const RenderTarget target(device, size);
-        // Each frame is waited for: how many time queries are in use depends on how many frames are under
-        // way.
+        // Waits for each frame, because the number of time queries in use depends on the number of frames in
+        // flight.
         const auto draw = [&](const Target& to) {
             renderer.render(scene.world, scene.camera, to);
             static_cast<void>(renderer.take_frames(true));
@@ -65,20 +65,21 @@ TEST_SUITE("lifetime") {
             for (std::uint32_t i = 0; i < resizes; ++i) {
                 draw({target.target().framebuffer, {1 + i % 16, 1 + i % 12}});
             }
-            // What the graph before leaves spare is alike at each end.
+            // Makes the objects that the previous graph leaves in the free pool the same at the end of each
+            // round.
             configure(numbered_configuration(1));
             draw(target.target());
             configure({});
             draw(target.target());
             draw(target.target());
         };
-        round(240, 48);  // every configuration and every size once: pools and the driver's caches fill
+        round(240, 48);  // every configuration and every size once, to fill pools and the driver's caches
         const gl::ObjectCounts before = renderer.device().live();
         const std::uint64_t memory_before = resident_bytes();
         round(1000, 200);
         CHECK(renderer.device().live() == before);
-        // What an allocator may scatter; a leak of one small object a switch would be lost in it, and is
-        // counted above. AddressSanitizer holds freed memory back, and finds what is lost by itself.
+        // Allows for fragmentation by the allocator. A leak of one small object per switch would not show
+        // here, but is counted above. AddressSanitizer delays freeing memory, and finds leaks by itself.
         if (!is_sanitized) CHECK(resident_bytes() < memory_before + (8U << 20U));
     }
 
@@ -100,7 +101,7 @@ TEST_SUITE("lifetime") {
             CHECK(render(scene, size) == before);
             static_cast<void>(renderer.take_frames(true));
         };
-        come_and_go();  // buffers grow, and stay as large
+        come_and_go();  // buffers grow and keep their size
         const gl::ObjectCounts objects = renderer.device().live();
         for (int i = 0; i < 20; ++i) {
             come_and_go();

@@ -74,7 +74,7 @@ CameraView random_view(Random& random, glm::uvec2 size) {
     return make_view(camera, matrix, {.camera = {}, .size = size, .jitter = jitter});
 }
 
-/// A point that the light reaches, often near the end of its reach.
+/// A point that the light reaches, often near the end of its range.
 glm::vec3 lit_point(Random& random, const gpu::Light& light) {
     const float reach = std::isinf(light.range) ? 20.0F : light.range;
     const float distance = reach * (random.integer(0, 1) == 0 ? 0.9999F : random.number(0.0F, 1.0F));
@@ -82,7 +82,7 @@ glm::vec3 lit_point(Random& random, const gpu::Light& light) {
     return light.position + distance * random.around(light.direction, cosine);
 }
 
-/// The cell that a point is seen in, in doubles; none outside the picture.
+/// The cell in which a point is seen, in double precision; nullopt outside the picture.
 std::optional<std::uint32_t> cell_of(const CameraView& view, const CellGrid& grid, glm::dvec3 point) {
     const glm::dvec4 clip = glm::dmat4(view.clip_from_world) * glm::dvec4(point, 1.0);
     if (clip.w <= 0.0 || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w || clip.z > clip.w)
@@ -144,7 +144,7 @@ TEST_SUITE("light bins") {
                 bins.entries.size() - bins.global_count + std::uint64_t{bins.global_count} * grid.cells();
             possible += lights.entries.size() * grid.cells();
         }
-        // Most of what could be listed is not, and most that is tested was seen.
+        // Most possible entries are not in the lists, and many of the tested points are in the picture.
         CHECK(seen > 10'000);
         CHECK(listed * 4 < possible);
     }
@@ -187,11 +187,12 @@ TEST_SUITE("light bins") {
             make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), {.camera = {}, .size = size});
         const LightTable lights{{{.entity = {}, .light = {.position = {0.4F, 0.3F, -10.0F}, .range = 0.1F}}}};
         const LightBins tiles = bin_lights(lights, view, tile_grid(size, {}));
-        // 0.2 m from 10 m away are 9 of 480 pixels; with a pixel of slack they touch 2 × 2 tiles at most.
+        // 0.2 m at a distance of 10 m are 9 of 480 pixels; with a margin of one pixel that is at most 2 × 2
+        // tiles.
         CHECK(tiles.entries.size() >= 1);
         CHECK(tiles.entries.size() <= 4);
-        // In depth it lies in one slice of 0.05 to 50 m or across the border of two, and one more either
-        // side.
+        // In depth the light is in one slice of 0.05 m to 50 m, or crosses the border of two, with a margin
+        // of one slice on either side.
         const LightBins clusters = bin_lights(lights, view, cluster_grid(size, {}, 0.05F, 50.0F));
         CHECK(clusters.entries.size() <= 4 * tiles.entries.size());
     }
@@ -220,14 +221,14 @@ TEST_SUITE("light bins") {
         const LightBins bins = bin_lights(lights, view, grid);
         CHECK(bins.global_count > 0);
         CHECK(bins.entries.size() - bins.global_count <= most_list_entries);
-        // No more of them than needed: one light less would not have fitted.
+        // The number of global lights is minimal: with one less, the lists would not have fitted.
         CHECK(bins.entries.size() + grid.cells() > most_list_entries);
 
         float narrowest_global = std::numeric_limits<float>::infinity();
         for (const std::uint32_t i : globals_of(bins)) {
             narrowest_global = std::min(narrowest_global, lights.entries[i].light.range);
         }
-        // What is as large at the same distance touches about as many cells, give or take those on the
+        // Lights of the same size at the same distance touch about the same number of cells, except at
         // borders.
         std::vector<std::uint32_t> listed(bins.entries.begin() + bins.global_count, bins.entries.end());
         float widest_listed = 0.0F;

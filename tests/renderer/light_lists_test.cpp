@@ -16,8 +16,8 @@ using namespace candela;
 
 namespace {
 
-/// Distance along the ray, in lengths of its direction, of the nearest triangle; Möller and Trumbore, "Fast,
-/// Minimum Storage Ray/Triangle Intersection" (1997).
+/// The distance along the ray to the nearest triangle, in units of the length of its direction. Möller and
+/// Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection" (1997).
 std::optional<double> nearest_hit(const std::vector<Triangle>& triangles, const PixelRay& ray) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const Triangle& triangle : triangles) {
@@ -34,7 +34,7 @@ std::optional<double> nearest_hit(const std::vector<Triangle>& triangles, const 
     return nearest < std::numeric_limits<double>::infinity() ? std::optional(nearest) : std::nullopt;
 }
 
-/// Where a light sends anything at all: within its range and its cone.
+/// The region that a light reaches: within its range and its cone.
 struct Reach {
     glm::dvec3 position;
     glm::dvec3 axis{0.0};
@@ -63,7 +63,7 @@ std::vector<Reach> reaches_of(const World& world) {
     return reaches;
 }
 
-/// In the mean of all tiles, how many lights send anything to any of the surface points under a tile's
+/// The mean over all tiles of the number of lights that reach any of the surface points under a tile's
 /// pixels.
 double mean_lit(const Scene& scene, glm::uvec2 size, std::uint32_t tile_size) {
     const std::vector<Triangle> triangles = world_triangles(scene.world);

@@ -17,10 +17,10 @@ constexpr glm::uvec2 size{96, 64};
 constexpr double tolerance = 0.005;  // as for the closed forms: floats, and albedos in half floats
 constexpr std::uint32_t blocks = 4;  // along an edge of the image
 constexpr double cutoff = 0.3;
-constexpr double half = 2.0;            // of the square that the image spans once, metres
-constexpr double shading_height = 1.5;  // of a square that shades the ground, metres
+constexpr double half = 2.0;            // half the size of the square that the image covers once, metres
+constexpr double shading_height = 1.5;  // height of a square that shades the ground, metres
 
-/// Alpha of a block, in 255ths, and that of the factor: products of 0, 0.2, 0.4 and 0.8.
+/// Alpha of a block, in 255ths. With the alpha of the factor the products are 0, 0.2, 0.4 and 0.8.
 std::uint8_t stored_alpha(std::uint32_t x, std::uint32_t y) {
     constexpr std::array<std::uint8_t, 4> levels{0, 64, 128, 255};
     return levels[(x + 3 * y) % 4];
@@ -29,12 +29,13 @@ constexpr float factor_alpha = 0.8F;
 
 enum class Spot { solid, hole, edge };
 
-/// What the square's mask has at a place on it, in metres from its centre; `edge` where filtering may reach.
+/// The mask at a place on the square, in metres from its centre; `edge` where filtering may reach.
 Spot spot_at(glm::dvec2 place) {
     const glm::dvec2 at = (place / (2.0 * half) + 0.5) * static_cast<double>(blocks);
     const glm::dvec2 from_middle = glm::abs(glm::fract(at) - 0.5);
     const bool near_rim = std::min({at.x, at.y, blocks - at.x, blocks - at.y}) < 0.05;
-    // A block is 4 texels wide at least: half a texel at its edge is filtered, and shadows add their own.
+    // A block is at least 4 texels wide. Half a texel at its edge is filtered, and shadow maps add their own
+    // error.
     if (std::max(from_middle.x, from_middle.y) > 0.33 || near_rim) return Spot::edge;
     if (std::min({at.x, at.y, blocks - at.x, blocks - at.y}) < 0.0) return Spot::hole;
     const double alpha = static_cast<double>(factor_alpha) *
@@ -78,7 +79,7 @@ Scene masked_scene(float height) {
     return scene;
 }
 
-/// Where a line meets the plane at a height, seen from above.
+/// The intersection of a line with the horizontal plane at `height`, as (x, z).
 glm::dvec2 meets(glm::dvec3 origin, glm::dvec3 direction, double height) {
     const glm::dvec3 point = origin + (height - origin.y) / direction.y * direction;
     return {point.x, point.z};
@@ -95,7 +96,7 @@ class Masks : public RenderFixture {
         return render(scene, size);
     }
 
-    /// Compares the pixels that see a place away from edges with `wanted(spot, pixel)`.
+    /// Compares the pixels that see a place away from edges with the radiance `wanted(spot, pixel)`.
     template <class SpotUnder, class Wanted>
     void check(const Scene& scene, const Picture& picture, const SpotUnder& spot_under,
                const Wanted& wanted) {
@@ -114,8 +115,8 @@ class Masks : public RenderFixture {
         CHECK(wrong == 0);
     }
 
-    /// The ground must be dark where the light, which travels to a point along `direction_to(point)`, meets
-    /// the square, and as without shadows where it passes through a hole.
+    /// The ground must be dark where the light, which arrives at a point along `direction_to(point)`, hits
+    /// the square, and as bright as without shadows where the light passes through a hole.
     template <class Direction>
     void check_shadow(const Scene& scene, const Direction& direction_to) {
         const Picture lit = direct_light(scene, ShadingPath::deferred, false);
@@ -184,7 +185,7 @@ TEST_SUITE("masks") {
     }
 
     TEST_CASE_FIXTURE(Masks, "light passes through the holes: shadows of suns, spots and points") {
-        // The square is above the camera, out of its sight.
+        // The square is above the camera and invisible.
         Scene scene = masked_scene(static_cast<float>(shading_height));
         scene.world.set(scene.camera, looking({0, 1.2F, 0.6F}, {0, 0, 0}));
         scene.world.set(scene.camera, Camera{.vertical_fov = 1.6F});
@@ -229,13 +230,13 @@ TEST_SUITE("masks") {
     }
 
     TEST_CASE_FIXTURE(Masks, "traced light passes through the holes and no energy is lost") {
-        // The light is 0.5 m under a square of half width 0.5 m, which fills a sixth of what it sees (one
-        // face of a cube around it). Turned by a quarter, the solid blocks of a checkerboard are its holes:
-        // they take half.
+        // The light is 0.5 m below a square of half width 0.5 m, which covers a sixth of its directions (one
+        // face of a cube around it). The checkerboard maps onto itself with solid blocks and holes exchanged
+        // when it is rotated by 90°, so the solid blocks absorb half of that.
         const auto checker = [](std::uint32_t x, std::uint32_t y) {
             return static_cast<std::uint8_t>((x + y) % 2 * 255);
         };
-        // The larger image is traced reduced.
+        // The larger image is traced at a reduced resolution.
         for (const std::uint32_t texels : {64U, 512U}) {
             CAPTURE(texels);
             Scene scene = furnace_box(1.0F);
@@ -244,7 +245,7 @@ TEST_SUITE("masks") {
                 MeshInstance{square(0.5F, masked(0.0F, 0.6F, block_image(texels, checker)))});
             const EnergyAccount once = trace(scene, {.count = 4000, .bounces = 1});
             CHECK(relative_to(once.absorbed + once.truncated - once.emitted, once.emitted) < 1e-4);
-            // The error of 4,000 low-discrepancy points on 8 blocks, of the order of 10 · 1/N · log N.
+            // The error of 4,000 low-discrepancy points on 8 blocks is of the order of 10 · log N / N.
             CHECK(relative_to(once.absorbed - once.emitted / 12.0, once.emitted) < 0.01);
 
             const EnergyAccount flux = trace(scene, {.count = 4000, .bounces = 8});

@@ -9,34 +9,34 @@ namespace candela {
 /// A shipped scene: sandbox/scenes/<name>.gltf. It has a camera; `light` is null.
 [[nodiscard]] Scene shipped_scene(std::string_view name);
 
-/// A room of 4 m × 4 m × 4 m around the origin, without lights, with a few hundred small triangles floating
-/// in it, so that tiles hold surfaces of many depths. The camera stands at `eye` and looks along -z.
+/// A room of 4 m × 4 m × 4 m around the origin, without lights. A few hundred small triangles float in it, so
+/// that tiles contain surfaces at many depths. The camera is at `eye` and looks along -z.
 inline constexpr glm::vec3 eye{0.0F, 0.0F, 1.5F};
 [[nodiscard]] Scene cluttered_room();
 
-/// `count` points and spots of limited range in the middle 3 m × 3 m × 3 m around the origin, without
-/// shadows, spread by the golden ratio.
+/// Adds `count` point and spot lights of limited range, without shadows, to the middle 3 m × 3 m × 3 m around
+/// the origin, distributed by the golden ratio.
 void add_ranged_lights(World& world, int count, float range);
 
-/// How far shading paths are from forward with all lights.
+/// The largest difference between a shading path and forward with all lights.
 struct PathError {
     double error = 0.0;  ///< largest |a - b| / max(|b|, 1e-4 · mean of b) of all pixels, channels and paths
-    ShadingPath path = ShadingPath::forward;  ///< whose it is
+    ShadingPath path = ShadingPath::forward;  ///< the path with this error
     double reference_mean = 0.0;
 };
 
-/// What paths may differ by, as asked of them. They add up the same terms; only the roundings of a surface's
-/// position, rasterised here and found from its depth there, and of its lights' sums differ, which is 1e-6 or
-/// so. Where a light fades out the rounding of its distance to the surface is large beside what is left of
-/// it, hence the floor in PathError: a ten-thousandth of the picture's mean.
+/// The required agreement of paths. They add up the same terms. Only the rounding of a surface's position
+/// (rasterised, or reconstructed from its depth) and of the sums over lights differ, which is about 1e-6.
+/// Where a light fades out, the rounding of its distance to the surface is large compared with the remaining
+/// light, hence the floor in PathError: 1e-4 of the picture's mean.
 inline constexpr double path_tolerance = 1e-3;
 
 class PathFixture : public RenderFixture {
  protected:
-    /// Renders the scene by every path, all else as in `base`.
+    /// Renders the scene with every path, with all other settings as in `base`.
     [[nodiscard]] PathError worst_path(const Scene& scene, glm::uvec2 size, Configuration base);
 
-    /// The same, and checks it, and that there was anything to see.
+    /// The same; checks the error, and that the picture is not black.
     void check_paths(const Scene& scene, glm::uvec2 size, const Configuration& base);
 };
 

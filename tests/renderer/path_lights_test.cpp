@@ -21,7 +21,7 @@ void add_point(World& world, glm::vec3 position, float range) {
 
 }  // namespace
 
-// In each case there are no lights but those that it is about: a list that misses one shows.
+// Each case has only the lights that it tests, so that a list that misses one is noticed.
 TEST_SUITE("paths: lights") {
     TEST_CASE_FIXTURE(PathFixture, "lights near the eye, behind it, and across the planes of the view") {
         struct Case {
@@ -41,7 +41,7 @@ TEST_SUITE("paths: lights") {
              {},
              [&](World& world) {
                  add_point(world, eye - 0.3F * forwards, 1.2F);
-                 add_point(world, eye - 0.4F * forwards, 0.3F);  // does not reach what is seen
+                 add_point(world, eye - 0.4F * forwards, 0.3F);  // does not reach visible surfaces
              }},
             {"beside the view, reaching into it",
              {},
@@ -95,7 +95,7 @@ TEST_SUITE("paths: lights") {
                                    std::fmod(0.755F * step, 1.0F));
             add_point(scene.world, glm::vec3(-1.6F, -1.0F, -1.95F) + 0.2F * spread, 0.15F);
         }
-        // Of 3 × 2 tiles one sees the corner of the room where the lights are.
+        // One of 3 × 2 tiles sees the corner of the room where the lights are.
         check_paths(scene, {33, 17}, direct_only());
         const LightReport lights = renderer.report().lights;
         CHECK(lights.global == 0);

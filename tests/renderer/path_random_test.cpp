@@ -15,7 +15,8 @@ using namespace candela;
 
 namespace {
 
-// Scenes are made of whole numbers, which shrink: places in steps of 5 cm, or as indices into short tables.
+// Scenes are described by integers, which RapidCheck can shrink: positions in steps of 5 cm, or indices into
+// tables.
 using Steps = std::array<int, 3>;
 
 glm::vec3 metres(const Steps& steps) {
@@ -97,7 +98,7 @@ rc::Gen<ScenePlan> scene_plans() {
     });
 }
 
-/// `looking`, for any two points.
+/// Like `looking`, but for any two points.
 Transform facing(const Steps& from, const Steps& towards) {
     const glm::vec3 here = metres(from);
     glm::vec3 there = metres(towards);
@@ -178,8 +179,7 @@ std::ostream& operator<<(std::ostream& out, const ScenePlan& plan) {
     return out;
 }
 
-/// rc::check with fewer rounds than its hundred, each of which costs a second or so of a software driver's
-/// time.
+/// rc::check with fewer than its 100 rounds, because each takes about a second with a software driver.
 template <class Property>
 bool holds(int rounds, Property property) {
     rc::detail::TestParams params = rc::detail::configuration().testParams;
@@ -197,7 +197,7 @@ TEST_SUITE("paths: random scenes") {
         const auto measure = [&](const ScenePlan& plan) {
             return worst_path(build(plan), {64, 48}, configuration_of(plan));
         };
-        // Random scenes may be dark; this one is not.
+        // Random scenes may be dark; this one must not be.
         const ScenePlan lit{.lights = {{.from = {0, 20, 0}, .range = 5}}, .eye = {0, 0, 40}};
         CHECK(measure(lit).reference_mean > 0.0);
         CHECK(holds(15, [&] {

@@ -6,7 +6,7 @@ using namespace candela;
 
 namespace {
 
-constexpr glm::uvec2 small{100, 70};  // no multiple of a tile
+constexpr glm::uvec2 small{100, 70};  // not a multiple of the tile size
 
 class PathScenes : public PathFixture {
  protected:

@@ -9,8 +9,8 @@ using namespace candela;
 
 namespace {
 
-/// The Cornell box with `count` lights: its own, then spots, suns and points of all colours in turn, in fixed
-/// places spread by the golden ratio.
+/// The Cornell box with `count` lights: its own, then spot, directional and point lights of all colours in
+/// turn, at fixed places distributed by the golden ratio.
 Scene cornell_box_with_lights(int count) {
     Scene scene = cornell_box();
     const auto spread = [](int i, float step) { return std::fmod(static_cast<float>(i) * step, 1.0F); };
@@ -42,7 +42,7 @@ Scene cornell_box_with_lights(int count) {
 TEST_SUITE("shading paths") {
     TEST_CASE_FIXTURE(RenderFixture, "all paths agree at every pixel") {
         for (const int lights : {1, 7, 64}) {
-            // Whole tiles, and tiles that the picture's edges cut.
+            // Whole tiles, and tiles that are cut by the edges of the picture.
             for (const glm::uvec2 size : {glm::uvec2(128, 128), glm::uvec2(109, 71)}) {
                 CAPTURE(lights);
                 CAPTURE(size.x);
@@ -59,8 +59,8 @@ TEST_SUITE("shading paths") {
                     CHECK(renderer.report().lights.without_shadow == 0);
                     CHECK(is_sane(picture));
                     CHECK(mean(picture) > 0.01);
-                    // All shade the very same numbers; what is left is the order in which compilers add and
-                    // multiply.
+                    // All paths shade the same numbers. Only the order in which compilers add and multiply
+                    // differs.
                     CHECK(worst_error(picture, first, 1e-4) < 1e-3);
                 }
             }
@@ -102,7 +102,7 @@ TEST_SUITE("shading paths") {
             for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
                 sum.pixels[i] += pictures[2].pixels[i];
             }
-            // Sums of some hundred floats in another order.
+            // Sums of a few hundred floats in another order.
             CHECK(worst_error(sum, pictures[0], 1e-4) < 1e-4);
         }
     }

@@ -9,7 +9,7 @@
 namespace candela {
 namespace {
 
-/// The last of the view.
+/// The last entity of the view.
 Entity last_mesh(const World& world) {
     Entity last{};
     for (const auto& [entity, mesh] : world.view<MeshInstance>()) {

@@ -9,16 +9,16 @@
 
 namespace candela {
 
-/// A scene, how it is rendered, and edits of all kinds to both, at random but the same for the same seed.
+/// A scene, its configuration, and random edits of all kinds to both. The same seed gives the same edits.
 class RandomEdits {
  public:
-    /// The scene needs a mesh and a point light; the mesh that came last must leave a room behind it when it
-    /// moves. Hangs a panel and a lamp on a parent that mirrors and stretches them.
+    /// The scene needs a mesh and a point light. The last mesh is the one that moves, so it must not be the
+    /// room itself. Adds a panel and a lamp as children of a parent that mirrors and stretches them.
     RandomEdits(Scene scene, const Configuration& configuration, unsigned seed);
 
-    /// Does one edit; gives its name.
+    /// Makes one edit; returns its name.
     std::string next();
-    /// Takes all meshes out of the scene.
+    /// Removes all meshes from the scene.
     void clear_meshes();
 
     Scene scene;
@@ -50,7 +50,7 @@ class RandomEdits {
     std::mt19937 random_;
     Entity block_;
     Entity parent_;
-    std::vector<Entity> extra_;  ///< lights and meshes that came
+    std::vector<Entity> extra_;  ///< lights and meshes that were added
 };
 
 }  // namespace candela

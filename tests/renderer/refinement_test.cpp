@@ -1,4 +1,4 @@
-// Frames of different VPLs averaged while nothing moves.
+// Frames with different VPLs are averaged while nothing moves.
 
 #include <doctest/doctest.h>
 
@@ -28,7 +28,7 @@ Configuration plain(Configuration configuration) {
 
 class RefinementTests : public RenderFixture {
  protected:
-    /// The scene without refinement, by a renderer that has seen nothing else.
+    /// The scene without refinement, rendered by a new renderer.
     Picture fresh_picture(const Configuration& configuration, glm::uvec2 of_size = size,
                           glm::vec2 jitter = glm::vec2(0.0F)) {
         TestedRenderer fresh(context->get_proc());
@@ -38,7 +38,7 @@ class RefinementTests : public RenderFixture {
         return target.read();
     }
 
-    /// Frames until the picture stands; gives the last.
+    /// Renders this many frames; returns the last one.
     Picture refined(std::uint32_t frames) {
         Picture picture;
         for (std::uint32_t i = 0; i < frames; ++i) {
@@ -62,7 +62,7 @@ class RefinementTests : public RenderFixture {
     Scene scene = cornell_box();
 };
 
-/// Mean of pictures, in doubles.
+/// The mean of pictures, in double precision.
 Picture average(const std::vector<Picture>& pictures) {
     Picture mean{pictures.front().size, {}};
     for (std::size_t i = 0; i < pictures.front().pixels.size(); ++i) {
@@ -102,8 +102,8 @@ TEST_SUITE("refinement") {
             if (set == 0) {
                 CHECK(mean == pictures.front());
             }
-            // A step rounds three times, each by at most 2⁻²⁴ of the sets' largest value, which lies within
-            // an order of magnitude of the mean; 30 roundings are 1.8e-6 of it.
+            // A step rounds three times, each time by at most 2⁻²⁴ of the largest value of the sets, which is
+            // within an order of magnitude of the mean; 30 roundings are 1.8e-6 of it.
             const Picture expected = average(pictures);
             CHECK(worst_error(mean, expected, 1e-2 * candela::mean(expected)) < 2e-5);
         }
@@ -111,7 +111,8 @@ TEST_SUITE("refinement") {
     }
 
     TEST_CASE_FIXTURE(RefinementTests, "the error falls as sets accumulate") {
-        // A reference of other sets: another count of VPLs would come with another bound on their nearness.
+        // The reference uses other seeds. Another number of VPLs would have another bound on the geometry
+        // term.
         const auto start_at = [&](std::uint32_t seed, std::uint32_t frames) {
             Configuration configuration = refining(frames);
             configuration.vpls.placement = VplPlacement::paths;
@@ -120,8 +121,8 @@ TEST_SUITE("refinement") {
         };
         start_at(1'000'000, 256);
         const Picture reference = refined(256);
-        // Of one sequence of sets the error scatters: whole walls are too bright or too dark at once.
-        glm::dvec3 error(0.0);  // after 1, 8 and 64 sets, of four sequences
+        // The error of a single sequence of sets varies much: whole walls are too bright or too dark at once.
+        glm::dvec3 error(0.0);  // after 1, 8 and 64 sets, summed over four sequences
         for (const std::uint32_t seed : {0U, 1000U, 2000U, 3000U}) {
             start_at(seed, 64);
             error.x += relative_mean_square(refined(1), reference);
@@ -131,8 +132,8 @@ TEST_SUITE("refinement") {
         CAPTURE(error.x);
         CAPTURE(error.y);
         CAPTURE(error.z);
-        // Independent sets divide the error by 8 each time; the reference's own adds a quarter of the last.
-        // The rest is for the scatter.
+        // Independent sets divide the error by 8 each time; the error of the reference adds a quarter of the
+        // last one. The rest of the tolerance is for random variation.
         CHECK(error.y < error.x / 3.0);
         CHECK(error.z < error.y / 3.0);
         CHECK(error.z > 0.0);
@@ -140,7 +141,7 @@ TEST_SUITE("refinement") {
 
     TEST_CASE_FIXTURE(RefinementTests,
                       "a still picture ends up antialiased, with indirect light or without") {
-        // 64 samples on a grid, by a picture of as many times the pixels.
+        // 64 samples per pixel on a grid, from a picture with 64 times as many pixels.
         const auto supersampled = [&](const Configuration& configuration) {
             constexpr std::uint32_t factor = 8;
             const Picture fine = fresh_picture(configuration, factor * size);
@@ -160,8 +161,8 @@ TEST_SUITE("refinement") {
             configure(configuration);
             const Picture expected = supersampled(configuration);
             const double stepped = relative_mean_square(refined(1), expected);
-            // Over an edge, the error of one sample has a variance of up to 1/4; of 64 evenly spread ones
-            // each, both sides have that of some 16 independent ones or less, or 1/64.
+            // At an edge, the error of one sample has a variance of up to 1/4. The 64 well-distributed
+            // samples of either picture have the variance of about 16 independent ones or less, 1/64.
             CHECK(relative_mean_square(refined(63), expected) < stepped / 16.0);
             CHECK(renderer.report().refined == 64);
         }
@@ -209,7 +210,7 @@ TEST_SUITE("refinement") {
                 CHECK((pass != "surfel-visibility" && pass != "vpl-maps"));
             }
         }
-        // From there the mean goes on, with another set in its turn.
+        // From here the mean continues, and switches to another set on schedule.
         static_cast<void>(refined(frames_a_surfel_set - 1));
         CHECK_FALSE(ran("vpl-maps"));
         static_cast<void>(refined(1));

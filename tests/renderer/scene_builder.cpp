@@ -23,7 +23,7 @@ std::shared_ptr<const Mesh> mesh_of(Primitive primitive) {
     return std::make_shared<const Mesh>(Mesh{"", {std::move(primitive)}});
 }
 
-/// Adds a quad, counter-clockwise from its front.
+/// Adds a quad, counter-clockwise as seen from the front.
 void add_quad(Primitive& primitive, const std::array<glm::vec3, 4>& corners) {
     const std::array<glm::vec2, 4> uvs{{{0, 0}, {0, 1}, {1, 1}, {1, 0}}};
     const auto first = static_cast<std::uint32_t>(primitive.vertices.size());
@@ -38,7 +38,7 @@ void add_quad(Primitive& primitive, const std::array<glm::vec3, 4>& corners) {
 
 using Indices = std::vector<std::uint32_t>;
 
-/// Corners of an icosahedron of unit radius, and its triangles counter-clockwise from outside.
+/// The corners of an icosahedron of unit radius, and its triangles, counter-clockwise as seen from outside.
 std::pair<std::vector<glm::vec3>, Indices> icosahedron() {
     const float t = (1.0F + std::sqrt(5.0F)) / 2.0F;
     std::vector<glm::vec3> corners = {{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0},

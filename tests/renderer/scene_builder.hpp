@@ -16,24 +16,24 @@
 
 namespace candela {
 
-// Worlds for the tests of the renderer. Lengths in metres.
+// Worlds for the tests of the renderer. Lengths are in metres.
 
 /// A diffuse material without an image.
 [[nodiscard]] std::shared_ptr<const Material> diffuse(glm::vec3 albedo, bool double_sided = false);
 
-/// A square in the plane y = 0 that faces +Y, from -half to half; its texture spans it once, u along x, v
+/// A square in the plane y = 0 that faces +Y, from -half to half. Its texture covers it once, u along x, v
 /// along z.
 [[nodiscard]] std::shared_ptr<const Mesh> square(float half, std::shared_ptr<const Material> material);
 /// A cube around the origin whose faces look inwards.
 [[nodiscard]] std::shared_ptr<const Mesh> box_inwards(float half, std::shared_ptr<const Material> material);
-/// An icosahedron of 20·4ⁿ triangles whose corners lie on the sphere; faces and (radial) normals look
+/// An icosahedron with 20·4ⁿ triangles whose corners are on the sphere; faces and (radial) normals point
 /// inwards.
 [[nodiscard]] std::shared_ptr<const Mesh> sphere_inwards(float radius, int subdivisions,
                                                          std::shared_ptr<const Material> material);
-/// `count` double-sided triangles of about this extent, scattered through a cube from -1 to 1.
+/// `count` double-sided triangles of about this extent, scattered in a cube from -1 to 1.
 [[nodiscard]] std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed, float extent = 0.05F);
 
-/// Transform at `from` whose -Z points to `at`.
+/// The transform at `from` whose -Z points to `at`.
 [[nodiscard]] Transform looking(glm::vec3 from, glm::vec3 at, glm::vec3 up = {0.0F, 1.0F, 0.0F});
 
 /// An entity with these components.
@@ -45,7 +45,7 @@ Entity add(World& world, Components... components) {
 }
 [[nodiscard]] Transform at(glm::vec3 position);
 
-/// A world, what is seen of it, and a light to play with.
+/// A world, its camera, and a light for the test to modify.
 struct Scene {
     World world;
     Entity camera;
@@ -56,8 +56,8 @@ struct Scene {
 [[nodiscard]] Scene cornell_box();
 /// A closed box of uniform albedo, from -1 to 1, with a point light of 1 cd off its centre.
 [[nodiscard]] Scene furnace_box(float albedo);
-/// A ground of 8 m × 8 m at y = 0 of albedo 0.5 that fills the view from above, at a slant. The light is an
-/// entity without a light as yet.
+/// A ground of 8 m × 8 m at y = 0 with albedo 0.5 that fills the view, at a slant from above. `light` is an
+/// entity that has no light component yet.
 [[nodiscard]] Scene ground();
 
 /// All triangles of a world, in world space.
@@ -70,17 +70,21 @@ struct Picture {
     [[nodiscard]] glm::vec3 at(std::uint32_t x, std::uint32_t y) const { return pixels[y * size.x + x]; }
     bool operator==(const Picture&) const = default;
 };
-/// Whether every pixel is finite and none negative.
+/// Whether all pixels are finite and none is negative.
 [[nodiscard]] bool is_sane(const Picture& picture);
 /// Mean of all pixels and channels.
 [[nodiscard]] double mean(const Picture& picture);
-/// Largest |a - b| / max(|b|, floor) over all pixels and channels; infinite where one is not a number.
+/// The largest
+/// a - b
+/// / max(
+/// b
+/// , floor) over all pixels and channels; infinite if one is not a number.
 [[nodiscard]] double worst_error(const Picture& a, const Picture& b, double floor);
 
 /// Mean squared error relative to the reference's mean square.
 [[nodiscard]] double relative_mean_square(const Picture& picture, const Picture& reference);
 
-/// The line through the centre of a pixel, worked out from the camera's definition and not from its matrices.
+/// The line through the centre of a pixel, computed from the definition of the camera, not from its matrices.
 struct PixelRay {
     glm::dvec3 origin;
     glm::dvec3 direction;  ///< not unit length
@@ -88,13 +92,13 @@ struct PixelRay {
 [[nodiscard]] PixelRay pixel_ray(const Camera& camera, const Transform& pose, glm::uvec2 size,
                                  std::uint32_t x, std::uint32_t y);
 
-/// A picture of a plane: `radiance` of the point under each pixel of the scene's camera, 0 where there is
-/// none.
+/// A picture of a plane: `radiance` of the point under each pixel of the scene's camera, 0 where the plane is
+/// not seen.
 [[nodiscard]] Picture expected_picture(const Scene& scene, glm::uvec2 size, glm::dvec3 point,
                                        glm::dvec3 normal,
                                        const std::function<glm::dvec3(glm::dvec3)>& radiance);
 
-/// A framebuffer of the host's that can be read.
+/// A framebuffer of the host that can be read back.
 class RenderTarget {
  public:
     RenderTarget(gl::Device& device, glm::uvec2 size, Format format = Format::rgba32f);
@@ -106,11 +110,11 @@ class RenderTarget {
     gl::Framebuffer framebuffer_;
 };
 
-/// A configuration that writes linear radiance, and whose VPLs shine through walls: tests about what stops
-/// them ask for it, and all others need not wait for it.
+/// A configuration that writes linear radiance, without VPL visibility: tests of visibility turn it on, and
+/// all others are faster without it.
 [[nodiscard]] Configuration linear_configuration(ShadingPath path = ShadingPath::deferred);
 
-/// A renderer in a context of its own.
+/// A renderer in its own context.
 class RenderFixture : public GlFixture {
  protected:
     /// Configures, which must succeed.
@@ -119,7 +123,7 @@ class RenderFixture : public GlFixture {
     [[nodiscard]] Picture render(const Scene& scene, glm::uvec2 size) {
         return render(scene.world, scene.camera, size);
     }
-    /// What a renderer of the same configuration that has seen nothing else makes of the scene.
+    /// The picture of the scene by a new renderer with the same configuration.
     [[nodiscard]] Picture fresh_picture(const Scene& scene, glm::uvec2 size);
     /// Whether the pass ran in the last frame; the graph must have it.
     [[nodiscard]] bool ran(std::string_view pass) const;

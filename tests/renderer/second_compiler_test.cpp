@@ -1,5 +1,5 @@
-// Every variant of every program passes a second compiler beside the driver's: glslang, the reference
-// compiler.
+// Every variant of every program must pass a second compiler, in addition to the driver's: glslang, the
+// reference compiler.
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>
@@ -18,7 +18,7 @@ using namespace candela;
 namespace {
 
 std::map<GLuint, GLenum> stage_of_shader;
-std::set<std::pair<GLenum, std::string>> sources;  // that a driver has been given
+std::set<std::pair<GLenum, std::string>> sources;  // passed to the driver
 
 PFNGLCREATESHADERPROC create_shader = nullptr;
 PFNGLSHADERSOURCEPROC shader_source = nullptr;
@@ -36,7 +36,7 @@ void note_source(GLuint shader, GLsizei count, const GLchar* const* texts, const
     shader_source(shader, count, texts, lengths);
 }
 
-/// The driver's functions, those that take shaders noting what they are given.
+/// The driver's functions; those that take shaders record their arguments.
 gl::GetProc noting(const gl::GetProc& get_proc) {
     return [get_proc](const char* name) -> void (*)() {
         void (*const found)() = get_proc(name);
@@ -52,7 +52,7 @@ gl::GetProc noting(const gl::GetProc& get_proc) {
     };
 }
 
-/// By the file endings that glslang tells stages by.
+/// The file extension by which glslang recognises the stage.
 std::string ending(GLenum stage) {
     switch (stage) {
         case GL_VERTEX_SHADER:
@@ -79,8 +79,8 @@ TEST_SUITE("second compiler") {
                     configuration.path = path;
                     configuration.visibility.method = method;
                     configuration.interleave = interleave;
-                    configuration.vpls.count =
-                        interleave == Interleave::one ? 16 : 256;  // so few that paths ask them
+                    // 16 are so few that the shading passes gather them themselves.
+                    configuration.vpls.count = interleave == Interleave::one ? 16 : 256;
                     REQUIRE(renderer.configure(configuration).empty());
                 }
             }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int steps = 40;
 
-/// Few and coarse, so that a fresh renderer a step takes no time; all that is due is made at once.
+/// Few VPLs and small maps, so that a new renderer for each step is fast.
 Configuration unlimited() {
     Configuration configuration = linear_configuration();
     configuration.vpls = {.count = 8};

@@ -21,7 +21,7 @@ struct Occluder {
     double half = 0.4;
 };
 
-/// Where the line of light through a point of the ground passes, as the light sees it.
+/// The line from a light to a point of the ground.
 struct LightRay {
     glm::dvec3 from;
     glm::dvec3 direction;  ///< to the point on the ground at parameter 1
@@ -36,7 +36,7 @@ bool blocked(const Occluder& occluder, const LightRay& ray) {
 class ShadowMapTests : public RenderFixture {
  protected:
     ShadowMapTests() {
-        // From below the occluder, so that it hides nothing of the ground.
+        // Seen from below the occluder, so that it hides no part of the ground.
         occluded_.world.set(occluded_.camera, looking({0.0F, 0.45F, 0.9F}, {0.0F, 0.0F, 0.1F}));
         occluder_entity_ =
             add(occluded_.world, at(glm::vec3(occluder_.centre)),
@@ -67,9 +67,8 @@ class ShadowMapTests : public RenderFixture {
         return render(scene, size);
     }
 
-    /// Compares the shadow with the analytic one: inside nothing, outside all the light, the edge within
-    /// `margin` of the line, where `margin(ray)` gives how far a ray may go astray, as vectors added to its
-    /// direction or origin.
+    /// Compares the shadow with the analytic one: no light inside, all light outside, and the edge within a
+    /// margin. `astray(ray, u, v)` returns the ray moved by the margin, in the direction (u, v) of the map.
     template <class Ray, class Astray>
     void check_shadow(std::uint32_t resolution, const Ray& ray_to, const Astray& astray) {
         shadows(false, resolution);
@@ -87,7 +86,7 @@ class ShadowMapTests : public RenderFixture {
             constexpr int around = 16;
             for (int k = 0; k < around; ++k) {
                 const double angle = 2.0 * std::numbers::pi * k / around;
-                // On the border of a square of half width 1, corners included.
+                // On the border of a square of half width 1, including its corners.
                 const double to_border = std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)));
                 const double u = std::cos(angle) / to_border, v = std::sin(angle) / to_border;
                 hits += blocked(occluder_, astray(ray, u, v)) ? 1 : 0;
@@ -116,15 +115,15 @@ class ShadowMapTests : public RenderFixture {
     Scene occluded_ = ground();
 };
 
-/// How far the edge may be off, along each axis of the map.
+/// The margin of the edge along each axis of the map.
 constexpr double texels = 2.0;
 
 }  // namespace
 
 TEST_SUITE("shadow maps") {
     TEST_CASE_FIXTURE(ShadowMapTests, "a point light's shadow, also across the edges of the cube") {
-        // From the first, the shadow is on the face below; from the second, on two faces beside it and their
-        // edge.
+        // From the first light, the shadow is on the face below it; from the second, on two faces next to
+        // that one and on the edge between them.
         for (const glm::dvec3 light : {glm::dvec3(0.2, 2.0, 0.1), glm::dvec3(0.9, 1.2, 0.8)}) {
             light_up(at(glm::vec3(light)), PointLight{});
             for (const std::uint32_t resolution : {128U, 512U}) {
@@ -134,7 +133,7 @@ TEST_SUITE("shadow maps") {
                         return LightRay{light, p - light};
                     },
                     [&](LightRay ray, double u, double v) {
-                        // Texels of a face are squares of 2 / resolution at distance 1 along its axis.
+                        // The texels of a face are squares of 2 / resolution at distance 1 along its axis.
                         const glm::dvec3 a = glm::abs(ray.direction);
                         const int axis = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
                         const double step = texels * 2.0 / resolution * a[axis];
@@ -159,7 +158,7 @@ TEST_SUITE("shadow maps") {
                 [&](LightRay ray, double u, double v) {
                     const glm::dquat turn(pose.rotation);
                     const double depth = glm::dot(ray.direction, turn * glm::dvec3(0, 0, -1));
-                    // The map covers the cone and two texels more on each side.
+                    // The map covers the cone with a margin of two texels on each side.
                     const double texel = 2.0 * std::tan(0.8) * (1.0 + 4.0 / resolution) / resolution;
                     ray.direction += texels * texel * depth * (turn * glm::dvec3(u, v, 0));
                     return ray;
@@ -177,7 +176,7 @@ TEST_SUITE("shadow maps") {
                     return LightRay{p - 4.0 * direction, 4.0 * direction};
                 },
                 [&](LightRay ray, double u, double v) {
-                    // The map covers a ground of 8 m × 8 m, seen from any side: 8·√2 m at most.
+                    // The map covers a ground of 8 m × 8 m, seen from any direction: 8·√2 m at most.
                     const double texel = 8.0 * std::numbers::sqrt2 / resolution;
                     const glm::dvec3 right = glm::normalize(glm::cross(direction, glm::dvec3(0, 0, 1)));
                     const glm::dvec3 up = glm::cross(right, direction);
@@ -226,7 +225,7 @@ TEST_SUITE("shadow maps") {
 
     TEST_CASE_FIXTURE(ShadowMapTests,
                       "only views that changed are rendered again, and the rest still holds") {
-        renderer.verify(false);  // which renders all of them
+        renderer.verify(false);  // which renders all views
         Configuration configuration = linear_configuration();
         configuration.indirect = false;
         configuration.shadows = {.cube_resolution = 64, .map_resolution = 64};
@@ -258,9 +257,9 @@ TEST_SUITE("shadow maps") {
              },
              1},
             {"colour changes", [&] { world.edit<PointLight>(first, [](auto& l) { l.colour.g = 0.5F; }); }, 0},
-            // The brighter comes first: the two change places.
+            // The brighter one is first, so the two change places.
             {"order changes", [&] { world.edit<PointLight>(second, [](auto& l) { l.intensity = 9; }); }, 12},
-            // Another count of layers is another texture; cubes stay.
+            // Another number of layers needs another texture; the cube maps stay.
             {"spot added",
              [&] {
                  extra = add(world, looking({0, 2, 1}, {0, 0, 0}), SpotLight{});
@@ -284,7 +283,8 @@ TEST_SUITE("shadow maps") {
     }
 
     TEST_CASE_FIXTURE(ShadowMapTests, "walls do not shade each other in their crease") {
-        // A closed convex room has no shadows. At this size the creases run through the centres of pixels.
+        // A closed convex room has no shadows. At this size, the edges between walls run through pixel
+        // centres.
         const Scene furnace = shipped_scene("furnace");
         for (const std::uint32_t resolution : {64U, 256U}) {
             shadows(false, resolution);
@@ -300,7 +300,7 @@ TEST_SUITE("shadow maps") {
         for (int i = 0; i < 400; ++i) add(scene.world, at({0, 1, 0}), PointLight{.intensity = 0.1F});
         shadows(true, 16);
         static_cast<void>(picture(scene));
-        // 2,048 layers, six for each cube.
+        // 2,048 layers, six per cube map.
         CHECK(renderer.report().lights.with_shadow == 341);
         CHECK(renderer.report().lights.without_shadow == 59);
     }

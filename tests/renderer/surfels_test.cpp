@@ -1,4 +1,4 @@
-// Where surfels are, what light they send on, and that they follow what moves.
+// Where surfels are, what light they emit, and that they follow moving objects.
 
 #include <doctest/doctest.h>
 
@@ -38,7 +38,7 @@ void add_parallelogram(SurfelGround& ground, std::uint32_t item, glm::vec3 corne
     add_triangle(corner + u + v, -u, -v);
 }
 
-/// The six sides of a cube of 2 m, each of its own normal.
+/// The six sides of a cube with edges of 2 m, each with its own normal.
 SurfelGround cube() {
     SurfelGround ground{.triangles = {}, .item_of = {}, .double_sided = {false}};
     for (int axis = 0; axis < 3; ++axis) {
@@ -86,7 +86,8 @@ TEST_SUITE("surfels: where they are") {
                 const double off = static_cast<double>(surfel.area) / mean - 1.0;
                 squares += off * off;
             }
-            // Cells of points thrown at random scatter by 0.53 of their mean (Voronoi cells: Gilbert, 1962).
+            // The areas of the cells of random points have a standard deviation of 0.53 times their mean
+            // (Voronoi cells: Gilbert, 1962).
             CHECK(std::sqrt(squares / static_cast<double>(set.surfels.size())) < 0.4);
         }
     }
@@ -155,7 +156,7 @@ TEST_SUITE("surfels: where they are") {
                 world = glm::scale(world, scale);
                 world[3] = glm::vec4(number(engine), 2.0F, number(engine), 1.0F);
                 CHECK(shape_of(world) == shape);
-                // What is left is a rotation: mirrors stay in the shape.
+                // The rest is a rotation: mirroring is part of the shape.
                 const glm::mat3 rotation = glm::mat3(world) * glm::inverse(shape);
                 CHECK(glm::determinant(rotation) == doctest::Approx(1.0).epsilon(1e-3));
             }
@@ -232,7 +233,7 @@ TEST_SUITE("surfels: their light") {
             configure(surfels(count, 24));
             static_cast<void>(render(scene, {16, 12}));
             const EnergyAccount flux = renderer.report().vpls->flux;
-            // A light of 1 cd emits 4π lm, of which 16 points a surfel are a fine quadrature.
+            // A light of 1 cd emits 4π lm, which 16 points per surfel integrate accurately.
             CHECK(flux.emitted.r == doctest::Approx(4.0 * pi).epsilon(0.01));
             CHECK(flux.escaped.r == 0.0);
             const double lost =
@@ -257,7 +258,7 @@ TEST_SUITE("surfels: their light") {
         CHECK(mean(once) > 0.0);
         CHECK(mean(twice) > mean(once));
         CHECK(mean(more) > mean(twice));
-        // What each further bounce adds is less than the one before, by the scene's albedo.
+        // Each bounce adds less than the one before, by a factor of the scene's albedo.
         CHECK(mean(more) - mean(twice) < 3.0 * (mean(twice) - mean(once)));
     }
 
@@ -268,12 +269,12 @@ TEST_SUITE("surfels: their light") {
             scene.world.set(scene.light, at({x, 0.2F, 0.1F}));
             return mean(render(scene, {24, 18}));
         };
-        // On the wall that it lies on, which it grazes, is what the two differ by.
+        // They differ only on the wall that the light is on, which it lights at a grazing angle.
         CHECK(lit_from(1.0F) == doctest::Approx(lit_from(0.999F)).epsilon(0.05));
     }
 
     TEST_CASE_FIXTURE(SurfelTests, "a scene that grows past twice its size is looked at anew") {
-        // Rays start farther off surfaces then, everywhere.
+        // Rays then start farther from all surfaces.
         Configuration configuration = surfels(96);
         configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
         configure(configuration);
@@ -286,8 +287,8 @@ TEST_SUITE("surfels: their light") {
     }
 
     TEST_CASE_FIXTURE(SurfelTests, "light on a floor does not come through the wall that stands on it") {
-        // Of few surfels, whose cells reach under the wall. Behind it is nothing but the floor, which lights
-        // nothing of itself, and the wall's back.
+        // With few surfels, whose cells extend under the wall. Behind the wall there are only the floor,
+        // which does not light itself, and the back of the wall.
         Scene scene;
         add(scene.world, Transform{}, MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F)))});
         const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));

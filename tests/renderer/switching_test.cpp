@@ -15,7 +15,7 @@ namespace {
 
 constexpr glm::uvec2 size{48, 36};
 
-int creations = 0;  // GL objects and storage made through `counting`
+int creations = 0;  // GL objects and storage that were made through `counting`
 
 /// Counts the calls of one GL function that makes objects.
 template <int Which, class... Arguments>
@@ -32,7 +32,7 @@ struct Counted {
     }
 };
 
-/// The driver's functions, those that make buffers, textures and framebuffers counted.
+/// The driver's functions; counts calls of those that make buffers, textures, framebuffers and programs.
 gl::GetProc counting(const gl::GetProc& get_proc) {
     return [get_proc](const char* name) -> void (*)() {
         const std::string_view wanted(name);
@@ -97,7 +97,7 @@ TEST_SUITE("switching") {
     TEST_CASE_FIXTURE(
         GlFixture, "switching back and forth between any two paths makes no object after the first round") {
         const Scene scene = scene_with_lights();
-        // Never verified: passes that run again make their objects again.
+        // Never verified, because passes that run again create their objects again.
         Renderer renderer(counting(context->get_proc()));
         const RenderTarget target(device, size);
         const auto draw = [&](ShadingPath path) {

@@ -1,4 +1,4 @@
-// Traces the rays of a buffer against the uploaded scene: see trace_rays_test.cpp.
+// Traces the rays of a buffer through the uploaded scene: see trace_rays_test.cpp.
 #include "bvh.glsl"
 
 layout(local_size_x = 32) in;

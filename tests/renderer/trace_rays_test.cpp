@@ -51,7 +51,8 @@ class Shaders {
     }();
 };
 
-/// From points within `reach` of the origin, in all directions, of all lengths; some end early.
+/// Rays from points within `reach` of `centre` along each axis, in all directions, of all lengths; some end
+/// early.
 std::vector<TestRay> random_rays(std::size_t count, glm::vec3 centre, float reach) {
     std::mt19937 engine(7);
     const auto number = [&](float limit) {
@@ -67,7 +68,7 @@ std::vector<TestRay> random_rays(std::size_t count, glm::vec3 centre, float reac
         const float t_max = i % 8 == 0 ? 0.5F : std::numeric_limits<float>::infinity();
         rays.push_back({origin, t_max, vector(1.0F)});
     }
-    // Directions with zeros in them, of either sign.
+    // Directions that contain zeros of either sign.
     for (const glm::vec3 axis :
          {glm::vec3(0, -1, 0), glm::vec3(-0.0F, 1, -0.0F), glm::vec3(0, 0, -2), glm::vec3(1, 0, -0.0F)}) {
         rays.push_back({centre + vector(0.3F * reach), std::numeric_limits<float>::infinity(), axis});
@@ -77,7 +78,7 @@ std::vector<TestRay> random_rays(std::size_t count, glm::vec3 centre, float reac
 
 class TraceRays : public GlFixture {
  protected:
-    /// What the compute tracer hits in the world, as the renderer's own nodes upload it.
+    /// The hits of the compute tracer in the world, as uploaded by the renderer's own passes.
     std::vector<GpuHit> trace(const World& world, const std::vector<TestRay>& rays) {
         const Shaders shaders;
         Gpu gpu(context->get_proc(), shaders.library());
@@ -121,7 +122,7 @@ class TraceRays : public GlFixture {
         return hits;
     }
 
-    /// Against the hierarchy on the CPU, built from the world itself.
+    /// Compares them with the hierarchy on the CPU, built from the world itself.
     void check(const World& world, const std::vector<TestRay>& rays, double least_hit_share) {
         const std::vector<Triangle> triangles = world_triangles(world);
         const Bvh bvh = build_bvh(triangles);
@@ -136,14 +137,14 @@ class TraceRays : public GlFixture {
             REQUIRE(wanted.has_value() == std::isfinite(hits[i].t));
             if (!wanted) continue;
             ++hit_count;
-            // The triangle's corners went through the difference of its edges.
+            // The corners were reconstructed from edges, with rounding.
             const auto near = [](glm::vec3 a, glm::vec3 b) { return glm::length(a - b) < 1e-5F; };
             const Triangle& t = triangles[wanted->triangle];
             const bool same = near(t.a, hits[i].triangle.a) && near(t.b, hits[i].triangle.b) &&
                               near(t.c, hits[i].triangle.c);
             if (!same) ++ties;
-            // The same, or another as far away, to a hundred roundings: across an edge, or the floor under a
-            // block.
+            // The same triangle, or another one at the same distance within 100 roundings: across an edge, or
+            // the floor under a block.
             REQUIRE(std::abs(hits[i].t - wanted->t) <= 1e-5F * std::max(wanted->t, 1.0F));
         }
         CHECK(static_cast<double>(hit_count) > least_hit_share * static_cast<double>(rays.size()));
@@ -180,8 +181,8 @@ TEST_SUITE("compute tracer") {
         const auto hits = trace(world, rays);
         const auto triangles = world_triangles(world);
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            // Brute force over the world's own triangles, two-sided: mirrored ones have their corners in
-            // another order.
+            // Two-sided brute force over the world's own triangles: mirrored ones have another order of
+            // corners.
             float nearest = rays[i].t_max;
             for (std::uint32_t t = 0; t < triangles.size(); ++t) {
                 const auto hit =
@@ -192,7 +193,7 @@ TEST_SUITE("compute tracer") {
             REQUIRE((nearest < rays[i].t_max) == std::isfinite(hits[i].t));
             if (!std::isfinite(hits[i].t)) continue;
             REQUIRE(std::abs(hits[i].t - nearest) <= 1e-5F * std::max(nearest, 1.0F));
-            // Counter-clockwise from the front, which looks inwards.
+            // Counter-clockwise as seen from the front, which faces inwards.
             const Triangle& t = hits[i].triangle;
             CHECK(glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a) < 0.0F);
         }

@@ -50,14 +50,14 @@ Entity add_pane(Scene& scene, const Pane& pane) {
 constexpr glm::dvec3 light_position(0.4, 4.0, -0.2);
 constexpr double intensity = 30.0;  // candela
 
-/// What a horizontal surface reflects at a point.
+/// The radiance that a horizontal surface reflects at a point.
 double reflected(double albedo, glm::dvec3 point) {
     const glm::dvec3 to_light = light_position - point;
     const double r = glm::length(to_light);
     return albedo / pi * intensity * to_light.y / (r * r * r);
 }
 
-/// The ground under a point light, and panes between the two.
+/// The ground under a point light; panes are added between them.
 Scene lit_ground() {
     Scene scene = ground();
     scene.world.set(scene.light, at(glm::vec3(light_position)));
@@ -74,7 +74,8 @@ class Transparent : public RenderFixture {
         return render(scene, size);
     }
 
-    /// Compares every pixel off the panes' rims with L = α·lit + (1 - α)·behind, from the ground up.
+    /// Compares every pixel away from the rims of panes with L = α·lit + (1 - α)·behind, from the ground
+    /// upwards.
     void check(const Scene& scene, std::vector<Pane> panes, double ground_albedo = 0.5) {
         std::ranges::sort(panes, {}, &Pane::height);
         const auto& camera = scene.world.get<Camera>(scene.camera);
@@ -110,7 +111,7 @@ class Transparent : public RenderFixture {
     }
 };
 
-/// Radiance with its alpha, as the picture shows it.
+/// Radiance with its alpha, as written to the picture.
 std::vector<glm::vec4> with_alpha(const gl::Functions& gl, Renderer& renderer, const Scene& scene,
                                   const RenderTarget& target) {
     renderer.render(scene.world, scene.camera, target.target());
@@ -147,7 +148,7 @@ TEST_SUITE("transparent surfaces") {
             renderer.invalidate();
             check(scene, {lower, upper});
 
-            // Past each other.
+            // They swap heights.
             const auto swap_height = [&](Entity entity, float height) {
                 scene.world.set(entity, at({0, height, 0}));
             };
@@ -174,8 +175,8 @@ TEST_SUITE("transparent surfaces") {
     }
 
     TEST_CASE_FIXTURE(Transparent, "of a double-sided surface the far side is drawn before the near one") {
-        // A box seen from straight above, whose top and bottom are at different distances from the light.
-        // Mirrored, its triangles come in the other order.
+        // A box seen from directly above. Its top and bottom are at different distances from the light.
+        // Mirroring it reverses the order of its triangles.
         for (const float mirror : {1.0F, -1.0F}) {
             CAPTURE(mirror);
             Scene scene = lit_ground();
@@ -274,7 +275,7 @@ TEST_SUITE("transparent surfaces") {
                 MeshInstance{
                     square(0.3F, glass({0.9F, 0.15F * step, 0.4F}, 0.2F + 0.1F * step, i % 2 == 0))});
         }
-        // Small lights all over, so that most lists differ from all lights, in front of the walls too.
+        // Small lights everywhere, also in front of the walls, so that most lists do not contain all lights.
         for (int i = 0; i < 40; ++i) {
             const auto spread = [i](float step) { return std::fmod(static_cast<float>(i) * step, 1.0F); };
             add(scene.world,

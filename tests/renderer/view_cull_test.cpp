@@ -50,7 +50,7 @@ bool is_in_view(const glm::vec4& clip) {
     return std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z >= 0.0F && clip.z <= clip.w;
 }
 
-/// Whether any of many points in the box is in the view.
+/// Whether any of many random points in the box is in the view.
 bool any_point_in_view(Random& random, const Box& box, const glm::mat4& clip_from_world) {
     for (int i = 0; i < 200; ++i) {
         if (is_in_view(clip_from_world * glm::vec4(random.within(box), 1.0F))) return true;
@@ -58,7 +58,7 @@ bool any_point_in_view(Random& random, const Box& box, const glm::mat4& clip_fro
     return false;
 }
 
-/// Looks along -z from the origin, a right angle wide and high, from 1 to 10 metres.
+/// Looks along -z from the origin, 90° wide and high, from 1 to 10 metres.
 CameraView straight_view() {
     Camera camera;
     camera.vertical_fov = 1.5707963F;
@@ -89,7 +89,7 @@ TEST_SUITE("view cull") {
                 culled += outside ? 1 : 0;
             }
         }
-        // Near an edge of the view a box may lie beyond no single plane.
+        // Near an edge of the view, an invisible box may not be completely outside of any single plane.
         CHECK(hidden > 1000);
         CHECK(culled > 0.9 * hidden);
     }
@@ -116,7 +116,7 @@ TEST_SUITE("view cull") {
                                        {0, 0, -10.4F}}) {
             CHECK_FALSE(is_outside(cube_at(across), clip));
         }
-        CHECK_FALSE(is_outside({glm::vec3(-100.0F), glm::vec3(100.0F)}, clip));  // around the eye
+        CHECK_FALSE(is_outside({glm::vec3(-100.0F), glm::vec3(100.0F)}, clip));  // contains the eye
     }
 
     TEST_CASE("draws outside the view lose their instance, by where they are placed, and nothing else") {

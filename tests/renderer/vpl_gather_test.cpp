@@ -1,4 +1,4 @@
-// Interleaved gathering gives what asking all VPLs at every pixel gives, as far as surfaces go on.
+// Interleaved gathering gives the same result as gathering all VPLs at every pixel, on continuous surfaces.
 
 #include <doctest/doctest.h>
 
@@ -39,7 +39,7 @@ class VplGatherTests : public PathFixture {
     }
 };
 
-/// Three lights whose paths make up to four bounces.
+/// Three lights whose paths have up to four bounces.
 VplPlan three_lights() {
     LightTable lights;
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -94,8 +94,7 @@ TEST_SUITE("interleaved gathering") {
                     const double size = entry.second;
                     CAPTURE(group.first);
                     CAPTURE(group.second);
-                    // Both ends of a share lie within one member of each group of where they are in
-                    // proportion.
+                    // Each end of a share is within one member of each group of its proportional position.
                     const double ends = 1.0 + 2.0 * size * static_cast<double>(sizes.size()) /
                                                   static_cast<double>(order.size());
                     CHECK(std::abs(found[group] - size / static_cast<double>(classes)) <= ends);
@@ -109,12 +108,13 @@ TEST_SUITE("interleaved gathering") {
     }
 
     TEST_CASE_FIXTURE(VplGatherTests, "on a plane it is what all VPLs give, to rounding") {
-        // So near that the light of a VPL is the same in all the picture.
+        // A view so narrow that the light of a VPL is the same in the whole picture.
         Scene scene = cornell_box();
         scene.camera = add(scene.world, looking({0.1F, 1.3F, 1.0F}, {0.15F, 1.25F, -1.0F}),
                            Camera{.vertical_fov = 1e-4F});
         for (const VplVisibility method : {VplVisibility::none, VplVisibility::rays}) {
-            // Not a multiple of the classes' number, and a picture that holds no whole number of blocks.
+            // The number of VPLs is not a multiple of the number of classes, and the picture is not a whole
+            // number of blocks.
             Configuration configuration = indirect_only(Interleave::one, 300);
             configuration.visibility.method = method;
             const Picture all = picture(scene, configuration, {83, 61});
@@ -122,8 +122,7 @@ TEST_SUITE("interleaved gathering") {
             for (const Interleave interleave : interleaved) {
                 CAPTURE(to_string(interleave));
                 configuration.interleave = interleave;
-                // Over a tenth of a millimetre the light of the nearest VPL, half a metre off, changes by
-                // 1e-4.
+                // Over 0.1 mm, the light of the nearest VPL, 0.5 m away, changes by 1e-4.
                 CHECK(worst_error(picture(scene, configuration, {83, 61}), all, 1e-12) < 2e-4);
                 CHECK(lacking() == 0);
             }
@@ -131,7 +130,7 @@ TEST_SUITE("interleaved gathering") {
     }
 
     TEST_CASE_FIXTURE(VplGatherTests, "nothing of one surface's light gets onto another's") {
-        // The wall behind is lit and lights nothing of what turns its back to it.
+        // The wall at the back is lit, and does not light surfaces that face away from it.
         Scene scene;
         const glm::quat towards_z = glm::angleAxis(glm::half_pi<float>(), glm::vec3(1, 0, 0));
         add(scene.world, Transform{.translation = {0, 0, -1}, .rotation = towards_z},
@@ -146,7 +145,7 @@ TEST_SUITE("interleaved gathering") {
         }
         add(scene.world, at({0, 0, 0.8F}), PointLight{.intensity = 10.0F});
         scene.camera = add(scene.world, at({0, 0, 3}), Camera{.vertical_fov = 0.8F});
-        // One bounce: all VPLs face the viewer, and so does all that is seen.
+        // One bounce: all VPLs face the viewer, as do all visible surfaces.
         Configuration configuration = indirect_only(Interleave::one, 256);
         configuration.vpls.bounces = 1;
         configuration.visibility.method = VplVisibility::rays;
@@ -212,7 +211,7 @@ TEST_SUITE("interleaved gathering") {
             const Picture all = picture(scene, indirect_only(Interleave::one, 256), size);
             const Picture shared = picture(scene, indirect_only(Interleave::eight, 256), size);
             CHECK(is_sane(shared));
-            // Half of the VPLs, or a row of eight of 64 shares, stand for all.
+            // Half of the VPLs, or 8 of 64 shares in a row, represent all of them.
             CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.25));
         }
     }

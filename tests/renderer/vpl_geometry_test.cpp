@@ -18,9 +18,10 @@ constexpr double pi = std::numbers::pi;
 constexpr glm::uvec2 size{32, 64};
 constexpr float albedo = 0.5F;
 
-/// A floor of 2 m × 2 m at y = 0 that lies in the sun, and an upright wall as large in front of its edge x =
-/// 1, `gap` away, which sees the sun from the side and so not at all. The camera sees the middle of the wall:
-/// pixels are as high as it is over `size.y`. `foot` is the wall's lower edge. All that is turned by `turn`.
+/// A floor of 2 m × 2 m at y = 0 in the sun, and an upright wall of the same size, at a distance of `gap`
+/// from the floor's edge x = 1. The sun's rays are parallel to the wall and do not light it. The camera faces
+/// the middle of the wall; the height of the picture is that of the wall. `foot` is the height of the wall's
+/// lower edge. Everything is rotated by `turn`.
 Scene sunlit_floor(float gap, float foot, glm::quat turn) {
     Scene scene;
     const auto turned = [&](const Transform& pose) {
@@ -39,13 +40,13 @@ Scene sunlit_floor(float gap, float foot, glm::quat turn) {
     return scene;
 }
 
-/// Along the world's axes, and askew to them, since it is along them that edges are looked for.
+/// Aligned with the world's axes and rotated, because edges are searched along these axes.
 const std::array<glm::quat, 3> turns{glm::quat(1, 0, 0, 0), glm::angleAxis(0.6F, glm::vec3(0, 1, 0)),
                                      glm::angleAxis(0.9F, glm::normalize(glm::vec3(1, 2, 3)))};
 
-/// Share of the sky of a place on a wall, `height` above the floor, that the floor takes up: it is 2 · 1 m
-/// wide, and goes from the wall to `depth`. Twice the configuration factor of Howell et al., "Thermal
-/// Radiation Heat Transfer", from an element to a rectangle at right angles with a corner below it.
+/// The form factor from a point on a wall, `height` above the floor, to the floor, which is 2 · 1 m wide and
+/// extends from the wall to `depth`. Twice the configuration factor of Howell et al., "Thermal Radiation Heat
+/// Transfer", from an element to a perpendicular rectangle with a corner below it.
 double floor_factor(double height, double depth) {
     const double slant = std::hypot(height, depth);
     return (std::atan(1.0 / height) - height / slant * std::atan(1.0 / slant)) / pi;
@@ -53,13 +54,13 @@ double floor_factor(double height, double depth) {
 
 class VplGeometry : public RenderFixture {
  protected:
-    /// Mean radiance of each row's middle pixels, from one bounce of light, bottom row first.
+    /// The mean radiance of the middle pixels of each row, from one bounce of light, bottom row first.
     std::vector<double> rows(const Scene& scene) {
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
         configuration.vpls = {.placement = VplPlacement::paths, .count = 4096, .bounces = 1, .seed = 0};
         configure(configuration);
-        renderer.invalidate();  // the scenes of a loop lie at one address
+        renderer.invalidate();  // the scenes of a loop have the same address
         const Picture picture = render(scene, size);
         std::vector<double> means(size.y, 0.0);
         for (std::uint32_t y = 0; y < size.y; ++y) {
@@ -74,7 +75,7 @@ class VplGeometry : public RenderFixture {
 }  // namespace
 
 TEST_SUITE("geometry term") {
-    // VPLs stand for discs of a radius R of 0.05 m here: 4A / (π N), of 8 m² and 4096 VPLs, is R².
+    // VPLs represent discs with a radius R of 0.05 m here: R² = 4A / (π N), with 8 m² and 4096 VPLs.
     constexpr double radius = 0.05;
     constexpr double scatter = 0.02;  // of the VPLs: more than 1/√N, as the sun's footprint wastes some
 
@@ -86,7 +87,7 @@ TEST_SUITE("geometry term") {
                 const double height = 2.0 * (y + 0.5) / size.y;
                 const double exact = albedo * albedo / pi * floor_factor(height, 2.0);
                 CAPTURE(height);
-                // A disc alone would take all away towards the foot. What is lost fades as R over the height.
+                // A disc alone would remove all light towards the foot. The loss fades as R over the height.
                 CHECK(found[y] > exact * (1.0 - std::min(0.3, 0.2 * radius / height) - scatter));
                 CHECK(found[y] < exact * (1.0 + scatter));
             }
@@ -104,32 +105,34 @@ TEST_SUITE("geometry term") {
                 const double factor = floor_factor(height, 2.0 + gap) - floor_factor(height, gap);
                 const double exact = height < 0.0 ? 0.0 : albedo * albedo / pi * factor;
                 CAPTURE(height);
-                // Discs two radii away are blurred a little, and VPLs scatter. Were the floor taken to go on
-                // to the wall, the lowest rows would be off by an eighth of the peak and more.
+                // Discs two radii away are slightly blurred, and VPLs are noisy. If the floor were assumed to
+                // extend to the wall, the lowest rows would be off by an eighth of the peak or more.
                 CHECK(std::abs(found[y] - exact) < 0.07 * peak);
             }
         }
     }
 
     TEST_CASE_FIXTURE(VplGeometry, "no pixel on the line where two walls meet is dark") {
-        // The camera looks straight into a box: its creases run at 45 degrees, through the centres of pixels.
+        // The camera looks straight into a box: the edges between walls run at 45 degrees, through pixel
+        // centres.
         const Scene scene = shipped_scene("furnace");
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
         configuration.vpls.placement = VplPlacement::paths;
-        configuration.vpls.count =
-            256;  // of more, the discs are so small that a corner's pixel lies deep within them
+        // With more VPLs the discs are so small that the pixel in a corner is deep inside them.
+        configuration.vpls.count = 256;
         const auto picture = [&](VplVisibility method) {
             configuration.visibility.method = method;
             configure(configuration);
             return render(scene, {96, 96});
         };
         const Picture open = picture(VplVisibility::none);
-        // All walls are lit alike, but for what is taken off near VPLs, most in the corners of the box.
+        // All walls are lit equally, except for the light that is removed near VPLs, mostly in the corners of
+        // the box.
         CHECK(static_cast<double>(std::ranges::min_element(open.pixels, {}, &glm::vec3::r)->r) >
               0.5 * mean(open));
         CHECK(worst_error(picture(VplVisibility::rays), open, 0.0) < 1e-4);  // sums in another order
-        // Half of what a map's look-up reads may be the other wall.
+        // Half of the texels that a look-up in a map reads may be of the other wall.
         const Picture mapped = picture(VplVisibility::maps);
         for (std::size_t i = 0; i < open.pixels.size(); ++i) {
             CHECK(mapped.pixels[i].r > 0.5F * open.pixels[i].r);

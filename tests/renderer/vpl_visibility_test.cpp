@@ -29,7 +29,11 @@ Configuration indirect_only(VplVisibility method, std::uint32_t resolution = 32)
     return configuration;
 }
 
-/// relMSE as measures of Candela's pictures have it: over all pixels, relative to |b|² + 0.01 · |mean of b|².
+/// relMSE as in the study's measures: over all pixels, relative to
+/// b
+/// ² + 0.01 ·
+/// mean of b
+/// ².
 double relative_error(const Picture& a, const Picture& b) {
     glm::dvec3 sum(0.0);
     for (const glm::vec3& pixel : b.pixels) sum += pixel;
@@ -44,8 +48,9 @@ double relative_error(const Picture& a, const Picture& b) {
     return error / count;
 }
 
-/// A floor of 4 × 4 and, along its edge x = -2, a wall that a spot light shines on. All lengths times
-/// `scale`. The VPLs are on the wall; the floor hides nothing from it. `cone` is the light's, in radians.
+/// A floor of 4 × 4 and, along its edge x = -2, a wall that is lit by a spot light. All lengths are
+/// multiplied by `scale`. The VPLs are on the wall, and the floor does not occlude them. `cone` is that of
+/// the light, in radians.
 Scene lit_wall(float scale, float cone) {
     Scene scene;
     const auto material = diffuse(glm::vec3(0.5F), true);
@@ -61,22 +66,26 @@ Scene lit_wall(float scale, float cone) {
     return scene;
 }
 
-/// A sheet that stands on the floor in the plane x = 0.
+/// A sheet that stands on the floor, in the plane x = 0.
 struct Sheet {
     double height = 2.5;
     double half_width = 2.5;
 };
 
-/// Whether the sheet crosses a line from `from` (x < 0) along `direction` before `reach`. The floor is no
-/// obstacle: what passes below the sheet's foot counts as blocked, so that its shadow begins there.
+/// Whether the sheet crosses the line from `from` (x < 0) along `direction` before `reach`. A line that
+/// crosses the plane below the foot of the sheet counts as blocked, so that the shadow begins at the foot.
 bool crosses(const Sheet& sheet, double scale, glm::dvec3 from, glm::dvec3 direction, double reach) {
     const double t = -from.x / direction.x;
     const glm::dvec3 at = (from + t * direction) / scale;
     return direction.x > 0.0 && t < reach && at.y < sheet.height && std::abs(at.z) < sheet.half_width;
 }
 
-/// Angle that a texel's diagonal is at most seen under: one of 2 / resolution along both sides of the square
-/// is √2 · 2 / resolution on the octahedron, which is s⁻¹ away (s = |x| + |y| + z of the direction).
+/// The largest angle under which the diagonal of a texel is seen. A texel of 2 / resolution along both sides
+/// of the square has a diagonal of √2 · 2 / resolution on the octahedron, which is at distance s⁻¹ (s =
+/// x
+/// +
+/// y
+/// + z of the direction).
 double texel_angle(std::uint32_t resolution, glm::dvec3 local) {
     const double s = std::abs(local.x) + std::abs(local.y) + local.z;
     return std::asin(std::min(1.0, 2.0 * std::numbers::sqrt2 * s / resolution));
@@ -90,8 +99,8 @@ class VplVisibilityTests : public PathFixture {
         return render(scene, size);
     }
 
-    /// Checks the shadow of a sheet in the light of one VPL. Nothing may be wrong where all lines within
-    /// `astray` of the one to the VPL are blocked, or none.
+    /// Checks the shadow of a sheet in the light of one VPL. A pixel must be exact if all lines within the
+    /// angle `astray` of its line to the VPL are blocked, or if none of them is.
     void check_sheet(Configuration configuration, float scale, double texels) {
         Scene scene = lit_wall(scale, 0.002F);
         const Sheet sheet;
@@ -103,7 +112,7 @@ class VplVisibilityTests : public PathFixture {
         const Picture shadowed = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::none;
         const Picture lit = picture(scene, configuration);
-        const glm::dvec3 vpl = static_cast<double>(scale) * glm::dvec3(-2, 1, 0.1);  // where the cone points
+        const glm::dvec3 vpl = static_cast<double>(scale) * glm::dvec3(-2, 1, 0.1);  // the target of the cone
         const auto& camera = scene.world.get<Camera>(scene.camera);
         const auto& pose = scene.world.get<Transform>(scene.camera);
         std::size_t dark = 0, bright = 0, wrong = 0;
@@ -146,7 +155,7 @@ class VplVisibilityTests : public PathFixture {
     }
 };
 
-/// The two rooms with the door between them shut.
+/// The two rooms with the door between them closed.
 Scene closed_rooms() {
     Scene scene = shipped_scene("two-rooms");
     Entity door;
@@ -174,7 +183,7 @@ TEST_SUITE("VPL visibility") {
                 CAPTURE(scale);
                 CAPTURE(resolution);
                 configuration.visibility.map_resolution = resolution;
-                // No pixel by more than a hundredth, and none brightened.
+                // No pixel differs by more than 1 %.
                 CHECK(worst_error(picture(scene, configuration), lit, 1e-12) < 0.01);
             }
             configuration.visibility.method = VplVisibility::rays;
@@ -184,12 +193,12 @@ TEST_SUITE("VPL visibility") {
 
     TEST_CASE_FIXTURE(VplVisibilityTests, "smooth normals darken nothing of a sphere's inside") {
         Scene scene;
-        // Facets of 8°: the shading normal is up to 5° off their own.
+        // Facets of 8°: shading normals differ by up to 5° from the normals of facets.
         add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 3, diffuse(glm::vec3(0.5F)))});
         add(scene.world, at({0.5F, 0.3F, 0.2F}), PointLight{});
         scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
         Configuration configuration = indirect_only(VplVisibility::none);
-        configuration.vpls.count = 12;  // each of which a pixel would miss more than it would one of many
+        configuration.vpls.count = 12;  // few, so that missing one of them makes a large difference
         const Picture lit = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::maps;
         for (const std::uint32_t resolution : resolutions) {
@@ -204,7 +213,7 @@ TEST_SUITE("VPL visibility") {
             for (const std::uint32_t resolution : resolutions) {
                 check_sheet(indirect_only(VplVisibility::maps, resolution), scale, 2.0);
             }
-            // Rays stray by no more than the offsets of their ends: a hundredth of a texel's diagonal here.
+            // Rays are exact except for the offsets of their ends: here a hundredth of a texel's diagonal.
             check_sheet(indirect_only(VplVisibility::rays), scale, 0.01);
         }
     }
@@ -223,10 +232,10 @@ TEST_SUITE("VPL visibility") {
             CAPTURE(resolution);
             configuration.visibility.map_resolution = resolution;
             const double error = relative_error(picture(scene, configuration), exact);
-            CHECK(error < 0.7 * coarser);  // more than noise would give
+            CHECK(error < 0.7 * coarser);  // noise alone would reduce it less
             coarser = error;
         }
-        // 256 texels a side: 16 tiles a layer, and so 6 layers. A texel is 1/100 rad, a blurred edge 2 cm
+        // 256 texels per side: 16 slots per layer, and so 6 layers. A texel is 1/100 rad, a blurred edge 2 cm
         // wide.
         CHECK(coarser < 0.02);
     }
@@ -254,7 +263,7 @@ TEST_SUITE("VPL visibility") {
             CAPTURE(to_string(method));
             check_paths(scene, {60, 45}, indirect_only(method));
         }
-        // At the very edge of a shadow the rounding of a position decides about a whole VPL.
+        // At the edge of a shadow, the rounding of a position decides about a whole VPL.
         Configuration configuration = indirect_only(VplVisibility::rays);
         configuration.vpls.count = 64;
         configuration.path = ShadingPath::forward;
@@ -279,7 +288,8 @@ TEST_SUITE("VPL visibility") {
         const Picture lit = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::rays;
         CHECK(relative_error(picture(scene, configuration), lit) < 1e-6);
-        // Along its edges a texel that sees one wall darkens the other, over a strip as wide as the texel.
+        // Along the box's edges, a texel that sees one wall darkens the other, in a strip as wide as the
+        // texel.
         for (const auto& bound : {std::pair{32U, 0.03}, std::pair{128U, 0.01}}) {
             const auto [resolution, most] = bound;
             CAPTURE(bound.first);

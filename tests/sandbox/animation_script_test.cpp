@@ -35,7 +35,7 @@ std::string fault_of_script(std::string_view json) {
     return fault_of([&] { static_cast<void>(read_script(json)); });
 }
 
-/// Of a script with one track, of the node "lamp" and 60 frames.
+/// The error of a script of 60 frames with one track, for the node "lamp".
 std::string fault_of_track(std::string_view members) {
     return fault_of_script(fmt::format(R"({{"frames": 60, "tracks": [{{"node": "lamp", {}}}]}})", members));
 }
@@ -61,7 +61,7 @@ struct Staged {
     explicit Staged(const char* name)
         : scene(load_scene(scene_of(shipped(name)).value())), animation(shipped(name), scene.world) {}
 
-    /// World space, metres, in this frame.
+    /// The world-space matrix (metres) of a node in this frame.
     glm::mat4 matrix(const char* node, int frame) {
         animation.apply(scene.world, frame);
         for (auto [entity, name] : scene.world.view<Name>()) {
@@ -106,7 +106,7 @@ TEST_SUITE("animation script") {
         CHECK(door.interpolation == Interpolation::step);
         REQUIRE(door.rotation.size() == 2);
         CHECK(door.rotation[0].value == glm::quat(1, 0, 0, 0));
-        // By 90 degrees around -Y, +X comes to +Z. A rounding of unit vectors.
+        // A rotation by 90 degrees around -Y turns +X to +Z, within a rounding of unit vectors.
         CHECK(glm::distance(door.rotation[1].value * glm::vec3(1, 0, 0), glm::vec3(0, 0, 1)) < 1e-6F);
 
         const Track& camera = script.tracks[2];
@@ -245,7 +245,7 @@ TEST_SUITE("animation script") {
         for (int frame = 0; frame + 1 < walk.animation.script().frames; ++frame) {
             const glm::vec3 step =
                 walk.position("ceiling light", frame + 1) - walk.position("ceiling light", frame);
-            // Positions within 0.1 m are rounded to some 1e-8 m.
+            // Positions within 0.1 m have a rounding error of about 1e-8 m.
             CHECK(glm::distance(step, glm::vec3(1e-3F, 0.0F, 0.0F)) < 1e-7F);
         }
     }
@@ -270,12 +270,11 @@ TEST_SUITE("animation script") {
             if (name.value == "door") leaf = entity;
         }
         const int last = door.animation.script().frames - 1;
-        // The scene's file has seven decimals.
+        // The scene file has seven decimals.
         const glm::mat4 open = world_matrix(untouched.world, leaf);
         for (int column = 0; column < 4; ++column)
             CHECK(glm::distance(door.matrix("door", last)[column], open[column]) < 1e-6F);
-        // Shut, its leaf lies in the wall's plane, along the world's +Z, from which it turns further and
-        // further.
+        // The closed door is in the plane of the wall, along the world's +Z, and then opens steadily.
         CHECK(glm::vec3(door.matrix("door", 0)[2]) == glm::vec3(0.0F, 0.0F, 1.0F));
         for (int frame = 0; frame < last; ++frame)
             CHECK(door.matrix("door", frame + 1)[2].z <= door.matrix("door", frame)[2].z);

@@ -22,13 +22,13 @@ glm::quat turned(float degrees) {
     return glm::angleAxis(glm::radians(degrees), up);
 }
 
-/// Degrees around +Y by which a rotation turns +X, in (-180, 180].
+/// The angle in degrees around +Y by which a rotation turns +X, in (-180, 180].
 float heading(const glm::quat& rotation) {
     const glm::vec3 x = rotation * glm::vec3(1.0F, 0.0F, 0.0F);
     return glm::degrees(std::atan2(-x.z, x.x));
 }
 
-/// A few roundings of numbers of the size of the angle in radians, taken through a sine and an arc tangent.
+/// A few roundings of an angle in radians, after a sine and an arc tangent.
 constexpr float degree_tolerance = 1e-3F;
 
 Track moving(Interpolation interpolation) {
@@ -45,7 +45,7 @@ float heading_at(const Track& track, int frame) {
     return heading(*pose_at(track, frame).rotation);
 }
 
-/// A lamp on an arm, a mesh, a sun and a camera.
+/// A lamp on an arm, a mesh, a directional light and a camera.
 struct Stage {
     World world;
     Entity arm = add("arm");
@@ -69,7 +69,7 @@ struct Stage {
     }
 };
 
-/// Everything at once, each value at its own pace.
+/// Animates everything at once, each value with its own keys.
 Script everything(bool loop) {
     Script script;
     script.path = "all.json";
@@ -131,12 +131,12 @@ TEST_SUITE("animation") {
     }
 
     TEST_CASE("between keys: in proportion, not at all, or at rest at both ends") {
-        // The keys' values and the parts 1/2 and 1/4 of their way are exact in binary.
+        // The values of the keys and the fractions 1/2 and 1/4 between them are exact in binary.
         CHECK(pose_at(moving(Interpolation::linear), 15).translation == glm::vec3(2, 2, 1));
         CHECK(pose_at(moving(Interpolation::linear), 21).translation == glm::vec3(3, 1.5, -1));
         for (const int frame : {11, 15, 19})
             CHECK(pose_at(moving(Interpolation::step), frame).translation == glm::vec3(1, 2, 3));
-        // 3t² - 2t³: a half at a half, 5/32 at a quarter.
+        // 3t² - 2t³: 1/2 at t = 1/2, 5/32 at t = 1/4.
         CHECK(pose_at(moving(Interpolation::smooth), 15).translation == glm::vec3(2, 2, 1));
         CHECK(pose_at(moving(Interpolation::smooth), 21).translation ==
               glm::vec3(3.0F, 2.0F - 2.0F * 5.0F / 32.0F, -1.0F));
@@ -174,7 +174,7 @@ TEST_SUITE("animation") {
             CHECK(heading_at(ahead, frame) == doctest::Approx(9.0 * frame).epsilon(degree_tolerance));
             CHECK(glm::length(*pose_at(ahead, frame).rotation) == doctest::Approx(1.0).epsilon(1e-6));
         }
-        // From 170 to -170 degrees it is 20 ahead, not 340 back.
+        // From 170 to -170 degrees is 20 degrees forwards, not 340 backwards.
         CHECK(std::abs(heading_at(turning(170.0F, 190.0F), 5)) ==
               doctest::Approx(180.0).epsilon(degree_tolerance));
         CHECK(heading_at(turning(0.0F, 270.0F), 5) == doctest::Approx(-45.0).epsilon(degree_tolerance));
@@ -211,7 +211,7 @@ TEST_SUITE("animation") {
         const auto& lamp = stage.world.get<Transform>(stage.lamp);
         CHECK(lamp.parent == stage.arm);
         CHECK(lamp.translation == glm::vec3(0.0F, 2.0F, 0.0F));
-        // The arm doubles what it carries.
+        // The arm scales its children by 2.
         CHECK(glm::vec3(world_matrix(stage.world, stage.lamp)[3]) == glm::vec3(0.0F, 4.0F, 0.0F));
         const auto& light = stage.world.get<PointLight>(stage.lamp);
         CHECK(light == PointLight{.colour = {0.0F, 0.0F, 1.0F}, .intensity = 5.0F});
@@ -227,8 +227,8 @@ TEST_SUITE("animation") {
         CHECK(lamp() == 0.0F);
         CHECK(sun() == 0.0F);
         animation.apply(stage.world, 6);
-        CHECK(lamp() == 4.0F);  // its keys': 1 + 4 · 6/8
-        CHECK(sun() == 3.0F);   // its own
+        CHECK(lamp() == 4.0F);  // from its keys: 1 + 4 · 6/8
+        CHECK(sun() == 3.0F);   // its initial value
     }
 
     TEST_CASE("a frame is the same by every way to it") {

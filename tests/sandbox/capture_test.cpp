@@ -10,7 +10,7 @@ namespace candela::sandbox {
 TEST_SUITE("capture") {
     TEST_CASE("one sample is taken at the pixel's centre, many fill the pixel evenly") {
         CHECK(pixel_jitter(0, 1) == glm::vec2(0.0F));
-        // Of 64 evenly spread points every cell of a 4×4 grid gets 4, give or take 2.
+        // Of 64 well-distributed points, every cell of a 4×4 grid gets 4 ± 2.
         std::vector<int> cells(16);
         for (int sample = 0; sample < 64; ++sample) {
             const glm::vec2 at = pixel_jitter(sample, 64);

@@ -13,15 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A configuration file, its watch, and a clock that goes by hand.
+/// A configuration file, its watch, and a clock that is advanced by hand.
 class Watched {
  public:
     Watched() { watch_.emplace(options_); }
 
-    /// As editors do that write in place. Each save is a second younger than the one before, whatever the
-    /// resolution of the file system's times.
+    /// Saves like an editor that writes in place. Each save is one second newer than the previous one,
+    /// whatever the resolution of the file system's times.
     void write(const std::string& text) const { write(path_, text); }
-    /// As editors do that write another file, which then takes the name.
+    /// Saves like an editor that writes another file and renames it.
     void replace(const std::string& text) const {
         write(folder_ / "fresh.json", text);
         fs::rename(folder_ / "fresh.json", path_);
@@ -34,7 +34,7 @@ class Watched {
         return watch_->poll(now_);
     }
     std::optional<ConfigurationResult> look_too_early() { return watch_->poll(now_); }
-    /// What comes of the file at rest: one look finds the change, the next finds it settled.
+    /// Two checks: the first one sees a change, the second one sees that the file has settled.
     std::optional<ConfigurationResult> settle() {
         CHECK_FALSE(look());
         return look();

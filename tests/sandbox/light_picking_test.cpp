@@ -16,11 +16,11 @@ namespace {
 
 constexpr glm::vec2 window(640.0F, 480.0F);
 
-// A hundredth of a pixel, and what that is at the distances below, in metres.
+// A hundredth of a pixel, and about the same in metres at the distances below.
 constexpr float tolerance_window = 1e-2F;
 constexpr float tolerance_world = 1e-4F;
 
-/// Looks down -Z from (0, 0, 5); at the origin the window is 10·tan(fov/2) high.
+/// Looks along -Z from (0, 0, 5). At the origin, the window is 10·tan(fov/2) metres high.
 Entity add_camera(World& world, Camera::Projection projection = Camera::Projection::perspective) {
     const Entity entity = world.create();
     world.set(entity, Transform{.translation = {0.0F, 0.0F, 5.0F}});
@@ -102,7 +102,7 @@ TEST_SUITE("light picking") {
         CHECK(glm::distance(position_of(world, light), {0.3F, -0.2F, 1.0F}) < tolerance_world);
 
         const Viewport viewport = make_viewport(world, camera, window);
-        const glm::vec2 grip(3.0F, -4.0F);  // grabbed beside its middle
+        const glm::vec2 grip(3.0F, -4.0F);  // grabbed next to its centre
         const glm::vec2 start = project(viewport, position_of(world, light)).value();
         const LightDrag drag(world, viewport, light, start + grip);
         drag.drag(world, viewport, start + grip);

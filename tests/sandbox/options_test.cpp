@@ -25,7 +25,8 @@ Options accepted(std::initializer_list<const char*> flags) {
     return std::get<Options>(result);
 }
 
-/// One line that starts with the program and holds `flag` and `value`, and exit status 2.
+/// Checks for one line that starts with the program's name and contains `flag` and `value`, and for exit
+/// status 2.
 void check_refused(std::initializer_list<const char*> flags, std::string_view flag, std::string_view value) {
     const auto result = parse(flags);
     REQUIRE(std::holds_alternative<EarlyExit>(result));

@@ -24,7 +24,7 @@ float distance(glm::vec3 a, glm::vec3 b) {
     return glm::distance(a, b);
 }
 
-/// Height of the horizon against the picture's horizontal: 0 if the camera does not roll.
+/// The vertical component of the camera's right axis: 0 if the camera does not roll.
 float roll(const OrbitCamera& camera) {
     return (camera.rotation * glm::vec3(1.0F, 0.0F, 0.0F)).y;
 }

@@ -31,7 +31,7 @@ void write(const fs::path& path, const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// Every pixel differs from every other, and no row or column reads the same backwards.
+/// All pixels are different, and no row or column is the same when reversed.
 Picture gradient(glm::ivec2 size) {
     Picture picture{size, {}};
     for (int y = 0; y < size.y; ++y) {
@@ -43,7 +43,7 @@ Picture gradient(glm::ivec2 size) {
     return picture;
 }
 
-/// Bits, so that NaN equals itself and -0 does not equal 0.
+/// Compares bits, so that NaN equals itself and -0 does not equal 0.
 bool same_bits(const Picture& a, const Picture& b) {
     return a.size == b.size && a.pixels.size() == b.pixels.size() &&
            std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
@@ -96,7 +96,7 @@ TEST_SUITE("picture") {
     TEST_CASE("a PFM is laid out as its specification says") {
         const TemporaryFolder folder;
         write_pfm(folder / "a.pfm", Picture{{1, 2}, {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}});
-        // The lower row first, each float's lowest byte first: 4 is 0x40800000, 1 is 0x3f800000.
+        // The bottom row first, each float with its lowest byte first: 4 is 0x40800000, 1 is 0x3f800000.
         const std::string file = read(folder / "a.pfm");
         const std::string header = "PF\n1 2\n-1.0\n";
         REQUIRE(file.size() == header.size() + 24);
@@ -107,7 +107,7 @@ TEST_SUITE("picture") {
 
     TEST_CASE("a PFM may be big-endian, which its positive scale says") {
         const TemporaryFolder folder;
-        // 1 is 0x3f800000, -2 is 0xc0000000, the least denormal is 0x00000001.
+        // 1 is 0x3f800000, -2 is 0xc0000000, the smallest denormal is 0x00000001.
         write(folder / "a.pfm",
               std::string("PF\n1 1\n1.0\n") + std::string("\x3f\x80\0\0\xc0\0\0\0\0\0\0\1", 12));
         const Picture expected{{1, 1}, {{1.0F, -2.0F, std::numeric_limits<float>::denorm_min()}}};
@@ -118,7 +118,7 @@ TEST_SUITE("picture") {
         const TemporaryFolder folder;
         const std::vector<float> values{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, -0.0F};
         write_grey_pfm(folder / "a.pfm", {2, 3}, values);
-        // Rows go from the bottom up: -0 is 0x80000000 and ends the first one.
+        // Rows are stored bottom to top: -0 is 0x80000000 and ends the first stored row.
         const std::string header = "Pf\n2 3\n-1.0\n";
         const std::string file = read(folder / "a.pfm");
         REQUIRE(file.size() == header.size() + 24);
@@ -190,7 +190,7 @@ TEST_SUITE("picture") {
         CHECK(fs::is_directory(directory));
         CHECK(folder.file_count() == 1);
 
-        // A device that is always full stands for a disk that is.
+        // A device that is always full simulates a full disk.
         const std::string full = fault_of([&] { write_pfm("/dev/full", picture); });
         CHECK(full == "/dev/full: cannot be written: No space left on device");
     }

@@ -8,12 +8,12 @@ namespace candela::sandbox {
 
 namespace {
 
-/// A lamp whose height in metres is the number of the frame.
+/// A lamp whose height in metres is the frame number.
 class Played {
  public:
     explicit Played(bool loop) : lamp_(make_lamp()), animation_(make_script(loop), world_) {}
 
-    /// The frame that the window shows.
+    /// Advances the playback; returns the frame that the window shows.
     float advance() {
         playback.advance(world_);
         return height();

@@ -96,7 +96,7 @@ TEST_SUITE("report") {
         CHECK_THROWS_WITH_AS(check_energy("a.gltf", state),
                              "a.gltf: 10 % of the emitted flux is unaccounted for: the picture is wrong",
                              EnergyError);
-        // Of surfels, which are no paths, the account is as exact as they are dense.
+        // With surfels, which have no paths, the account is only as accurate as they are dense.
         state.vpls->paths = 0;
         check_energy("a.gltf", state);
         state.vpls->flux.absorbed.g = std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,7 @@ Entity add_camera(World& world, const char* name) {
     return entity;
 }
 
-/// A triangle with corners at the origin, (size, 0, 0) and (0, 2 size, 0), then scaled by 3 along x.
+/// A triangle with corners at the origin, (size, 0, 0) and (0, 2 size, 0), scaled by 3 along x.
 void add_triangle(World& world, float size) {
     const auto mesh = std::make_shared<Mesh>();
     mesh->primitives.emplace_back();

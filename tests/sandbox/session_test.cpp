@@ -38,7 +38,7 @@ TEST_SUITE("session") {
 
         const Picture picture = read_pfm(*options.out);
         CHECK(picture.size == glm::ivec2(33, 21));
-        // The middle of the picture is the box, which is lit.
+        // The middle of the picture shows the box, which is lit.
         CHECK(glm::length(picture.pixels[10 * 33 + 16]) > 0.0F);
         const auto report = nlohmann::json::parse(std::ifstream(*options.report));
         CHECK(report["size"] == nlohmann::json::array({33, 21}));
@@ -79,7 +79,7 @@ TEST_SUITE("session") {
         options.out = folder / "samples.pfm";
         REQUIRE(run(options) == 0);
         CHECK(read_pfm(folder / "samples.pfm").pixels == read_pfm(folder / "mean.pfm").pixels);
-        // A script has an end, and its last frame is a picture of its own.
+        // A script has an end; its last frame differs from the others.
         options = small_headless();
         options.animate = "toggle";
         options.frames = 3;
@@ -100,7 +100,7 @@ TEST_SUITE("session") {
             options.vpls = 16;
             options.vpl_visibility = VplVisibility::none;
             options.animate = script;
-            options.frames = 17;  // by when every script has moved something
+            options.frames = 17;  // by then every script has moved something
             options.out = folder / "%d.pfm";
             options.report = folder / "a.json";
             REQUIRE(run(options) == 0);
@@ -138,7 +138,7 @@ TEST_SUITE("session") {
         CHECK(frame(0) != frame(1));
         CHECK(frame(1) == frame(2));
         CHECK(frame(1) == frame(3));
-        // A quarter of the light; powers of two scale without rounding.
+        // A quarter of the light; scaling by powers of two is exact.
         const glm::vec3 before = frame(0)[10 * 33 + 16];
         CHECK(before * 0.25F == frame(1)[10 * 33 + 16]);
     }

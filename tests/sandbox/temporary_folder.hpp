@@ -11,7 +11,7 @@
 
 namespace candela::sandbox {
 
-/// An empty folder that goes with the test.
+/// An empty folder that is removed with the object.
 class TemporaryFolder {
  public:
     TemporaryFolder() {

@@ -1,4 +1,4 @@
-"""What the figures say: the Pareto front, slopes, the best default."""
+"""Evaluates the measurements: the Pareto front, slopes, the best default."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -9,18 +9,18 @@ T = TypeVar("T")
 
 ENDS = ("absorbed", "escaped", "truncated", "roulette")  # of emitted light
 
-# A frame may cost this many times what the yardstick's does: instant radiosity of 256 VPLs, deferred, unbounded,
-# without visibility. A look into a VPL's map costs several times what its light does, and nothing else stops leaks.
+# The largest cost of a frame, as a multiple of the yardstick: instant radiosity with 256 VPLs, deferred, unbounded,
+# without visibility. A look-up in a VPL's map costs several times as much as its light, and only maps stop leaks.
 COST_FACTOR = 5.0
-SAME_COST = 1.05  # medians of times differ by as much from run to run
-SAME_ERROR = 1.001  # paths that add up the same light in another order
+SAME_COST = 1.05  # medians of times vary by this much between runs
+SAME_ERROR = 1.001  # of paths that add up the same light in another order
 YARDSTICK = {
     "path": "deferred", "vpls": 256, "bounces": 64, "bound": "infinity", "visibility": "none", "lever": "none"
 }
 
 
 def pareto_front(items: Iterable[T], cost: Callable[[T], float], error: Callable[[T], float]) -> list[T]:
-    """Those that nothing beats in one without losing in the other, cheapest first. Of equals, the first."""
+    """The items that no other item beats in both cost and error, cheapest first. Of equal items, the first."""
     front: list[T] = []
     for item in sorted(items, key=lambda each: (cost(each), error(each))):
         if not front or error(item) < error(front[-1]):
@@ -29,7 +29,7 @@ def pareto_front(items: Iterable[T], cost: Callable[[T], float], error: Callable
 
 
 def slope(xs: Sequence[float], ys: Sequence[float]) -> float:
-    """Of the straight line through log y against log x, by least squares. Needs two different x."""
+    """The slope of the least-squares line of log y over log x. Needs at least two different x."""
     u, v = [math.log(x) for x in xs], [math.log(y) for y in ys]
     mean_u, mean_v = sum(u) / len(u), sum(v) / len(v)
     spread = sum((a - mean_u) ** 2 for a in u)
@@ -39,8 +39,8 @@ def slope(xs: Sequence[float], ys: Sequence[float]) -> float:
 
 
 def slope_above(rows: Sequence[Row], floor: float) -> float | None:
-    """Slope of the indirect light's relMSE over the VPLs, over the points well above the reference's own noise: it
-    adds to the measured error, and at a quarter of it bends the slope by less than a tenth."""
+    """The slope of the indirect light's relMSE over the number of VPLs. Uses only points well above the reference's
+    noise, which is part of the measured error; up to a quarter of the error, it changes the slope by less than 10 %."""
     clear = [row for row in rows if row["indirect_rel_mse"] > 4 * floor]
     if len({row["vpls"] for row in clear}) < 3:
         return None
@@ -52,15 +52,14 @@ def geometric_mean(values: Sequence[float]) -> float:
 
 
 def select(rows: Iterable[Row], **wanted: Any) -> list[Row]:
-    """Rows that were measured and have these values."""
+    """The rows that were measured successfully and have these values."""
     return [row for row in rows if not row["failed"] and all(row[name] == value for name, value in wanted.items())]
 
 
 def candidates(rows: Sequence[Row]) -> list[Row]:
-    """The configurations measured on every scene of the matrix: their error in the scene where it is largest, and the
-    geometric mean of their cost as a multiple of the yardstick's on the same scene, after a move of the camera. What a
-    frame with everything made anew costs is told but does not count: while things move, the app makes a few VPLs a
-    frame."""
+    """The configurations measured on every scene of the matrix, each with its error in the scene where that is largest,
+    and with its cost: the geometric mean of its frame times after a camera move, as multiples of the yardstick's time
+    on the same scene. The cost of a frame that recomputes everything is reported, but not used for the choice."""
     yardsticks = {row["scene"]: row for row in select(rows, suite="matrix", **YARDSTICK)}
     by_id: dict[str, list[Row]] = {}
     for row in select(rows, suite="matrix"):
@@ -81,8 +80,8 @@ def candidates(rows: Sequence[Row]) -> list[Row]:
 
 
 def best_default(rows: Sequence[Row]) -> Row | None:
-    """The one that fails least where it fails most: the least error in its worst scene of those that cost at most
-    COST_FACTOR. Of the cheapest that are equal in error the first in the matrix, which is the simplest."""
+    """The configuration with the smallest error in its worst scene, of those that cost at most COST_FACTOR. Of the
+    cheapest with equal error, the first in the matrix, which is the simplest."""
     within = [each for each in candidates(rows) if each["cost"] <= COST_FACTOR]
     error = min((each["error"] for each in within), default=0.0)
     best = [each for each in within if each["error"] <= SAME_ERROR * error]
@@ -91,12 +90,12 @@ def best_default(rows: Sequence[Row]) -> Row | None:
 
 
 def excess_frames(row: Row, against: Row) -> int:
-    """How many frames have more than 1.2 times the error that another configuration has there."""
+    """The number of frames with more than 1.2 times the error of another configuration in the same frame."""
     return sum(a > 1.2 * b for a, b in zip(row["indirect_rel_mse"], against["indirect_rel_mse"]))
 
 
 def flicker_table(played: Sequence[Row]) -> list[Row]:
-    """By script, how much the indirect light flickers, and how much less that of surfels does."""
+    """For each script, the flicker of the indirect light, and the ratios of surfels to the others."""
     table = []
     for script in dict.fromkeys(row["scene"] for row in played if row["suite"] != "refinement"):
         found = {row["id"]: row for row in select(played, scene=script)}
@@ -112,7 +111,7 @@ def flicker_table(played: Sequence[Row]) -> list[Row]:
 
 
 def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
-    """By scene and number of VPLs, error and bias of the indirect light by placement."""
+    """For each scene and number of VPLs, error and bias of the indirect light by placement."""
     placed = select(rows, suite="placement")
     table = []
     for scene, vpls in dict.fromkeys((row["scene"], row["vpls"]) for row in placed):
@@ -128,8 +127,8 @@ def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
 
 
 def visibility_costs(rows: Sequence[Row]) -> list[Row]:
-    """By scene, the indirect light's error without VPL visibility, with maps and with rays, of as many VPLs as all
-    three were measured with, against a reference of as many bounces."""
+    """For each scene, the error of the indirect light without VPL visibility, with maps and with rays, for the largest
+    number of VPLs that all three were measured with. The reference has the same number of bounces."""
     table = []
     plain = select(rows, suite="convergence", path="deferred", bound=1.0)
     for scene in dict.fromkeys(row["scene"] for row in plain):
@@ -147,7 +146,8 @@ def visibility_costs(rows: Sequence[Row]) -> list[Row]:
 
 
 def time_to_error(curve: Sequence[tuple[float, float]], error: float) -> float | None:
-    """Of points (time, error), where their line, straight between logarithms, first comes down to an error."""
+    """The time at which a curve of points (time, error) first reaches an error; linear between logarithms. None if it
+    never does."""
     points = sorted(curve)
     for (t0, e0), (t1, e1) in zip(points, points[1:]):
         if e1 <= error < e0:
@@ -156,12 +156,12 @@ def time_to_error(curve: Sequence[tuple[float, float]], error: float) -> float |
     return points[0][0] if points and points[0][1] <= error else None
 
 
-AIM = 0.03  # relMSE of the total light at which the methods' times are compared
+AIM = 0.03  # relMSE of the total light at which the times of the methods are compared
 
 
 def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
-    """By scene, what interleaving 8 × 8 costs in error at 1,024 VPLs, how much more a frame takes for as many than for
-    128 after a move of the camera, and the least time to AIM beside the tracer's."""
+    """For each scene: the error of 8 × 8 interleaving relative to none at 1,024 VPLs, the frame time after a camera
+    move relative to that of 128 VPLs, and the shortest time to the error AIM relative to the path tracer's."""
     table = []
     for scene in dict.fromkeys(row["scene"] for row in select(rows, suite="gather")):
         found = {(row["vpls"], row["lever"]): row for row in select(rows, suite="gather", scene=scene)}
@@ -184,8 +184,8 @@ def gather_table(rows: Sequence[Row], tracer: Sequence[Row]) -> list[Row]:
 
 
 def camera_flicker(played: Sequence[Row]) -> list[Row]:
-    """By script in which the camera moves, how much the indirect light flickers with every pixel asking all VPLs, and
-    with each asking one in 64."""
+    """For each script in which the camera moves, the flicker of the indirect light if every pixel gathers all VPLs, and
+    if every pixel gathers one in 64."""
     table = []
     for script in dict.fromkeys(row["scene"] for row in select(played, suite="camera")):
         found = {row["id"]: row["indirect_flicker"] for row in select(played, suite="camera", scene=script)}

@@ -17,7 +17,7 @@ namespace {
 
 using sandbox::Picture;
 
-/// A script, and the scene that it moves.
+/// A script, and the scene that it animates.
 struct Play {
     sandbox::Script script;
     std::filesystem::path scene;
@@ -38,7 +38,7 @@ Play load_play(const AnimateStudy& study) {
     return {std::move(script), *file, std::move(world), std::move(animation), frames};
 }
 
-/// The reference of each frame, apart as `flicker` takes them.
+/// The references of all frames, as separate lists for `flicker`.
 struct Truth {
     std::vector<Picture> direct;
     std::vector<Picture> indirect;
@@ -47,8 +47,8 @@ struct Truth {
     std::vector<Mask> hits;
 };
 
-/// Taken from its folder, or traced and put there. All frames have the same seed: their noise is then nearly
-/// the same, and what changes from one to the next is what moves.
+/// Reads the reference from its folder, or traces it and writes it there. All frames have the same seed, so
+/// their noise is almost the same, and differences between frames are due to what moves.
 Reference reference_of(const Play& play, const std::string& hash, const AnimateStudy& study) {
     const Request request{.scene_hash = hash,
                           .tracer = std::string(tracer_name()),
@@ -90,14 +90,14 @@ Truth trace_frames(Play& play, const AnimateStudy& study) {
     return truth;
 }
 
-/// What a point makes of the script.
+/// The pictures of a script, rendered with a point's configuration.
 struct Take {
     std::vector<Picture> indirect;
     std::vector<Picture> total;
 };
 
-/// All light at once is what a user waits for; direct light comes from a renderer beside it, and indirect
-/// light is the rest.
+/// `all` shows all light; its time is that of a user's frame. `direct` shows only direct light, and indirect
+/// light is the difference of both.
 struct Stage {
     Bench all;
     Bench direct;
@@ -108,7 +108,7 @@ Configuration without_indirect(Configuration configuration) {
     return configuration;
 }
 
-/// Milliseconds of the frame with all light.
+/// Renders a frame; returns the milliseconds of the frame with all light.
 double play_frame(Stage& stage, Take& take) {
     const double ms = stage.all.frame({});
     stage.direct.frame({});
@@ -131,8 +131,8 @@ Json frame_line(const Point& point, int frame, double ms, const Report& report, 
             {"refined", report.refined}};
 }
 
-/// `noise` is what the reference's own noise adds to the indirect light's flicker: halves of variance v
-/// differ by 2v in the mean square, and their mean has v/2.
+/// `noise` is the part of the indirect light's flicker that is due to noise of the reference: halves of
+/// variance v have a mean squared difference of 2v, and their mean has a variance of v/2.
 Json flicker_line(const Point& point, const Take& take, const Truth& truth) {
     return {{"id", point.id},
             {"kind", "flicker"},
@@ -152,7 +152,7 @@ Json play_point(const gl::GetProc& get_proc, Play& play, const Truth& truth, con
     for (int frame = 0; frame < play.frames; ++frame) {
         play.animation.apply(play.world, frame);
         if (point.fresh_seeds) {
-            // Apart by more than refinement or any list of seeds would use up.
+            // A larger step than refinement or any list of seeds needs.
             configuration.vpls.seed = point.seeds.front() + 4096U * static_cast<std::uint32_t>(frame);
             stage.all.configure(configuration);
         }

@@ -15,8 +15,8 @@ struct Sample {
     double ms = 0.0;
 };
 
-/// The tracer wants an even number of samples: of an odd number twice as many are traced, and one half of
-/// them, and of the time, is taken.
+/// The tracer requires an even number of samples. For an odd number, traces twice as many, and uses one of
+/// the halves and half of the time.
 Sample sample(const reference::Scene& scene, Entity camera, reference::Settings settings) {
     const bool odd = settings.samples % 2 != 0;
     settings.samples *= odd ? 2 : 1;
@@ -37,7 +37,7 @@ Baseline run_rounds(const reference::Scene& scene, Entity camera, const Referenc
     const reference::Estimate& truth = reference.estimate;
     Baseline baseline;
     for (std::uint32_t round = 0; round < rounds; ++round) {
-        // Seeds other than the reference's: its errors must not be those of what is measured.
+        // Seeds differ from the reference's, so that errors are independent of those of the reference.
         const Sample now = sample(scene, camera,
                                   {.size = reference.request.size,
                                    .samples = samples,

@@ -47,7 +47,7 @@ sandbox::Picture Bench::picture() const {
     const std::vector<float> rgba = target_.read_floats();
     sandbox::Picture picture{glm::ivec2(size), {}};
     picture.pixels.reserve(rgba.size() / 4);
-    // The GL's row 0 is at the bottom.
+    // Row 0 of the GL is at the bottom.
     for (std::size_t row = size.y; row-- > 0;) {
         for (std::size_t i = 4 * row * size.x; i < 4 * (row + 1) * size.x; i += 4) {
             picture.pixels.emplace_back(rgba[i], rgba[i + 1], rgba[i + 2]);

@@ -10,24 +10,24 @@
 
 namespace candela::study {
 
-/// The camera that everything is measured through: the scene's first. Throws std::invalid_argument if there
-/// is none.
+/// The camera used for all measurements: the scene's first one. Throws std::invalid_argument if there is
+/// none.
 [[nodiscard]] Entity first_camera(const World& world);
 
 /// Renders linear radiance of one scene through its first camera.
 class Bench {
  public:
-    /// The world and the context outlive the bench; the context is current.
+    /// The world and the context must outlive the bench; the context must be current.
     Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size);
 
-    /// Throws std::invalid_argument with the faults. Tone mapping is off whatever is asked.
+    /// Throws std::invalid_argument with the errors. Tone mapping is always off.
     void configure(Configuration configuration);
-    /// One frame, finished on the GPU: milliseconds of wall time. Another `jitter` than the last makes all
-    /// that depends on the view run.
+    /// Renders one frame and waits for the GPU; returns milliseconds of wall time. A `jitter` different from
+    /// that of the last frame makes everything run that depends on the view.
     double frame(glm::vec2 jitter);
-    /// What the last frame shows.
+    /// The picture of the last frame.
     [[nodiscard]] sandbox::Picture picture() const;
-    /// Pixels at which the last frame has something to shade.
+    /// The number of pixels that show a surface in the last frame.
     [[nodiscard]] std::size_t covered_pixels() const;
     [[nodiscard]] Renderer& renderer() { return renderer_; }
 

@@ -17,7 +17,7 @@ import analysis
 import matrix
 from analysis import Row, select
 
-# Okabe and Ito's colours, which people of all kinds of colour vision tell apart; markers say the same once more.
+# Okabe and Ito's palette, which can be distinguished with any colour vision. Markers differ as well.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PINK = (
     "#000000", "#e69f00", "#56b4e9", "#009e73", "#d9c900", "#0072b2", "#d55e00", "#cc79a7"
 )
@@ -35,11 +35,11 @@ plt.rcParams.update({
 
 TIMES = {"frame_ms": "a frame after a move of the camera, ms", "full_ms": "a frame with everything made anew, ms"}
 
-Made = dict[str, str]  # file name without its ending: caption
+Made = dict[str, str]  # file name without extension: caption
 
 
 def legend_below(figure: Figure, axes: Axes, columns: int) -> None:
-    """One legend for all panels, under them, and the panels in the room above."""
+    """One legend for all panels, below them."""
     handles, labels = axes.get_legend_handles_labels()
     lines = -(-len(labels) // columns)
     figure.tight_layout(rect=(0, (0.2 * lines + 0.12) / figure.get_figheight(), 1, 1))
@@ -47,13 +47,13 @@ def legend_below(figure: Figure, axes: Axes, columns: int) -> None:
 
 
 def save(figure: Figure, out: pathlib.Path, name: str) -> None:
-    """The PNG with a palette: a third of the size, and the eye sees no difference in lines and text."""
+    """Saves as PNG and SVG. The PNG has a palette: a third of the size, without a visible difference."""
     drawn = io.BytesIO()
     figure.savefig(drawn, dpi=110)
     Image.open(drawn).convert("RGB").quantize(96).save(out / f"{name}.png", optimize=True)
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None})
-    # Hundredths of a point are fine enough; matplotlib writes millionths.
+    # Two decimals of a point are enough; matplotlib writes six.
     (out / f"{name}.svg").write_text(re.sub(r"(\.\d\d)\d+", r"\1", text.getvalue()), encoding="utf-8")
     plt.close(figure)
 
@@ -63,7 +63,7 @@ def scenes_of(rows: Sequence[Row], suite: str) -> list[str]:
 
 
 def family(row: Row) -> str:
-    """Which lever sets a configuration apart from the default; `paths` where only its path does."""
+    """What distinguishes a configuration from the default; `paths` if only its path does."""
     if row["bound"] != matrix.DEFAULT_BOUND:
         return "another bound"
     if row["bounces"] != matrix.DEFAULT_BOUNCES:
@@ -92,7 +92,7 @@ def scatter(axes: Axes, rows: Sequence[Row], time: str, error: str) -> None:
 
 
 def plain(axes: Axes, rows: Sequence[Row], time: str, error: str) -> None:
-    """Instant radiosity as the student report has it: all VPLs, unbounded, without visibility."""
+    """Instant radiosity as in the student report: all VPLs at every pixel, unbounded, without visibility."""
     for path, style in (("forward", ":"), ("deferred", "--")):
         chosen = select(rows, path=path, bound=matrix.UNBOUNDED, bounces=matrix.DEFAULT_BOUNCES, visibility="none")
         chosen = sorted(chosen, key=lambda row: row["vpls"])
@@ -141,7 +141,7 @@ def error_against_time(rows: Sequence[Row], tracer: Sequence[Row], best: str | N
 
 
 def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Made:
-    """By interleaving, the total light's error and the time of a frame as VPLs grow in number."""
+    """For each interleaving, the error of the total light over the frame time, for increasing numbers of VPLs."""
     made = {}
     for scene in scenes_of(rows, "gather"):
         chosen = select(rows, suite="gather", scene=scene)
@@ -216,7 +216,7 @@ def convergence(rows: Sequence[Row], out: pathlib.Path) -> Made:
 
 
 def table_cells(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """The report's figures, then ours: each path's frame as a multiple of forward's in the same round."""
+    """The report's figures, then ours: the frame time of each path as a multiple of forward's in the same round."""
     others = ["deferred", *[path for path in matrix.PATHS if path not in ("forward", "deferred")]]
     header = ["VPLs", "report:\nforward, ms", "report:\ndeferred\n/ forward", "forward, ms"]
     header += [path.replace("clustered-", "clustered-\n") + "\n/ forward" for path in others]
@@ -231,8 +231,8 @@ def table_cells(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
     return header, lines
 
 
-# Frames a second of "Instant Radiosity for Real-Time Global Illumination" (Chandran and Reddy), GeForce GTX Titan:
-# VPLs: forward, deferred.
+# Frames per second in "Instant Radiosity for Real-Time Global Illumination" (Chandran and Reddy), GeForce GTX Titan.
+# Number of VPLs: (forward, deferred).
 REPORT_FPS = {
     128: (252.75, 280.88), 192: (176.94, 216.57), 256: (135.73, 186.81), 320: (108.24, 160.84),
     384: (92.91, 141.29), 448: (80.76, 131.34), 512: (68.73, 120.28),
@@ -292,7 +292,7 @@ def growth(rows: Sequence[Row], lights: Sequence[Row], out: pathlib.Path) -> Mad
 
 
 def energy(rows: Sequence[Row], out: pathlib.Path) -> Made:
-    """Shares of the emitted flux over the number of bounces, a panel a scene."""
+    """Shares of the emitted flux over the number of bounces, one panel per scene."""
     vpls = 1024
     shown = [row for row in select(rows, suite="matrix", vpls=vpls, path=matrix.DEFAULT_PATH, visibility="none")
              if row["bound"] == matrix.DEFAULT_BOUND and "absorbed_share" in row]
@@ -328,7 +328,7 @@ def energy_panel(axes: Axes, rows: Sequence[Row]) -> None:
 
 
 def direct_light(rows: Sequence[Row], out: pathlib.Path) -> Made:
-    """The direct light's error over the resolution of the shadow maps."""
+    """The error of the direct light over the resolution of the shadow maps."""
     order = [("shadow-maps-half", "half"), ("none", "default"), ("shadow-maps-double", "double")]
     figure, axes = plt.subplots(figsize=(7, 4.8))
     for scene, (colour, marker) in zip(scenes_of(rows, "matrix"), SERIES * 2):
@@ -349,7 +349,7 @@ def direct_light(rows: Sequence[Row], out: pathlib.Path) -> Made:
 def draw(
     rows: Sequence[Row], tracer: Sequence[Row], lights: Sequence[Row], best: str | None, out: pathlib.Path
 ) -> dict[str, Made]:
-    """All charts that the rows allow: by heading, what was written."""
+    """Draws all charts for which there are rows. Returns the written files by heading."""
     matrix_made = bool(scenes_of(rows, "matrix"))
     return {
         "Error against time": error_against_time(rows, tracer, best, out),

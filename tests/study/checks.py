@@ -1,4 +1,4 @@
-"""What must hold on any machine: the checks of --quick. Times are no part of it."""
+"""The checks of --quick, which must hold on any machine. They do not involve times."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -7,36 +7,36 @@ import analysis
 import matrix
 from analysis import Row, select
 
-Check = tuple[str, bool, str]  # what must hold, whether it does, the figures
+Check = tuple[str, bool, str]  # what must hold, whether it does, the values
 
-# Where light reaches everything, so that all that is left is the VPLs' noise and what bounding takes away.
+# Scenes in which light reaches everything: only noise of VPLs and the light removed by bounding are left as errors.
 OPEN = matrix.OPEN
-# N independent samples leave a variance of 1/N: a slope of -1. Those of VPLs and of the path tracer are spread evenly,
-# by scrambled nets, whose variance falls as N^-3 at best (Owen, "Scrambled net variance for integrals of smooth
-# functions", 1997). What is flatter tends to another integral than the reference's. For VPLs that holds where nothing
-# hides anything and no two surfaces that light each other touch.
+# N independent samples have a variance of 1/N: a slope of -1. The samples of VPLs and of the path tracer are scrambled
+# nets, whose variance falls as N^-3 at best (Owen, "Scrambled net variance for integrals of smooth functions", 1997).
+# A flatter slope means convergence to an integral other than the reference's. For VPLs this holds if nothing is
+# occluded and no two surfaces that light each other touch.
 SLOPES = (-3.0, -0.9)
-# At 64 samples a reference of 1,024 adds a sixteenth to the error, which flattens the slope by 0.02.
+# At 64 samples, a reference with 1,024 samples adds 1/16 to the error, which flattens the slope by 0.02.
 TRACER_SLOPES = (-3.0, -0.85)
-# At 1,024 VPLs the plates have a relMSE of 0.004. Even if all of that were one shift of the whole picture, four seeds
-# would leave it a standard deviation of √0.004 / 2 = 0.03.
+# At 1,024 VPLs the plates have a relMSE of 0.004. Even if all of that were a uniform shift of the picture, its mean
+# over four seeds would have a standard deviation of √0.004 / 2 = 0.03.
 UNBIASED = 0.03
-# Bounding takes light away where surfaces meet: in the furnace and the corner less than this with 1,024 VPLs.
+# Bounding removes light where surfaces meet: less than this in the furnace and the corner with 1,024 VPLs.
 BOUNDED_BIAS = (-0.15, 0.03)
-# One evaluator, and G-buffers that hold what it needs: what differs is rounding.
+# All paths use the same evaluator, and G-buffers hold all its inputs: they differ only by rounding.
 PATHS_AGREE = 1e-3
-# Shadow maps are right away from shadows' edges; what is left of direct light is rounding, of positions above all.
+# Away from shadow edges, shadow maps are exact. Direct light differs only by rounding, mainly of positions.
 DIRECT_OFF_EDGES = 1e-4
-# What 1,024 VPLs that look out for obstacles may leave of the indirect light's error in the Cornell box, and, in the
-# two rooms, of the error of VPLs that shine through the wall.
+# The largest error of the indirect light with 1,024 VPLs with visibility: in the Cornell box; and in the two rooms, as
+# a share of the error without visibility.
 CORNELL_ERROR = 0.03
 ROOMS_SHARE = 0.2
-# The share of the emitted flux that the account may be off by: sums of thousands of 32-bit floats.
+# The largest residual of the energy account, as a share of the emitted flux: sums of thousands of 32-bit floats.
 ENERGY = 1e-3
 
 
 def series(rows: Sequence[Row], scene: str, bound: float | str) -> list[Row]:
-    """Where something hides the light, of VPLs that look out for it."""
+    """The points of a scene by number of VPLs; with VPL visibility if the scene has occlusion."""
     visibility = "none" if scene in OPEN else matrix.DEFAULT_VISIBILITY
     chosen = select(rows, scene=scene, path=matrix.DEFAULT_PATH, bound=bound, visibility=visibility)
     return sorted(chosen, key=lambda row: row["vpls"])
@@ -63,7 +63,7 @@ def names(rows: Sequence[Row]) -> list[str]:
 
 
 def errors_fall(rows: Sequence[Row]) -> Iterator[Check]:
-    """Bounded as by default."""
+    """With the default bound."""
     for scene in names(rows):
         errors = [row["indirect_rel_mse"] for row in series(rows, scene, matrix.DEFAULT_BOUND)]
         falls = len(errors) > 1 and all(after < before for before, after in zip(errors, errors[1:]))
@@ -85,7 +85,7 @@ def obstacles_seen(rows: Sequence[Row]) -> Iterator[Check]:
 
 
 def flicker_falls(played: Sequence[Row]) -> Iterator[Check]:
-    """Surfels flicker less than VPLs on paths that are traced anew."""
+    """Surfels flicker less than VPLs on paths that are traced again in every frame."""
     for script in names(played):
         failed = [f"{row['id']}: {row['failed']}" for row in played if row["scene"] == script and row["failed"]]
         yield f"{script}: every configuration is played", not failed, "; ".join(failed)
@@ -144,7 +144,7 @@ def paths_agree(rows: Sequence[Row]) -> Iterator[Check]:
 
 
 def run(rows: Sequence[Row], tracer: Sequence[Row], played: Sequence[Row]) -> int:
-    """Prints what does not hold, and how many checks passed. Returns the exit status."""
+    """Prints the failed checks and the number of passed ones. Returns the exit status."""
     found: list[Check] = []
     errors = (errors_fall, obstacles_seen, slopes_in_band, biases_bounded, direct_light_right)
     for make in (all_measured, *errors, paths_agree, energy_accounted):

@@ -40,7 +40,7 @@ Picture read_finite(const Path& path) {
     return picture;
 }
 
-/// Read, finite and as large as the picture it goes with.
+/// Reads a picture, which must be finite and have this size.
 Picture read_matching(const Path& path, glm::ivec2 size) {
     Picture picture = read_finite(path);
     if (picture.size == size) return picture;
@@ -48,7 +48,7 @@ Picture read_matching(const Path& path, glm::ivec2 size) {
                            size.x, size.y));
 }
 
-/// Empty, which stands for all pixels, without a file.
+/// Empty without a file, which means all pixels.
 Mask read_mask(const std::optional<Path>& path, glm::ivec2 size) {
     if (!path) return {};
     const Picture picture = read_matching(*path, size);

@@ -54,7 +54,7 @@ TEST_SUITE("compare") {
         sandbox::write_grey_pfm(folder / "mask.pfm", {2, 2}, mask);
         const std::string text =
             compare({folder / "a.pfm", folder / "b.pfm", folder / "mask.pfm", folder / "heat.png", {}});
-        // 0.25 / 1.01 / 3, and the root of the pixel's own 0.25 / 1.01.
+        // 0.25 / 1.01 / 3, and the square root of the pixel's own 0.25 / 1.01.
         CHECK(text.starts_with("relMSE   0.0825083\n"));
         CHECK(text.ends_with("heat     0.497519\n"));
 

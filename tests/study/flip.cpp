@@ -18,10 +18,10 @@ namespace {
 using sandbox::Picture;
 
 constexpr double pi = std::numbers::pi;
-// A screen 0.7 m wide, of 3840 pixels, seen from 0.7 m.
+// A screen of 3840 pixels, 0.7 m wide, seen from 0.7 m.
 constexpr double pixels_per_degree = 3840.0 * pi / 180.0;
 
-using Kernel = std::vector<double>;  // odd in length, its centre in the middle
+using Kernel = std::vector<double>;  // of odd length, its centre in the middle
 
 struct Plane {
     glm::ivec2 size{0};
@@ -68,7 +68,7 @@ Opponent opponent_planes(const Picture& picture) {
     return planes;
 }
 
-/// CIE L*a*b*, a and b scaled by L/100 after Hunt: dark things look less colourful.
+/// CIE L*a*b*, with a and b scaled by L/100 after Hunt: dark colours look less colourful.
 glm::dvec3 hunt_lab(glm::dvec3 xyz) {
     constexpr double knee = 6.0 / 29.0;
     const auto f = [](double t) {
@@ -93,7 +93,7 @@ double gaussian(double x, double sigma) {
     return std::exp(-x * x / (2.0 * sigma * sigma));
 }
 
-/// Makes what is positive sum to 1 and what is negative to -1.
+/// Normalises positive weights to a sum of 1 and negative weights to a sum of -1.
 Kernel balanced(Kernel kernel) {
     double positive = 0.0;
     double negative = 0.0;
@@ -102,8 +102,8 @@ Kernel balanced(Kernel kernel) {
     return kernel;
 }
 
-/// Filters each row and exchanges rows with columns, so that doing it twice filters both ways. Pixels at the
-/// border go on beyond it.
+/// Filters each row and transposes, so that applying it twice filters both ways. The border is extended by
+/// repeating its pixels.
 Plane filter_rows_and_transpose(const Plane& plane, const Kernel& kernel) {
     const auto [width, height] = std::pair(plane.size.x, plane.size.y);
     const int radius = static_cast<int>(kernel.size() / 2);
@@ -125,9 +125,9 @@ Plane filtered(const Plane& plane, const Kernel& along_x, const Kernel& along_y)
     return filter_rows_and_transpose(filter_rows_and_transpose(plane, along_x), along_y);
 }
 
-// ---- What is seen of colours
+// ---- Perceived colours
 
-/// a √(π/b) exp(-π² x² / b), x in degrees: a part of how the eye blurs (the paper's "spatial filtering").
+/// a √(π/b) exp(-π² x² / b), with x in degrees: a term of the eye's blur (the paper's "spatial filtering").
 struct Lobe {
     double a, b;
 };
@@ -140,8 +140,8 @@ double sigma_of(double b) {
     return pixels_per_degree * std::sqrt(b / 2.0) / pi;
 }
 
-/// The plane under the sum of the lobes, which is normalised as a whole: a lobe's integral over the plane is
-/// the square of its kernel's sum.
+/// Convolves the plane with the sum of the lobes, which is normalised as a whole: the integral of a lobe over
+/// the plane is the square of its kernel's sum.
 Plane blurred(const Plane& plane, const std::vector<Lobe>& lobes) {
     Plane result{plane.size, std::vector<double>(plane.values.size())};
     double total = 0.0;
@@ -178,7 +178,7 @@ double distance(glm::dvec3 a, glm::dvec3 b) {
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), 0.7);
 }
 
-/// Brings distances to [0, 1], the lower 0.4 of them to the lower 0.95: those are the ones that occur (the
+/// Maps distances to [0, 1]: the lower 0.4 of them, which are the ones that occur, to the lower 0.95 (the
 /// paper's redistribution of errors).
 double redistributed(double distance, double largest) {
     constexpr double knee = 0.95;
@@ -187,17 +187,17 @@ double redistributed(double distance, double largest) {
     return knee + (distance - start) / (largest - start) * (1.0 - knee);
 }
 
-/// Between green and blue, the two colours of a screen that are farthest apart.
+/// The distance between green and blue, the two screen colours that are farthest apart.
 double largest_distance() {
     const glm::dmat3 to_xyz = xyz_of_rgb();
     return distance(hunt_lab(to_xyz[1]), hunt_lab(to_xyz[2]));
 }
 
-// ---- What is seen of edges and points
+// ---- Perceived edges and points
 
-constexpr double feature_sigma = 0.5 * 0.082 * pixels_per_degree;  // half an edge's width of 0.082 degrees
+constexpr double feature_sigma = 0.5 * 0.082 * pixels_per_degree;  // half an edge's width, 0.082 degrees
 
-/// Length of the vector of what `detector` finds across and down.
+/// The length of the vector of the responses of `detector` along x and along y.
 std::vector<double> found_by(const Kernel& detector, const Plane& luminance) {
     const Kernel smooth =
         balanced(sampled(3.0 * feature_sigma, [](double x) { return gaussian(x, feature_sigma); }));
@@ -208,7 +208,7 @@ std::vector<double> found_by(const Kernel& detector, const Plane& luminance) {
     return across;
 }
 
-/// Edges are where the first derivative of the smoothed luminance is large, points where the second is.
+/// Edges have a large first derivative of the smoothed luminance, points a large second derivative.
 struct Features {
     std::vector<double> edges, points;
 };

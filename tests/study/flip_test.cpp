@@ -20,7 +20,7 @@ Picture grey(float value) {
     return constant(shape, glm::vec3(value));
 }
 
-/// Black and white squares of `side` pixels.
+/// A chequerboard of black and white squares of `side` pixels.
 Picture chequered(int side) {
     Picture picture{{96, 96}, {}};
     for (int y = 0; y < 96; ++y) {
@@ -41,10 +41,12 @@ Picture transposed(const Picture& picture) {
     return result;
 }
 
-/// What the paper makes of a difference in lightness between flat greys.
+/// FLIP, according to the paper, of a lightness difference between uniform greys.
 double flat_difference(double lightness) {
-    // Green and blue as tables of CIE L*a*b* have them, (87.73, -86.18, 83.18) and (32.30, 79.19, -107.86),
-    // are 203.3 apart when a and b are scaled by L/100 and distances are |ΔL| + √(Δa² + Δb²).
+    // Green and blue according to tables of CIE L*a*b*, (87.73, -86.18, 83.18) and (32.30, 79.19, -107.86),
+    // have a distance of 203.3 with a and b scaled by L/100 and distance
+    // ΔL
+    // + √(Δa² + Δb²).
     const double largest = std::pow(203.3, 0.7);
     const double distance = std::pow(lightness, 0.7);
     if (distance < 0.4 * largest) return 0.95 * distance / (0.4 * largest);
@@ -66,7 +68,7 @@ TEST_SUITE("flip") {
     }
 
     TEST_CASE("flat greys differ by their lightness alone") {
-        // The table's two decimals of a and b are 1e-4 of the distance.
+        // The two decimals of a and b in the table are 1e-4 of the distance.
         CHECK(flip(grey(0.0F), grey(1.0F)).mean == doctest::Approx(flat_difference(100.0)).epsilon(1e-3));
         const auto lightness = [](double y) { return 116.0 * std::cbrt(y) - 16.0; };
         for (const float y : {0.1F, 0.18F, 0.5F}) {
@@ -74,7 +76,7 @@ TEST_SUITE("flip") {
             CHECK(flip(grey(y), grey(1.0F)).mean ==
                   doctest::Approx(flat_difference(100.0 - lightness(y))).epsilon(1e-3));
         }
-        // Below (6/29)³, lightness is a line of slope 903.3.
+        // Below (6/29)³, lightness is linear with a slope of 903.3.
         CHECK(flip(grey(0.004F), grey(0.0F)).mean ==
               doctest::Approx(flat_difference(0.004 * 903.3)).epsilon(1e-3));
     }
@@ -94,7 +96,7 @@ TEST_SUITE("flip") {
     TEST_CASE("columns are treated as rows are") {
         const Picture a = noise(shape, 1);
         const Picture b = noise(shape, 2);
-        // Sums in another order: rounding of doubles, through a power and a difference.
+        // Sums in another order: rounding errors of doubles, after a power and a difference.
         CHECK(flip(transposed(a), transposed(b)).mean == doctest::Approx(flip(a, b).mean).epsilon(1e-9));
     }
 
@@ -102,7 +104,7 @@ TEST_SUITE("flip") {
         const Picture flat = constant({96, 96}, glm::vec3(0.5F));
         const double fine = flip(chequered(1), flat).mean;
         const double coarse = flip(chequered(12), flat).mean;
-        // One pixel is 1/67 of a degree: 33 cycles a degree, near the eye's limit.
+        // A pixel is 1/67 of a degree: 33 cycles per degree, near the limit of the eye.
         CHECK(fine < 0.25 * coarse);
     }
 
@@ -113,24 +115,24 @@ TEST_SUITE("flip") {
 
         const double pi = std::acos(-1.0);
         const double degree = 3840.0 * pi / 180.0;  // pixels
-        // Its light spreads as a Gaussian, whose peak is 1/(2πσ²).
+        // Its light is spread by a Gaussian, whose peak is 1/(2πσ²).
         const double eye = degree * std::sqrt(0.0047 / 2.0) / pi;
         const double colour = flat_difference(116.0 * std::cbrt(1.0 / (2.0 * pi * eye * eye)) - 16.0);
-        // In the middle the edge detector finds nothing. The point detector is the second derivative of a
-        // Gaussian along one axis, whose negative part has the integral 2σ/√e, times a Gaussian of peak
+        // In the middle, the edge detector gives 0. The point detector is the second derivative of a Gaussian
+        // along one axis, whose negative part has the integral 2σ/√e, times a Gaussian with a peak of
         // 1/(σ√2π).
         const double sigma = 0.041 * degree;
         const double feature = std::exp(0.5) / (2.0 * sigma) / (sigma * std::sqrt(2.0 * pi));
-        // Sums stand for integrals, 1 % off at most where a kernel changes its sign, of which the power
-        // leaves 0.1 %. at most.
+        // The sums approximate integrals. They are off by at most 1 % where a kernel changes its sign, which
+        // the power reduces to at most 0.1 %.
         CHECK(seen.map[10 * 21 + 10] ==
               doctest::Approx(std::pow(colour, 1.0 - std::sqrt(feature))).epsilon(0.002));
         CHECK(seen.map[0] < 1e-6);
     }
 
     TEST_CASE("pictures of all colours agree with the equations written out a second time") {
-        // The expected values come from NumPy, with dense two-dimensional kernels instead of rows and
-        // columns.
+        // The expected values were computed with NumPy, with dense two-dimensional kernels instead of
+        // separable ones.
         Picture a{{9, 6}, {}};
         Picture b{{9, 6}, {}};
         for (int y = 0; y < 6; ++y) {
@@ -140,7 +142,7 @@ TEST_SUITE("flip") {
                 b.pixels.emplace_back(at.y, at.x, static_cast<float>((x + y) % 5) / 4.0F);
             }
         }
-        // Floats of the pixels are rounded to 6e-8.
+        // The floats of the pixels have a rounding error of 6e-8.
         const Flip seen = flip(a, b);
         CHECK(seen.mean == doctest::Approx(0.8064487712).epsilon(1e-6));
         CHECK(seen.map[0] == doctest::Approx(0.6781581757).epsilon(1e-6));

@@ -23,7 +23,7 @@ std::string text(bool value) {
     return value ? "on" : "off";
 }
 
-/// What is not driven reads like no value does.
+/// Values that are not animated have a text that no value has.
 template <class T>
 std::string text(const std::optional<T>& value) {
     return value ? text(*value) : "-";

@@ -7,8 +7,8 @@
 
 namespace candela::study {
 
-/// 16 hexadecimal digits that stand for a scene, itself known by its hash, as a script has it in frame
-/// `frame`, >= 0, of a run. Frames in which everything is at the same place have the same.
+/// 16 hexadecimal digits that identify a scene (given by its hash) in the state of a script's frame `frame`
+/// (>= 0) of a run. Frames with the same state have the same hash.
 [[nodiscard]] std::string frame_hash(std::string_view scene_hash, const sandbox::Script& script, int frame);
 
 }  // namespace candela::study

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* scene = "0123456789abcdef";
 
-/// A lamp that stands still for two frames, then moves for two.
+/// A lamp that rests for two frames, then moves for two.
 sandbox::Script script_of(const char* members = "") {
     return sandbox::read_script(
         std::string(R"({"frames": 4, )") + members +

@@ -15,8 +15,8 @@ namespace {
 struct Candidate {
     Interleave interleave;
     Bench bench;
-    std::vector<double> frames;    // ms, all that depends on the view
-    std::vector<double> indirect;  // ms of them, on finding the light of VPLs, or on all shading where n is 1
+    std::vector<double> frames;    // ms, everything that depends on the view
+    std::vector<double> indirect;  // ms of them for the light of VPLs, or for all shading if n is 1
 };
 
 double indirect_ms(const FrameReport& frame, Interleave interleave) {

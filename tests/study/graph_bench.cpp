@@ -1,5 +1,5 @@
-// What the frame graph itself costs: declaring and compiling, and running passes that do nothing, at 10 to
-// 10,000 passes. `per_pass` is the figure to look at.
+// The cost of the frame graph itself: declaring and compiling, and running passes that do nothing, for 10 to
+// 10,000 passes. `per_pass` is the relevant figure.
 
 #include <benchmark/benchmark.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using namespace candela;
 
-/// For each pass the passes whose results it reads, three at most.
+/// For each pass, the passes whose results it reads; at most three.
 using Wiring = std::vector<std::vector<std::size_t>>;
 
 Wiring chain(std::size_t passes) {
@@ -40,7 +40,8 @@ Wiring random_dag(std::size_t passes) {
     return reads;
 }
 
-/// One pass, two that read it, one that reads both, and so on: paths double with every diamond.
+/// One pass, two that read it, one that reads both, and so on: the number of paths doubles with every
+/// diamond.
 Wiring diamonds(std::size_t passes) {
     Wiring reads(passes);
     for (std::size_t pass = 1; pass < passes; ++pass) {
@@ -62,7 +63,7 @@ Wiring diamonds(std::size_t passes) {
 struct Plans {
     Wiring reads;
     std::vector<std::string> names;
-    std::vector<bool> unread;  // by pass: nobody reads its result
+    std::vector<bool> unread;  // by pass: no pass reads its result
 };
 
 Plans plans(Wiring reads) {
@@ -77,7 +78,8 @@ Plans plans(Wiring reads) {
     return plans;
 }
 
-/// Every pass makes a texture; those that nobody reads have a side effect, so that nothing is culled.
+/// Every pass writes a texture. Passes whose result is not read have a side effect, so that nothing is
+/// culled.
 FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool all_run) {
     FrameGraph graph;
     std::uint64_t ran = 0;

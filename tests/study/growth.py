@@ -1,4 +1,4 @@
-"""Frame times of the shading paths in halls of 64 to 16,384 lights that grow with their lights."""
+"""Frame times of the shading paths in halls with 64 to 16,384 lights, whose size grows with the number of lights."""
 
 import csv
 import pathlib
@@ -8,14 +8,14 @@ import tempfile
 import scenes
 
 LIGHTS = [64, 256, 1024, 4096, 16384]
-MOST_FOR_ALL = 256  # paths that visit all lights would take minutes for a frame of more
+MOST_FOR_ALL = 256  # with more lights, paths that visit all of them would take minutes per frame
 ALL = ["forward", "deferred"]
 LISTED = ["tiled-forward", "forward+", "tiled-deferred", "clustered-forward", "clustered-deferred"]
 SIZE = ["--width", "320", "--height", "240"]
 
 
 def measure(study: pathlib.Path, lights: int, folder: pathlib.Path) -> list[dict[str, str | int | float]]:
-    """One row a path: direct light only, without shadows, the medians of interleaved rounds."""
+    """One row per path: direct light only, without shadows, medians of interleaved rounds."""
     paths = (ALL if lights <= MOST_FOR_ALL else []) + LISTED
     scene = scenes.find(f"hall-{lights}", folder)
     with tempfile.TemporaryDirectory() as scratch:

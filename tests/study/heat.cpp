@@ -21,7 +21,7 @@ constexpr std::array<glm::dvec3, 9> knots{{
     {0.997, 0.770, 0.535},
     {0.987, 0.991, 0.750},
 }};
-constexpr glm::dvec3 off_mask(0.5);  // grey, which is none of the ramp's colours
+constexpr glm::dvec3 off_mask(0.5);  // grey, which is not a colour of the ramp
 
 double chosen_scale(std::span<const double> errors, std::optional<double> scale) {
     if (!scale) return *std::max_element(errors.begin(), errors.end());
@@ -31,7 +31,7 @@ double chosen_scale(std::span<const double> errors, std::optional<double> scale)
     return *scale;
 }
 
-/// Where there is no error at all, nothing is hot; where the scale has no bound, only what has none is.
+/// Without any error the result is 0. With an infinite scale, only infinite errors give 1.
 double heat_of(double error, double scale) {
     if (error == scale) return scale > 0.0 ? 1.0 : 0.0;
     return error / scale;

@@ -34,8 +34,7 @@ double luminance(glm::dvec3 encoded) {
     return 0.2126 * decode(encoded.r) + 0.7152 * decode(encoded.g) + 0.0722 * decode(encoded.b);
 }
 
-/// Its relative errors are 0, 1, 2 and 4 times the last argument, over the floor of a mean that a bright
-/// pixel sets.
+/// Adds errors of 0, 1, 2 and 4 times `step` to the four pixels of the reference.
 Picture errors_on(const Picture& reference, float step) {
     Picture picture = reference;
     picture.pixels[1] += step;

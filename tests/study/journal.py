@@ -1,4 +1,4 @@
-"""The journal of a study: JSON lines in the order they were measured. It lets a study that was interrupted go on."""
+"""The journal of a study: JSON lines in the order of measurement. With it an interrupted study can be continued."""
 
 import json
 import pathlib
@@ -9,13 +9,13 @@ Record = dict[str, Any]  # "errors": a line, or "failed": a line; "times": lines
 
 
 def append(path: pathlib.Path, line: Line) -> None:
-    """On a line of its own even after one that was cut short."""
+    """Starts a new line first, because the last line may be incomplete."""
     with path.open("a", encoding="utf-8") as file:
         file.write("\n" + json.dumps(line))
 
 
 def read(path: pathlib.Path) -> list[Line]:
-    """All lines; one that was cut short when the study was interrupted is left out."""
+    """All lines, except those that are incomplete because the study was interrupted."""
     lines = []
     for text in path.read_text(encoding="utf-8").splitlines() if path.exists() else []:
         try:
@@ -26,7 +26,7 @@ def read(path: pathlib.Path) -> list[Line]:
 
 
 def fold(lines: list[Line]) -> dict[str, Record]:
-    """By key, what was last measured. Errors begin a point anew: times from before them belong to an earlier run."""
+    """The last measurement for each key. Errors start a new measurement: times before them belong to an earlier run."""
     records: dict[str, Record] = {}
     for line in lines:
         kind, key = line["kind"], line["key"]
@@ -38,5 +38,5 @@ def fold(lines: list[Line]) -> dict[str, Record]:
 
 
 def is_done(record: Record | None, rounds: int) -> bool:
-    """Whether nothing is left to measure. What failed is tried again."""
+    """Whether nothing is left to measure. Failed points are tried again."""
     return record is not None and "errors" in record and len(record["times"]) >= rounds

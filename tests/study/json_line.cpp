@@ -9,13 +9,13 @@
 namespace candela::study {
 
 std::string to_line(const Json& json) {
-    const Json members = json.flatten();  // each under its place: "/errors/total/bias"
+    const Json members = json.flatten();  // each under its path: "/errors/total/bias"
     for (const auto& [place, value] : members.items()) {
         if (value.is_number_float() && !std::isfinite(value.get<double>())) {
             throw std::domain_error(fmt::format("{} is {}", place, value.get<double>()));
         }
     }
-    // Paths may hold bytes that are no text.
+    // Paths may contain bytes that are not valid UTF-8.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -1,4 +1,4 @@
-"""What a study ran on, and with: all that it takes to repeat it."""
+"""The machine and the program of a study: everything that is needed to repeat it."""
 
 import datetime
 import hashlib
@@ -16,7 +16,7 @@ SOURCES = ("engine", "renderer", "sandbox", "shaders", "tests/reference", "tests
 
 
 def cpu_model() -> str:
-    """As the kernel names it."""
+    """The name that the kernel reports."""
     try:
         lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
@@ -35,7 +35,7 @@ def machine() -> dict[str, Any]:
 
 
 def git(*arguments: str) -> str:
-    """What git prints; nothing where it is not installed."""
+    """The output of git; empty if it is not installed."""
     if shutil.which("git") is None:
         return ""
     return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True).stdout.strip()
@@ -57,7 +57,7 @@ def file_hash(path: pathlib.Path) -> str:
 
 
 def sources_hash(folder: pathlib.Path) -> str:
-    """Of the C++ files in a folder, but for its tests."""
+    """The hash of the C++ files in a folder, except tests."""
     digest = hashlib.sha256()
     for path in sorted(path for path in folder.glob("*.[ch]pp") if not path.stem.endswith("_test")):
         digest.update(path.read_bytes())

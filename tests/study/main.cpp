@@ -38,7 +38,7 @@ std::vector<ShadingPath> paths_named(const std::vector<std::string>& names) {
     return named;
 }
 
-/// "640x480".
+/// Parses a size like "640x480".
 glm::uvec2 size_named(const std::string& text) {
     glm::uvec2 size(0);
     int length = 0;
@@ -50,7 +50,7 @@ glm::uvec2 size_named(const std::string& text) {
     return size;
 }
 
-// Each of these adds a part, which puts its exit status into `status` when the command line asks for it.
+// Each of these adds a subcommand, which stores its exit status in `status` if the command line selects it.
 
 void add_graph(CLI::App& app, int& status, int count, char** arguments) {
     app.add_subcommand("graph", "declaring, compiling and running frame graphs (Google Benchmark's flags)")
@@ -217,7 +217,7 @@ int run(int count, char** arguments) {
 
 }  // namespace
 
-/// Exit status 2: bad input, or a fault on the way; 3: no driver.
+/// Exit status 2: invalid input or a runtime error; 3: no driver.
 int main(int count, char** arguments) {
     try {
         return run(count, arguments);

@@ -1,7 +1,7 @@
-"""What is measured: groups of points. A point is one configuration; a group is what is measured in one go, its times
-in interleaved rounds: one scene at one size against one reference.
+"""What is measured: groups of points. A point is one configuration. A group is measured together, with times in
+interleaved rounds: one scene at one size against one reference.
 
-A lever that the renderer gains joins the matrix as one line of LEVERS, and as one member of what "none" turns off.
+A new setting ("lever") of the renderer is added as one line of LEVERS, and as one member of what "none" turns off.
 """
 
 import hashlib
@@ -18,9 +18,9 @@ PATHS = FORWARD + DEFERRED
 DEFAULT_PATH, DEFAULT_BOUNCES, DEFAULT_BOUND, DEFAULT_VISIBILITY = "deferred", 64, 1.0, "maps"
 UNBOUNDED = "infinity"
 
-# name: the part of the configuration that it sets. "none", against which the others are measured, has every lever off,
-# and says so: what is measured must not change with the app's defaults. The maps of no light may be left out for want
-# of memory: a map of twice the side takes four times as much, and the large hall has 256 cubes.
+# name: the part of the configuration that it sets. "none", with which the others are compared, turns every lever off
+# explicitly, so that measurements do not depend on the app's defaults. The memory budgets must be sufficient for the
+# shadow maps of all lights: twice the resolution needs four times the memory, and the large hall has 256 cube maps.
 LEVERS: dict[str, Config] = {
     "none": {
         "shadows": {"cube_resolution": 512, "map_resolution": 1024},
@@ -36,11 +36,11 @@ LEVERS: dict[str, Config] = {
     "shadow-maps-double": {"shadows": {"cube_resolution": 1024, "map_resolution": 2048, "budget_mib": 8192}},
 }
 
-# By placement, the lever that it is measured with.
+# The lever with which each placement is measured.
 PLACEMENTS = {"paths": "interleave-auto", "surfels": "surfels"}
 
-# How a VPL finds out what it sees: an axis of its own.
-MAP_RESOLUTION = 64  # texels a side of a VPL's depth map
+# The VPL visibility is a separate axis of the matrix.
+MAP_RESOLUTION = 64  # texels per side of a VPL's depth map
 VISIBILITIES: dict[str, Config] = {
     "none": {"visibility": "none"},
     "maps": {"visibility": "maps", "map_resolution": MAP_RESOLUTION},
@@ -51,21 +51,21 @@ VISIBILITIES: dict[str, Config] = {
 }
 
 COUNTS = [16, 64, 256, 512, 1024, 4096, 16384]
-SEEING_COUNTS = [16, 64, 256, 1024]  # of VPLs that look out for obstacles, one by one
+SEEING_COUNTS = [16, 64, 256, 1024]  # of VPLs with visibility
 BOUNDS = [0.1, 0.3, 1.0, 3.0, UNBOUNDED]
 BOUNCES = [0, 1, 2, 3, 5, 8, DEFAULT_BOUNCES]
 TABLE_COUNTS = [128, 192, 256, 320, 384, 448, 512]  # of the student report
 TRACER_SAMPLES = [4**i for i in range(7)]
 
-# An odd number of columns and an even one of rows: the camera looks straight into the Cornell box, whose creases run
-# from the corners of a picture at 45 degrees. With both even, or both odd, they would run through the centres of pixels,
-# which then show either wall as rounding has it, in the renderer the one and in the reference the other.
+# An odd width and an even height: the camera looks straight into the Cornell box, whose edges run from the corners of
+# the picture at 45 degrees. With both even or both odd they would pass through pixel centres, where rounding decides
+# which wall is seen, and the renderer and the reference could see different walls.
 SIZE, SMALL, QUICK, LARGE, SQUARE = (127, 96), (63, 48), (63, 64), (511, 512), (191, 192)
 
 
 @dataclass(frozen=True)
 class Point:
-    """`axes`: where it stands in the matrix; `config`: what --config takes, beyond the defaults."""
+    """`axes`: its position in the matrix; `config`: the differences from the defaults, for --config."""
 
     axes: Config
     config: Config
@@ -78,7 +78,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Reference:
-    """`bounces`: indirect ones; None: any depth."""
+    """`bounces`: indirect bounces; None: unlimited."""
 
     samples: int
     bounces: int | None = None
@@ -91,7 +91,7 @@ class Group:
     scene: str
     size: tuple[int, int]
     reference: Reference
-    rounds: int  # of times; 0: errors only
+    rounds: int  # of time measurements; 0: errors only
     points: tuple[Point, ...]
     tracer_samples: tuple[int, ...] = field(default=())
 
@@ -101,14 +101,14 @@ class Group:
 
 
 def point_id(axes: Config) -> str:
-    """Names a point within its group, and its files: no character in it is special to file systems."""
+    """The name of a point within its group and in file names; has no characters that are special in file systems."""
     bound = "none" if axes["bound"] == UNBOUNDED else f"{axes['bound']:g}"
     name = f"{axes['path']}-v{axes['vpls']}-b{axes['bounces']}-g{bound}-{axes['visibility']}".replace("+", "-plus")
     return name if axes["lever"] == "none" else f"{name}-{axes['lever']}"
 
 
 def merged(base: Config, change: Config) -> Config:
-    """`base` with the members of `change` put over it, group by group."""
+    """`base` with its members replaced by those of `change`, recursively."""
     result = dict(base)
     for name, value in change.items():
         both = isinstance(value, dict) and isinstance(result.get(name), dict)
@@ -117,7 +117,7 @@ def merged(base: Config, change: Config) -> Config:
 
 
 def seeds_of(vpls: int) -> tuple[int, ...]:
-    """Fewer VPLs scatter more. It depends on nothing else, so that no configuration gains from its seeds."""
+    """Fewer VPLs are noisier and get more seeds. Depends on nothing else, so that no configuration has an advantage."""
     return tuple(range(8 if vpls <= 64 else 4 if vpls <= 1024 else 2))
 
 
@@ -138,25 +138,25 @@ def point(
 
 
 def distinct(points: Iterable[Point]) -> tuple[Point, ...]:
-    """Without repetition, in order."""
+    """The points without duplicates, in order."""
     return tuple({each.id: each for each in points}.values())
 
 
 def blind(vpls: int, path: str = DEFAULT_PATH, **axes: Any) -> Point:
-    """Of VPLs that shine through everything."""
+    """A point without VPL visibility."""
     return point(vpls, path=path, visibility="none", **axes)
 
 
 def plain(counts: list[int]) -> list[Point]:
-    """Instant radiosity as the student report has it, forward and deferred: all VPLs, unbounded, blind. Forward takes
-    several times as long: what is learnt from 16,384 VPLs is learnt from deferred."""
+    """Instant radiosity as in the student report, forward and deferred: all VPLs, unbounded, without visibility.
+    Forward takes several times as long, so 16,384 VPLs are measured only with deferred."""
     dearest = {"forward": 4096, "deferred": 16384}
     return [blind(n, path, bound=UNBOUNDED) for path, most in dearest.items() for n in counts if n <= most]
 
 
 def short_sweep() -> tuple[Point, ...]:
-    """What is measured on every scene, and so what a default is chosen from: every path, and every axis by itself
-    around the default."""
+    """The points measured on every scene, from which the default is chosen: every path, and variations of one axis at a
+    time around the default."""
     return distinct(
         [point(n, path=path) for path in PATHS for n in (64, 256)]
         + [point(16)]
@@ -172,7 +172,7 @@ def short_sweep() -> tuple[Point, ...]:
 
 
 def sweep() -> tuple[Point, ...]:
-    """The same with more VPLs, with every kind of visibility, and blind VPLs for the account of energy."""
+    """The same with more VPLs, with every kind of visibility, and without visibility for the energy account."""
     return distinct(
         [
             *short_sweep(),
@@ -188,12 +188,12 @@ def sweep() -> tuple[Point, ...]:
 
 
 def every_path() -> tuple[Point, ...]:
-    """For scenes so large that a frame takes software a second: how the paths compare in them."""
+    """A comparison of the paths, for scenes so large that a frame takes a second with a software driver."""
     return distinct([point(64, path=path, seeds=(0,)) for path in PATHS] + [blind(64, seeds=(0,))])
 
 
 def matrix_groups() -> list[Group]:
-    """Error against a reference of any depth, and time. Small scenes get more of everything."""
+    """Error against a reference with unlimited bounces, and time. Small scenes get more samples, points and rounds."""
     exact, sketch = Reference(samples=2048), Reference(samples=512)
     in_full = [
         Group("matrix", scene, SIZE, exact, 3, sweep(), tuple(samples))
@@ -213,9 +213,9 @@ def matrix_groups() -> list[Group]:
 
 
 def convergence_groups() -> list[Group]:
-    """Error against a reference of the same number of bounces: all that is left is the VPLs' noise, and what bounding
-    the geometry term takes away. Where nothing hides anything VPLs may be blind, and so many; where something does,
-    they are measured blind as well."""
+    """Error against a reference with the same number of bounces, so that only the noise of VPLs and the light removed
+    by bounding the geometry term are left. Scenes without occlusion need no visibility, which allows many VPLs. Scenes
+    with occlusion are measured both with and without visibility."""
     reference = Reference(samples=2048, bounces=DEFAULT_BOUNCES)
     all_blind = tuple(blind(n, bound=bound) for bound in BOUNDS for n in COUNTS)
     seeing = tuple(point(n, bound=bound) for bound in BOUNDS for n in SEEING_COUNTS)
@@ -229,18 +229,18 @@ def rays() -> list[Point]:
     return [point(n, visibility="rays") for n in (64, 256, 1024)]
 
 
-OPEN = ("plates", "sphere", "corner", "furnace")  # scenes in which light reaches everything
-HIDDEN = ("cornell", "two-rooms")  # and in which walls and blocks hide some of it
+OPEN = ("plates", "sphere", "corner", "furnace")  # scenes without occlusion
+HIDDEN = ("cornell", "two-rooms")  # scenes in which walls and blocks occlude light
 
 
 def table_groups() -> list[Group]:
-    """The student report's table, blind as its VPLs are. Its times count: the reference is a mere sketch."""
+    """The student report's table, without visibility as in the report. Only times matter: the reference is coarse."""
     points = tuple(blind(n, path, seeds=(0,)) for n in TABLE_COUNTS for path in PATHS)
     return [Group("table", "cornell", (320, 240), Reference(samples=16), 3, points)]
 
 
 def growth_groups() -> list[Group]:
-    """Times as triangles and as pixels grow; the references are mere sketches."""
+    """Times for growing numbers of triangles and of pixels; the references are coarse."""
     points = tuple(blind(64, path, seeds=(0,)) for path in ("forward", "forward+", "deferred", "tiled-deferred"))
     triangles = [
         Group("triangles", f"hills-{cells}", (160, 120), Reference(samples=2), 3, points)
@@ -257,14 +257,14 @@ def interleaved(vpls: int, n: int) -> Point:
     return point(vpls, lever="none" if n == 1 else f"interleave-{n}", seeds=tuple(range(4 if vpls <= 1024 else 1)))
 
 
-SURFELS = [128, 256, 512, 1024, 4096]  # interleaved as the app does
-# Of the VPLs on paths, by interleaving: pixels that ask all of so many take minutes for a frame.
+SURFELS = [128, 256, 512, 1024, 4096]  # interleaved as in the app
+# Numbers of VPLs on paths, by interleaving: limited, because a frame could take minutes.
 GATHERED = {1: [64, 128, 256, 1024], 2: [64, 128, 256, 1024], 4: [256, 1024, 4096], 8: [1024, 4096, 16384]}
 
 
 def gather_groups() -> list[Group]:
-    """Error against time at a size at which pixels count, by interleaving and number of VPLs. In scenes of many
-    triangles the maps of the most VPLs take minutes."""
+    """Error against time for interleavings and numbers of VPLs, at a size at which per-pixel work dominates. In scenes
+    with many triangles, the maps of the largest numbers of VPLs would take minutes."""
     most = {"cornell": 16384, "two-rooms": 16384, "glass": 4096, "fins": 4096, "atrium": 4096}
     return [
         Group(
@@ -282,16 +282,17 @@ def gather_groups() -> list[Group]:
 
 
 def placement_groups() -> list[Group]:
-    """Paths against surfels, as the app gathers them."""
+    """Paths against surfels, with the app's interleaving."""
     points = tuple(point(vpls, lever=lever) for vpls in (256, 1024) for lever in PLACEMENTS.values())
     scenes = ("cornell", "two-rooms", "corner", "furnace", "glass", "hall-256", "fins", "atrium")
     return [Group("placement", scene, SQUARE, Reference(samples=512), 0, points) for scene in scenes]
 
 
 def quick_groups() -> list[Group]:
-    """What the checks of --quick look at. Samples: so many that the reference's noise stays below what is asserted.
+    """The points that the checks of --quick use. The references have enough samples that their noise stays below the
+    limits of the checks.
 
-    No check looks at times: they are taken in one scene, to see that they can be."""
+    No check uses times: they are measured in one scene only to test measuring them."""
     samples = {"plates": 8192, "sphere": 1024, "cornell": 1024, "corner": 1024, "furnace": 1024, "two-rooms": 256}
     counts = [16, 64, 256, 1024]
     blind_too = distinct(
@@ -315,7 +316,7 @@ def quick_groups() -> list[Group]:
 
 
 def key_of(group: Group, one: Point, circumstances: Config) -> str:
-    """The same for the same measurement under the same circumstances: scene's content, machine, program."""
+    """Identifies a measurement under its circumstances: content of the scene, machine, program."""
     request = {
         "suite": group.suite,
         "size": group.size,
@@ -329,5 +330,5 @@ def key_of(group: Group, one: Point, circumstances: Config) -> str:
 
 
 def digest(value: Any) -> str:
-    """Stands for a value of JSON's kinds."""
+    """Identifies a JSON value."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:16]

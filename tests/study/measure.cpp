@@ -20,17 +20,17 @@ namespace {
 
 using sandbox::Picture;
 
-/// Relative error that heat maps show in their brightest colour: the same in all, so that they compare.
+/// The relative error at the brightest colour of all heat maps, so that they can be compared.
 constexpr double heat_scale = 0.5;
 
-/// Writes pictures as the app shows them by default, whatever is being measured.
+/// Writes pictures as the app shows them by default, whatever is measured.
 class Darkroom {
  public:
     Darkroom(const gl::GetProc& get_proc, glm::uvec2 size, std::filesystem::path folder)
         : renderer_(get_proc), capture_(renderer_, glm::ivec2(size)), folder_(std::move(folder)) {
         std::filesystem::create_directories(folder_);
     }
-    /// Gives the file's name within the folder.
+    /// Returns the file's name within the folder.
     std::string develop(const std::string& name, const Picture& picture) {
         capture_.write(folder_ / (name + ".png"), picture);
         return name + ".png";
@@ -48,14 +48,14 @@ class Darkroom {
     std::filesystem::path folder_;
 };
 
-/// The reference, and what follows from it.
+/// The reference, and what is derived from it.
 struct Truth {
     Picture direct;
     Picture direct_fine;
     Picture indirect;
     Picture total;
     Mask hit;
-    Mask off_edges;  ///< of `hit`, what lies away from the edges of shadows and silhouettes
+    Mask off_edges;  ///< the pixels of `hit` away from the edges of shadows and silhouettes
 };
 
 Truth truth_of(Reference reference) {
@@ -71,7 +71,7 @@ Truth truth_of(Reference reference) {
     return truth;
 }
 
-/// One frame with this part of the light in it.
+/// Renders one frame with this part of the light.
 Picture render(Bench& bench, Configuration configuration, Show show) {
     configuration.show = show;
     bench.configure(configuration);
@@ -79,7 +79,7 @@ Picture render(Bench& bench, Configuration configuration, Show show) {
     return finite_picture(bench);
 }
 
-/// Direct light alone, with all that it does not depend on at rest.
+/// Only direct light; settings that it does not depend on have their defaults.
 Configuration direct_part(Configuration configuration) {
     configuration.show = Show::direct;
     configuration.indirect = false;
@@ -94,9 +94,9 @@ struct DirectLight {
     Picture fine;
 };
 
-/// Through the centres of pixels, and the mean over fine_side² places in each: at one place a pixel, those at
-/// the edge of a shadow are wholly right or wholly wrong, so that in a dark picture of few pixels a handful
-/// makes the error. All at the same places as the reference's.
+/// Direct light at pixel centres, and its mean over fine_side² points per pixel. With one point per pixel, a
+/// pixel at a shadow edge is completely right or completely wrong, so that in a small dark picture a few
+/// pixels dominate the error. The points are the same as those of the reference.
 DirectLight render_direct(Bench& bench, const Configuration& configuration) {
     bench.configure(direct_part(configuration));
     bench.frame({});
@@ -114,7 +114,7 @@ DirectLight render_direct(Bench& bench, const Configuration& configuration) {
     return light;
 }
 
-/// Renders the direct light of each path and each kind of shadows once, as VPLs make no difference to it.
+/// Renders direct light once per path and kind of shadows, as it does not depend on VPLs.
 class DirectLights {
  public:
     const DirectLight& of(const Configuration& configuration, const std::function<Bench()>& make_bench) {
@@ -132,15 +132,15 @@ class DirectLights {
     std::deque<std::pair<Configuration, DirectLight>> known_;
 };
 
-/// What depends on the seed of the VPLs.
+/// The results that depend on the seed of the VPLs.
 struct Seeds {
     std::vector<Errors> indirect;
     std::vector<Errors> total;
     std::vector<double> flip;
-    Picture first;  ///< all light of the first seed
+    Picture first;  ///< all light with the first seed
 };
 
-/// Direct light does not depend on the seed, and the total is the sum: a frame a seed will do.
+/// Direct light does not depend on the seed, and the total is the sum, so one frame per seed is enough.
 Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector<std::uint32_t>& seeds,
                     const Picture& direct, const Truth& truth) {
     Seeds result;
@@ -158,14 +158,14 @@ Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector
     return result;
 }
 
-/// What may lie between a picture and the sum of its parts, relMSE: the rounding of floats. That also makes a
-/// shadow ray now and then pass an edge on the other side, which turns one VPL on or off in one pixel.
+/// The allowed relMSE between a picture and the sum of its parts: float rounding. Because of rounding, a
+/// shadow ray may also pass an edge on the other side, which turns one VPL on or off in one pixel.
 double tolerance_of(const Configuration& configuration) {
     return configuration.visibility.method == VplVisibility::rays ? 1e-8 : 1e-10;
 }
 
-/// Leaves the renderer with the frame that a user would get, whose state is reported. Its picture must be the
-/// sum of its parts, as `measure_seeds` takes it to be.
+/// Renders the frame that a user would get, whose state is then reported. Its picture must be the sum of its
+/// parts, which `measure_seeds` relies on.
 void render_whole(Bench& bench, const Configuration& configuration, const Picture& parts) {
     const Picture whole = render(bench, configuration, Show::total);
     const double difference = measure(whole, parts).rel_mse;
@@ -175,7 +175,7 @@ void render_whole(Bench& bench, const Configuration& configuration, const Pictur
     }
 }
 
-/// Null where edges are everywhere, as where pixels are larger than what the scene is made of.
+/// Null if edges are everywhere, as when pixels are larger than the objects of the scene.
 Json off_edges_json(const Picture& direct, const Truth& truth) {
     const bool none =
         std::all_of(truth.off_edges.begin(), truth.off_edges.end(), [](auto away) { return away == 0; });
@@ -220,8 +220,8 @@ Json to_json(const std::optional<VplReport>& vpls) {
             {"flux", to_json(vpls->flux)}};
 }
 
-/// Counts, which no machine's mood changes. `rays` are those of the VPLs' paths; `lists` says how many lights
-/// a tile or cluster visits.
+/// Counts that do not depend on the machine. `rays` are those of the VPLs' paths; `lists` is the number of
+/// lights that a tile or cluster visits.
 Json work_json(const Report& report, std::size_t pixels) {
     const VplReport vpls = report.vpls.value_or(VplReport{});
     Json work = {{"pixels", pixels},
@@ -239,7 +239,7 @@ Json work_json(const Report& report, std::size_t pixels) {
     return work;
 }
 
-/// Without what is only kept for a return to the configuration before.
+/// `bytes` excludes what is only kept for returning to the previous configuration.
 Json memory_json(const MemoryUse& memory) {
     return {{"bytes", memory.texture_bytes + memory.buffer_bytes - memory.spare_bytes},
             {"texture_bytes", memory.texture_bytes},
@@ -274,8 +274,8 @@ Json measure_point(Bench bench, Darkroom& darkroom, const Truth& truth, const Di
             {"heat_scale", heat_scale}};
 }
 
-/// A first frame pays for what the switch of configuration made anew, and for pages that nobody has touched
-/// yet; then one frame is timed of which only the view is new, and one that does everything anew.
+/// The first frame includes the cost of switching the configuration and of touching new memory pages, and is
+/// not timed. Then times one frame in which only the view changes, and one that runs everything.
 Json time_point(Bench& bench, const Point& point, std::uint32_t round) {
     bench.configure(configuration_of(point));
     bench.frame({});
@@ -302,14 +302,14 @@ int measure(const MeasureStudy& study) {
     const auto fresh_bench = [&] { return Bench(context->get_proc(), scene.world, reference.request.size); };
 
     DirectLights direct_lights;
-    // A renderer of its own for each point: what one leaves behind is not counted among another's memory.
+    // Each point has its own renderer, so that its memory does not include leftovers of another point.
     std::erase_if(points, [&](const Point& point) {
         return !attempt(point, [&] {
             const DirectLight& direct = direct_lights.of(configuration_of(point), fresh_bench);
             return measure_point(fresh_bench(), darkroom, truth, direct, point);
         });
     });
-    // One for all times, so that many points need not be in memory at once.
+    // A single renderer for all times, so that not all points are in memory at once.
     Bench bench = fresh_bench();
     for (std::uint32_t round = 1; round <= study.rounds; ++round) {
         std::erase_if(points, [&](const Point& point) {

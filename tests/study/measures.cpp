@@ -15,10 +15,10 @@ namespace {
 
 using sandbox::Picture;
 
-// A tenth of the mean brightness keeps dark pixels from ruling the relative error.
+// A tenth of the mean brightness, squared; prevents dark pixels from dominating the relative error.
 constexpr double floor_of_square = 0.01;
 
-/// Nothing is no part of anything, even of nothing.
+/// 0 divided by anything is 0, even by 0.
 double ratio(double part, double whole) {
     return part == 0.0 ? 0.0 : part / whole;
 }
@@ -38,7 +38,7 @@ void require_finite(const Picture& picture, std::string_view name) {
     }
 }
 
-/// A mean over the pixels that count of the values that `value` gives for them.
+/// The mean of `value` over the pixels that count.
 template <typename Value>
 auto mean_over(std::size_t pixels, std::span<const std::uint8_t> hit, Value value) {
     decltype(value(std::size_t{0})) sum{};
@@ -51,7 +51,7 @@ auto mean_over(std::size_t pixels, std::span<const std::uint8_t> hit, Value valu
     return sum / count;
 }
 
-/// The reference's mean vector.
+/// The mean RGB vector of the reference.
 glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit) {
     return mean_over(picture.pixels.size(), hit,
                      [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); });
@@ -67,12 +67,18 @@ double largest_channel(const Picture& picture, std::span<const std::uint8_t> hit
     return largest;
 }
 
-/// Squared relative error of a pixel, or of a pixel's change: |a - r|² / (|r|² + 0.01 |m|²).
+/// The squared relative error of a pixel, or of a pixel's change:
+/// a - r
+/// ² / (
+/// r
+/// ² + 0.01
+/// m
+/// ²).
 double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square) {
     return ratio(square(a - r), square(r) + floor_of_square * mean_square);
 }
 
-/// The mask of a frame; none where all pixels count.
+/// The mask of a frame; empty if all pixels count.
 std::span<const std::uint8_t> mask_of(std::span<const Mask> hits, std::size_t frame) {
     return hits.empty() ? std::span<const std::uint8_t>() : std::span(hits[frame]);
 }

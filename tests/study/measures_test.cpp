@@ -14,12 +14,12 @@ using sandbox::Picture;
 
 namespace {
 
-// Radiance comes as floats, whose rounding is 6e-8 of a value; a square doubles it.
+// Radiance is stored as floats with a relative rounding error of 6e-8, which squaring doubles.
 doctest::Approx about(double value) {
     return doctest::Approx(value).epsilon(1e-6);
 }
 
-/// One pixel beside another.
+/// A picture of one row.
 Picture row(std::vector<glm::vec3> pixels) {
     return {{static_cast<int>(pixels.size()), 1}, std::move(pixels)};
 }
@@ -61,8 +61,9 @@ TEST_SUITE("measures") {
     }
 
     TEST_CASE("the mean is a vector: colours that cancel nothing still share its floor") {
-        // r is red in one pixel and green in the other, so m = (1, 1, 0) / 2 and |m|² = 1/2, not the 1 that a
-        // mean of lengths would give. Each pixel misses all of its light.
+        // r is red in one pixel and green in the other, so m = (1, 1, 0) / 2 and
+        // m
+        // ² = 1/2, not 1 as a mean of lengths would give. Each pixel lacks all of its light.
         const Errors errors = measure(row({{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}}),
                                       row({{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}));
         CHECK(errors.rel_mse == about(1.0 / (1.0 + 0.01 * 0.5)));
@@ -71,7 +72,7 @@ TEST_SUITE("measures") {
     }
 
     TEST_CASE("a black pixel's error is weighed by the floor alone") {
-        // m = (1, 1, 1), the second pixel is black where the picture shows 0.1: 0.03 / 0.03.
+        // m = (1, 1, 1). The second pixel is black where the picture shows 0.1: 0.03 / 0.03.
         const Errors errors =
             measure(row({glm::vec3(2.0F), glm::vec3(0.1F)}), row({glm::vec3(2.0F), glm::vec3(0.0F)}));
         CHECK(errors.rel_mse == about(0.5));
@@ -82,7 +83,7 @@ TEST_SUITE("measures") {
         const Picture picture = noise({16, 16}, 1);
         const Picture reference = noise({16, 16}, 2);
         const Errors errors = measure(picture, reference);
-        // A power of two, so that scaling rounds nothing.
+        // A power of two, so that scaling is exact.
         const Errors bright = measure(scaled(picture, 1024.0F), scaled(reference, 1024.0F));
         CHECK(bright.rel_mse == doctest::Approx(errors.rel_mse).epsilon(1e-12));
         CHECK(bright.rmse == doctest::Approx(1024.0 * errors.rmse).epsilon(1e-12));
@@ -95,7 +96,7 @@ TEST_SUITE("measures") {
         const Errors errors = measure(scaled(reference, 0.75F), reference);
         CHECK(errors.bias == about(-0.25));
         CHECK(errors.spikes == about(0.75));
-        // Every pixel misses a quarter of its light, over a floor that only lowers the quotient.
+        // Every pixel lacks a quarter of its light; the floor only lowers the quotient.
         CHECK(errors.rel_mse < 0.0625);
         CHECK(errors.rel_mse > 0.05);
     }
@@ -182,7 +183,17 @@ TEST_SUITE("flicker") {
     }
 
     TEST_CASE("an error that changes its sign from frame to frame flickers by twice its size") {
-        // Nothing moves in the reference: |Δa - Δr|² = |2e|², |Δr|² = 0, |m|² = |r|².
+        // Nothing moves in the reference:
+        // Δa - Δr
+        // ² =
+        // 2e
+        // ²,
+        // Δr
+        // ² = 0,
+        // m
+        // ² =
+        // r
+        // ².
         std::vector<Picture> frames;
         const std::vector<Picture> reference(5, constant({3, 3}, glm::vec3(2.0F)));
         for (const float error : {0.125F, -0.125F, 0.125F, -0.125F, 0.125F}) {
@@ -211,7 +222,7 @@ TEST_SUITE("flicker") {
         const std::vector<Picture> frames{constant({2, 2}, glm::vec3(1.0F)),
                                           constant({2, 2}, glm::vec3(2.0F))};
         CHECK(flicker(frames, reference) == about(1.0 / 4.04));
-        // A picture that stands still misses all of the change.
+        // A picture that does not move lacks all of the change.
         const std::vector<Picture> still(2, constant({2, 2}, glm::vec3(7.0F)));
         CHECK(flicker(still, reference) == about(4.0 / 4.04));
     }

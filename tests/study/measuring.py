@@ -1,4 +1,4 @@
-"""Measures what the journal does not have yet, and writes it down as it comes."""
+"""Measures what is not yet in the journal, and records each result immediately."""
 
 import json
 import sys
@@ -13,7 +13,7 @@ from session import STUDY, Study, pictures_of
 
 
 def expect(study: Study, group: Group) -> None:
-    """Adds what the group will cost to the forecast."""
+    """Adds the expected cost of the group to the forecast."""
     points = study.missing(group)
     if (points or study.misses_tracer(group)) and not study.reference(group).exists():
         study.forecast.expect("reference", progress.tracer_units(group, group.reference.samples))
@@ -35,7 +35,7 @@ def prepare_reference(study: Study, group: Group) -> None:
 
 
 def noise_of(study: Study, group: Group) -> dict[str, float]:
-    """The reference's own relMSE of each part of the light, as its two halves tell."""
+    """The reference's own relMSE of each part of the light, estimated from its two halves."""
     return json.loads((study.reference(group) / "reference.json").read_text(encoding="utf-8"))["noise"]
 
 
@@ -78,7 +78,7 @@ def measure_points(study: Study, group: Group, points: list[Point]) -> None:
 
 
 def announce_once(study: Study) -> None:
-    """The estimate for the whole study, once the first seconds of pictures have told what this machine can do."""
+    """Prints the estimate for the whole study once a few seconds of pictures have shown the speed of this machine."""
     if not study.announced and study.forecast.took["errors"] > 5.0:
         study.announced = True
         left = progress.clock(study.forecast.seconds_left())
@@ -94,7 +94,7 @@ def expect_motion(study: Study, motion: Motion) -> None:
 
 
 def play(study: Study, motion: Motion, take: Take) -> None:
-    """The line that is noted holds all frames of the take."""
+    """Renders one configuration with the script; the recorded line contains all frames."""
     lines: list[dict[str, Any]] = []
     last = time.monotonic()
 
@@ -116,7 +116,7 @@ def play(study: Study, motion: Motion, take: Take) -> None:
 
 
 def told(lines: list[dict[str, Any]], fault: str) -> dict[str, Any]:
-    """What became of a take: its frames and its flicker, or why there are none."""
+    """The result of a take: its frames and flicker, or the error."""
     of_kind = {kind: [line for line in lines if line["kind"] == kind] for kind in ("frame", "flicker", "failed")}
     if fault or of_kind["failed"] or not of_kind["flicker"]:
         words = [line["message"] for line in of_kind["failed"]]
@@ -150,7 +150,7 @@ def measure(study: Study, groups: list[Group], motions: list[Motion]) -> None:
 
 
 def fail_all(study: Study, group: Group, points: list[Point], message: str) -> None:
-    """Without a reference no point of the group can be measured; the other groups can."""
+    """Records that all points of the group failed, because it has no reference. Other groups can still be measured."""
     keys = study.keys(group)
     for one in points:
         study.note({"id": one.id, "kind": "failed", "message": message, "key": keys[one.id], "group": group.name})

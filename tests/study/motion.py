@@ -1,4 +1,4 @@
-"""What moves: scripts, each played through by several configurations against a reference of every frame."""
+"""Animations: scripts, each rendered with several configurations against a reference of every frame."""
 
 import json
 import pathlib
@@ -9,12 +9,12 @@ from matrix import Config, Reference
 
 SCRIPTS = {"orbit-light": 60, "flicker-walk": 60, "door-opens": 60, "teleport": 60, "toggle": 60}  # frames
 VPLS = 256
-STILL_FRAMES = 64  # that refinement takes the mean of
+STILL_FRAMES = 64  # averaged by refinement
 
 
 @dataclass(frozen=True)
 class Take:
-    """One configuration in one script; `fresh_seeds`: other VPLs in every frame, even if nothing moves."""
+    """One configuration in one script; `fresh_seeds`: different VPLs in every frame, even if nothing moves."""
 
     id: str
     config: Config
@@ -23,7 +23,7 @@ class Take:
 
 @dataclass(frozen=True)
 class Motion:
-    """`script` is the name of a shipped one, or "still-SCENE": a scene in which nothing moves."""
+    """`script` is the name of a shipped script, or "still-SCENE": a scene in which nothing moves."""
 
     suite: str
     script: str
@@ -38,13 +38,13 @@ class Motion:
 
 
 def config(vpls: int, placement: str = "paths", refined: bool = False) -> Config:
-    """The default of the matrix, with VPLs that are placed so."""
+    """The default configuration of the matrix, with this placement of VPLs."""
     base = matrix.point(vpls).config
     return matrix.merged(base, {"vpls": {"placement": placement}, "refinement": {"enabled": refined}})
 
 
 def takes() -> tuple[Take, ...]:
-    """Paths traced anew with each move, from other samples or from the same ones, and surfels, which stay."""
+    """Paths that are traced again with every move, with new samples or with the same ones; and surfels, which stay."""
     return (
         Take("fresh", config(VPLS), fresh_seeds=True),
         Take("fixed", config(VPLS)),
@@ -53,7 +53,7 @@ def takes() -> tuple[Take, ...]:
 
 
 def motions() -> list[Motion]:
-    """References of as many bounces as the VPLs have: what is left is noise."""
+    """The references have as many bounces as the VPLs, so that only noise is left."""
     reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)
     moving = [Motion("motion", script, matrix.SMALL, reference, frames, takes()) for script, frames in SCRIPTS.items()]
     refined = tuple(Take(f"refined-{vpls}", config(vpls, refined=True)) for vpls in (64, 256))
@@ -65,20 +65,20 @@ def motions() -> list[Motion]:
 
 
 def camera_motions() -> list[Motion]:
-    """A camera that moves: what is fixed to pixels could crawl over surfaces."""
+    """A moving camera: patterns fixed to pixels could crawl over surfaces."""
     takes = tuple(Take(name, matrix.interleaved(1024, n).config) for name, n in (("all", 1), ("shared", 8)))
     reference = Reference(samples=64, bounces=matrix.DEFAULT_BOUNCES)
     return [Motion("camera", "orbit-camera", matrix.SIZE, reference, 30, takes)]
 
 
 def quick_motions() -> list[Motion]:
-    """Few samples will do: their noise is nearly the same in all frames, a twentieth of what is asserted."""
+    """Few samples are enough: their noise is almost the same in all frames, 1/20 of the limits of the checks."""
     reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)
     return [Motion("quick", "flicker-walk", (47, 36), reference, 12, takes())]
 
 
 def scene_of(motion: Motion, shipped: pathlib.Path) -> str:
-    """The name of the scene that moves. `shipped`: the folder of scripts."""
+    """The name of the animated scene. `shipped` is the folder of scripts."""
     if motion.script.startswith("still-"):
         return motion.script.removeprefix("still-")
     return json.loads((shipped / f"{motion.script}.json").read_text(encoding="utf-8"))["scene"]

@@ -1,4 +1,4 @@
-"""Charts of what moves, and of what stands still while sets of VPLs are averaged."""
+"""Charts of animations, and of still scenes while sets of VPLs are averaged."""
 
 import itertools
 import pathlib
@@ -21,7 +21,7 @@ REFINED = {"refined-64": (GREEN, "o", "sets of 64 VPLs"), "refined-256": (BLUE, 
 
 
 def scripts_panels(error: Axes, flicker: Axes, rows: Sequence[Row]) -> None:
-    """A column of the chart: one script."""
+    """One column of the chart: one script."""
     for row in rows:
         colour, label = STYLES[row["id"]]
         error.plot(row["indirect_rel_mse"], color=colour, linewidth=1.3, label=label)
@@ -76,5 +76,5 @@ def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
 
 
 def draw(played: Sequence[Row], out: pathlib.Path) -> dict[str, Made]:
-    """By heading, what was written."""
+    """Returns the written files by heading."""
     return {"While things move": scripts(played, out), "While nothing moves": refinement(played, out)}

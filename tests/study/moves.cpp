@@ -11,13 +11,13 @@
 namespace candela::study {
 namespace {
 
-/// Milliseconds, and how many passes took them.
+/// Milliseconds, and the number of passes that took them.
 struct Share {
     double ms = 0.0;
     int passes = 0;
 };
 
-/// What the last frame spent on the passes that are asked for.
+/// The cost of the selected passes in the last frame.
 template <class Wanted>
 Share share_of(Renderer& renderer, Wanted wanted) {
     Share share;
@@ -35,7 +35,7 @@ bool is_of_vpls(std::string_view pass) {
     return pass.starts_with("vpl-") || pass.starts_with("surfel");
 }
 
-/// The frame's last passes, which every deferred frame has to run.
+/// Whether the pass is not one of the frame's last passes, which every deferred frame must run.
 bool is_before_shading(std::string_view pass) {
     return pass != "deferred" && pass != "transparent" && pass != "tone-map";
 }
@@ -52,10 +52,10 @@ Configuration configuration_of(std::uint32_t vpls, VplPlacement placement) {
 }
 
 struct Figures {
-    std::vector<double> still;   ///< a still frame, over what a full one spends before shading
-    std::vector<double> camera;  ///< ms of the VPLs' passes after a move of the camera
-    int camera_passes = 0;       ///< the most of them that ran
-    std::vector<double> light;   ///< VPLs' passes after a move of the light: surfels over all of them anew
+    std::vector<double> still;   ///< a still frame, relative to what a full frame spends before shading
+    std::vector<double> camera;  ///< ms of the VPL passes after the camera moved
+    int camera_passes = 0;       ///< the largest number of them that ran
+    std::vector<double> light;   ///< VPL passes after the light moved, relative to all VPL passes
 };
 
 void play_round(Bench& bench, int round, Figures& figures) {
@@ -70,7 +70,7 @@ void play_round(Bench& bench, int round, Figures& figures) {
     bench.renderer().invalidate();
     bench.frame({});
     const Share before_shading = share_of(bench.renderer(), is_before_shading);
-    // The first round compiles shaders and uploads the scene; it does not count.
+    // The first round compiles shaders and uploads the scene, and does not count.
     if (round == 0) {
         return;
     }

@@ -1,4 +1,4 @@
-"""The study as one page of a folder that holds all it shows."""
+"""The study as one HTML page, in a folder with everything that it shows."""
 
 import html
 import pathlib
@@ -51,7 +51,7 @@ def picture(source: str, caption: str) -> str:
 
 
 def copied(source: str, out: pathlib.Path, name: str) -> str | None:
-    """Takes a picture over into the page's folder, with a palette, which makes half of it."""
+    """Copies a picture to the page's folder, with a palette, which halves its size. Returns its relative path."""
     path = pathlib.Path(source)
     if not source or not path.is_file():
         return None
@@ -61,7 +61,7 @@ def copied(source: str, out: pathlib.Path, name: str) -> str | None:
 
 
 def shown_points(rows: Sequence[Row], best: str | None) -> list[Row]:
-    """The default with few and many VPLs, some VPLs unbounded, some blind, and the best default."""
+    """The default with few and many VPLs, one point unbounded, one without visibility, and the best default."""
     wanted = [matrix.point(count).id for count in SHOWN_COUNTS]
     wanted += [matrix.point(256, bound=matrix.UNBOUNDED).id, matrix.blind(256).id, *([best] if best else [])]
     found = {row["id"]: row for row in rows}
@@ -69,7 +69,7 @@ def shown_points(rows: Sequence[Row], best: str | None) -> list[Row]:
 
 
 def strip(out: pathlib.Path, scene: str, rows: Sequence[Row], best: str | None) -> str:
-    """Pictures of a scene with their heat maps, after the reference."""
+    """The reference of a scene, followed by pictures with their heat maps."""
     reference = copied(str(pathlib.Path(rows[0]["picture"]).parent / "reference.png"), out, f"{scene}-reference.png")
     figures = [picture(reference, "reference")] if reference else []
     for row in shown_points(rows, best):
@@ -103,7 +103,7 @@ picture, divided by the square of that picture's brightness there: 0 is no diffe
 
 
 def opening(out: pathlib.Path, rows: Sequence[Row]) -> str:
-    """What the page is about, and one picture beside its reference."""
+    """The introduction of the page, and one picture next to its reference."""
     shown = next((row for row in rows if row["scene"] == "cornell" and not row["failed"] and row["vpls"] == 1024), None)
     figures = []
     if shown:
@@ -128,7 +128,7 @@ def table(columns: dict[str, str], rows: Iterable[Row]) -> str:
 
 
 def left_over(rows: Sequence[Row]) -> str:
-    """The error that the number of VPLs does not take away."""
+    """The error that is left with the largest number of VPLs."""
     found = []
     for scene in dict.fromkeys(row["scene"] for row in rows if row["suite"] == "convergence"):
         visibility = matrix.DEFAULT_VISIBILITY if scene in matrix.HIDDEN else "none"
@@ -145,7 +145,7 @@ def left_over(rows: Sequence[Row]) -> str:
 
 
 def visibility_costs(out: pathlib.Path, rows: Sequence[Row], costs: Sequence[Row]) -> str:
-    """What VPLs that shine through walls cost, as figures and as pictures."""
+    """The error of VPLs without visibility, as figures and as pictures."""
     if not costs:
         return ""
     columns = {"scene": "", "vpls": "VPLs", "none": "relMSE, no visibility", "maps": "maps", "rays": "rays",
@@ -239,7 +239,7 @@ class Findings:
 def write(
     out: pathlib.Path, rows: Sequence[Row], found: Findings, machine: dict[str, Any], provenance: dict[str, Any]
 ) -> None:
-    """index.html, and in pictures/ what it shows besides charts."""
+    """Writes index.html, and to pictures/ what it shows in addition to charts."""
     facts = {**machine, **provenance}
     about = ", ".join(f"{name.replace('_', ' ')}: {html.escape(str(value))}" for name, value in facts.items())
     points = element("summary", f"All {len(rows)} points") + table(COLUMNS, rows)

@@ -12,7 +12,7 @@
 namespace candela::study {
 namespace {
 
-/// Passes that build lists.
+/// Whether a pass builds light lists.
 bool builds_lists(std::string_view pass) {
     return pass == "tile-depths" || pass.find("light-tiles") != pass.npos ||
            pass.find("light-clusters") != pass.npos;
@@ -20,10 +20,10 @@ bool builds_lists(std::string_view pass) {
 
 struct Sample {
     double frame = 0.0;  // ms
-    double lists = 0.0;  // ms of it, building lists
+    double lists = 0.0;  // ms of it for building lists
 };
 
-/// One frame whose view differs from the last one's.
+/// Renders one frame whose view differs from that of the last one.
 Sample sample(Bench& bench, int round) {
     Sample sample;
     sample.frame = bench.frame({0.01F * static_cast<float>(round + 1), 0.0F});
@@ -43,7 +43,7 @@ Configuration configuration_of(ShadingPath path, std::uint32_t vpls) {
     configuration.path = path;
     configuration.indirect = vpls > 0;
     configuration.vpls.count = vpls;
-    configuration.shadows.enabled = false;  // the same in every path, and not what is measured here
+    configuration.shadows.enabled = false;  // the same in every path, and not measured here
     return configuration;
 }
 
@@ -51,7 +51,7 @@ struct Candidate {
     ShadingPath path;
     std::unique_ptr<Bench> bench;
     std::vector<double> frame;  // ms
-    std::vector<double> ratio;  // to the first path, in the same round
+    std::vector<double> ratio;  // relative to the first path in the same round
     std::vector<double> lists;  // share of the frame
 };
 
@@ -70,7 +70,7 @@ void print(const PathStudy& study, std::vector<Candidate>& candidates) {
     }
 }
 
-/// Appends a line for each path; a new file begins with the columns' names.
+/// Appends a line for each path; a new file starts with the names of the columns.
 void append_csv(const PathStudy& study, std::vector<Candidate>& candidates) {
     const bool is_new = !std::filesystem::exists(study.csv);
     std::ofstream file(study.csv, std::ios::app);
@@ -101,7 +101,7 @@ int paths(const PathStudy& study) {
             {path, std::make_unique<Bench>(context->get_proc(), world, study.size), {}, {}, {}});
         candidates.back().bench->configure(configuration_of(path, study.vpls));
     }
-    // The first round compiles shaders and uploads the scene; it does not count.
+    // The first round compiles shaders and uploads the scene, and does not count.
     for (int round = 0; round <= study.rounds; ++round) {
         double first = 0.0;
         for (Candidate& candidate : candidates) {

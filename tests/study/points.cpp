@@ -24,7 +24,7 @@ void require_known_members(const Json& point) {
     }
 }
 
-/// Ids become names of files.
+/// Ids are used in file names.
 std::string id_of(const Json& point) {
     const auto found = point.find("id");
     if (found == point.end() || !found->is_string()) {

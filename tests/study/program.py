@@ -1,4 +1,4 @@
-"""Runs candela-study, which prints JSON lines, and copes with its ending badly."""
+"""Runs candela-study, which prints JSON lines, and handles its failures and crashes."""
 
 import json
 import pathlib
@@ -16,13 +16,13 @@ from motion import Motion, Take
 Line = dict[str, Any]
 OnLine = Callable[[Line], None]
 
-# Seconds without a line after which the program counts as hanging. The longest step is a reference.
+# Seconds without output after which the program is assumed to hang. The longest step is a reference.
 SILENCE = 600.0
 
 
 @dataclass(frozen=True)
 class End:
-    """How the program ended: `fault` is empty where all went well; `crashed` tells a crash from a refusal."""
+    """How the program ended: `fault` is empty on success; `crashed` distinguishes a crash from a reported error."""
 
     fault: str
     crashed: bool
@@ -40,7 +40,7 @@ def end_of(status: int, stderr: str) -> End:
 
 
 def lines_of(process: subprocess.Popen[str]) -> Iterator[str]:
-    """What the process prints, line by line; one that is silent for too long is killed."""
+    """The output of the process, line by line; kills a process that prints nothing for too long."""
     while True:
         watch = threading.Timer(SILENCE, process.kill)
         watch.start()
@@ -54,7 +54,7 @@ def lines_of(process: subprocess.Popen[str]) -> Iterator[str]:
 
 
 def stream(command: Sequence[str], on_line: OnLine) -> End:
-    """Runs a command and hands on each of its lines as it comes. Lines that are no JSON objects are left out."""
+    """Runs a command and passes on each line immediately, except lines that are not JSON objects."""
     with tempfile.TemporaryFile("w+") as errors:
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True) as process:
             try:
@@ -69,7 +69,7 @@ def stream(command: Sequence[str], on_line: OnLine) -> End:
 
 
 def make_reference(program: str, scene: pathlib.Path, group: Group, folder: pathlib.Path) -> None:
-    """Throws RuntimeError with what the program says."""
+    """Raises RuntimeError with the program's message."""
     wanted = group.reference
     bounces = [] if wanted.bounces is None else ["--bounces", str(wanted.bounces)]
     size = f"{group.size[0]}x{group.size[1]}"
@@ -83,7 +83,7 @@ def make_reference(program: str, scene: pathlib.Path, group: Group, folder: path
 def trace_baseline(
     program: str, scene: pathlib.Path, reference: pathlib.Path, samples: Sequence[int], on_line: OnLine
 ) -> str:
-    """The path tracer itself, few samples several times over. Returns what went wrong, empty where nothing did."""
+    """Measures the path tracer itself; small numbers of samples in several rounds. Returns the error, empty if none."""
     command = [program, "baseline", str(scene), "--reference", str(reference)]
     few = [count for count in samples if count <= 64]
     many = [count for count in samples if count > 64]
@@ -98,7 +98,7 @@ def trace_baseline(
 def animate(
     program: str, script: pathlib.Path, references: pathlib.Path, motion: Motion, take: Take, on_line: OnLine
 ) -> str:
-    """Plays one configuration through the script. Returns what went wrong, empty where nothing did."""
+    """Renders one configuration with the script. Returns the error, empty if none."""
     wanted = motion.reference
     size = f"{motion.size[0]}x{motion.size[1]}"
     options = ["--size", size, "--samples", str(wanted.samples), "--seed", str(wanted.seed)]
@@ -111,7 +111,7 @@ def animate(
 
 
 def running(order: Sequence[str], lines: Sequence[Line]) -> str:
-    """Which point the program was at when it ended: errors come first, point by point, then rounds of times."""
+    """The point that the program was measuring when it ended: first the errors of all points, then rounds of times."""
     told = {line["id"] for line in lines if line["kind"] != "time"}
     failed = {line["id"] for line in lines if line["kind"] == "failed"}
     untold = [name for name in order if name not in told]
@@ -136,8 +136,8 @@ def measure(
     points: Sequence[Point],
     on_line: OnLine,
 ) -> None:
-    """Measures the points. Where the program crashes, the point that it was at fails and the rest go on; where it
-    refuses what is asked, all that is left fails with its words."""
+    """Measures the points. If the program crashes, the point that it was measuring fails and the others continue. If it
+    reports an error, all remaining points fail with its message."""
     waiting = list(points)
     pictures.mkdir(parents=True, exist_ok=True)
     while waiting:

@@ -1,4 +1,4 @@
-"""How long the rest of a study takes: a model of costs that learns from what it sees, and a bar that shows it."""
+"""Estimates the remaining time of a study with a cost model that learns from measurements, and shows a progress bar."""
 
 import sys
 import time
@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from matrix import Group, Point
 from motion import Motion, Take
 
-# Seconds for a unit of each kind of work, until it has been seen: what four cores of a server do.
+# Initial guesses of seconds per unit of each kind of work, from four cores of a server.
 GUESSES = {"reference": 2e-7, "tracer": 2e-7, "errors": 1.0, "time": 1.0, "motion": 1.0}
-FRAME_OVERHEAD = 0.012  # s, of a frame that shades nothing
-SECONDS_PER_EVALUATION = {"none": 1.0e-9, "maps": 5.0e-9, "rays": 4.0e-8}  # one VPL on one pixel, deferred
-FORWARD = 3.0  # times as long
-SECONDS_PER_TEXEL = 9.0e-8  # of a VPL's map that is drawn
+FRAME_OVERHEAD = 0.012  # s, for a frame that shades nothing
+SECONDS_PER_EVALUATION = {"none": 1.0e-9, "maps": 5.0e-9, "rays": 4.0e-8}  # one VPL at one pixel, deferred
+FORWARD = 3.0  # time relative to deferred
+SECONDS_PER_TEXEL = 9.0e-8  # drawn into a VPL's map
 
 
 def frame_seconds(group: Group, one: Point) -> float:
-    """What a frame may take that makes no VPLs; only proportions matter once frames have been seen."""
+    """The estimated time of a frame that keeps its VPLs. Only ratios matter once frames have been measured."""
     each = SECONDS_PER_EVALUATION[one.axes["visibility"].partition("-")[0]]
     each *= 1.0 if "deferred" in one.axes["path"] else FORWARD
     n = one.config["vpls"]["interleave"]
@@ -25,24 +25,24 @@ def frame_seconds(group: Group, one: Point) -> float:
 
 
 def drawing_seconds(one: Point) -> float:
-    """What drawing the maps of all VPLs may take."""
+    """The estimated time for drawing the maps of all VPLs."""
     vpls = one.config["vpls"]
     texels = vpls["map_resolution"] ** 2 if vpls["visibility"] == "maps" else 0
     return vpls["count"] * texels * SECONDS_PER_TEXEL
 
 
 def errors_units(group: Group, one: Point) -> float:
-    """Indirect light for every seed, and all light once."""
+    """One frame of indirect light for every seed, and one of all light."""
     return (len(one.seeds) + 1) * (frame_seconds(group, one) + drawing_seconds(one))
 
 
 def time_units(group: Group, one: Point) -> float:
-    """In every round a frame to warm up, one from another view and one with everything made anew."""
+    """Three frames per round: one to warm up, one from another view and one that recomputes everything."""
     return group.rounds * (3 * frame_seconds(group, one) + 2 * drawing_seconds(one))
 
 
 def motion_units(motion: Motion, take: Take) -> float:
-    """As if all maps were drawn in every frame."""
+    """Assumes that all maps are drawn in every frame."""
     vpls = take.config["vpls"]
     shading = motion.size[0] * motion.size[1] * vpls["count"] * SECONDS_PER_EVALUATION["maps"]
     drawing = vpls["count"] * vpls["map_resolution"] ** 2 * SECONDS_PER_TEXEL
@@ -55,7 +55,7 @@ def tracer_units(group: Group | Motion, samples: int) -> float:
 
 @dataclass
 class Forecast:
-    """Units of work left of each kind, and what those done took."""
+    """For each kind of work: units left, units done, and the seconds that those took."""
 
     left: dict[str, float] = field(default_factory=lambda: dict.fromkeys(GUESSES, 0.0))
     done: dict[str, float] = field(default_factory=lambda: dict.fromkeys(GUESSES, 0.0))
@@ -70,11 +70,11 @@ class Forecast:
         self.took[kind] += seconds
 
     def forget(self, kind: str, units: float) -> None:
-        """Work that will not be done after all."""
+        """Removes work that will not be done."""
         self.left[kind] = max(self.left[kind] - units, 0.0)
 
     def rate(self, kind: str) -> float:
-        """Seconds a unit. Of frames, those of one kind tell about the other."""
+        """Seconds per unit. Frames for errors and for times are used to estimate each other."""
         seen = [kind] if self.done[kind] > 0 else ["errors", "time"] if kind in ("errors", "time") else []
         done = sum(self.done[each] for each in seen)
         return sum(self.took[each] for each in seen) / done if done > 0 else GUESSES[kind]
@@ -93,7 +93,7 @@ def clock(seconds: float) -> str:
 
 @dataclass
 class Bar:
-    """On a terminal one line that is drawn over; elsewhere a line now and then."""
+    """On a terminal one line that is overwritten; otherwise a line every 15 seconds or so."""
 
     forecast: Forecast
     started: float = field(default_factory=time.monotonic)

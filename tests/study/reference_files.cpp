@@ -92,7 +92,7 @@ void write_into(const fs::path& folder, const std::string& scene, const Referenc
     sandbox::write_text(folder / description_file, to_line(description) + "\n");
 }
 
-/// Nobody's files are deleted but those of an earlier reference.
+/// Only files of an earlier reference may be deleted.
 void require_replaceable(const fs::path& folder) {
     const bool free = !fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder));
     if (!free && !fs::exists(folder / description_file)) {
@@ -101,7 +101,7 @@ void require_replaceable(const fs::path& folder) {
     }
 }
 
-/// The folder, without the "/" at the end that leaves a path no name.
+/// The folder without a "/" at the end, with which a path would have no file name.
 fs::path named(const fs::path& folder) {
     return folder.has_filename() ? folder : folder.parent_path();
 }
@@ -134,7 +134,7 @@ Picture read_sized(const fs::path& file, glm::uvec2 size) {
 }  // namespace
 
 Noise noise(const reference::Estimate& estimate) {
-    // Halves of variance v differ by 2v in the mean square; their mean has v/2.
+    // Halves of variance v have a mean squared difference of 2v; their mean has a variance of v/2.
     const auto of_mean = [&](const Picture& a, const Picture& b) {
         return measure(a, b, estimate.hit).rel_mse / 4.0;
     };
@@ -151,7 +151,7 @@ bool holds(const fs::path& folder, const Request& request) {
     try {
         return request_from(read_description(folder)) == request;
     } catch (const std::exception&) {
-        return false;  // of another version of the study
+        return false;  // written by another version of the study
     }
 }
 

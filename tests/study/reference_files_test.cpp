@@ -24,7 +24,7 @@ Picture picture_of(glm::vec3 colour) {
     return {size, std::vector<glm::vec3>(6, colour)};
 }
 
-/// Halves of 1 and 3 around a mean of 2; the last pixel shows nothing.
+/// Halves of 1 and 3 with a mean of 2; the last pixel shows no surface.
 Reference sample() {
     Reference reference;
     reference.request = {.scene_hash = "0123456789abcdef",
@@ -90,9 +90,10 @@ TEST_SUITE("reference files") {
     }
 
     TEST_CASE("the noise of the mean is a quarter of the halves' relMSE") {
-        // Each pixel differs by 2 in every channel from 3, the picture's mean: 2² / (3² + 0.01 · 3²) / 4.
+        // Each pixel differs by 2 in every channel from 3, the mean of the picture: 2² / (3² + 0.01 · 3²) /
+        // 4.
         CHECK(noise(sample().estimate).indirect == doctest::Approx(4.0 / (9.0 * 1.01) / 4.0));
-        // Direct light adds to what the same difference is compared with.
+        // With direct light, the same difference is divided by a larger value.
         CHECK(noise(sample().estimate).total < noise(sample().estimate).indirect);
     }
 

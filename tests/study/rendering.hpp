@@ -7,14 +7,14 @@
 
 namespace candela::study {
 
-/// What the point asks for, with its first seed, showing all light. Throws std::invalid_argument with the
-/// faults.
+/// The configuration of the point, with its first seed, showing all light. Throws std::invalid_argument with
+/// the errors.
 [[nodiscard]] Configuration configuration_of(const Point& point);
 
-/// What the bench's last frame shows. Throws std::runtime_error where a pixel is not finite.
+/// The picture of the bench's last frame. Throws std::runtime_error if a pixel is not finite.
 [[nodiscard]] sandbox::Picture finite_picture(Bench& bench);
 
-/// Prints what `make_line` gives, or that the point failed; true if it did not.
+/// Prints the result of `make_line`, or that the point failed; returns whether it succeeded.
 template <class MakeLine>
 bool attempt(const Point& point, MakeLine make_line) {
     try {

@@ -1,4 +1,4 @@
-"""What was measured, as rows, tables and files."""
+"""Converts measurements to rows, tables and files."""
 
 import csv
 import json
@@ -17,11 +17,11 @@ from matrix import Group, Point
 from motion import Motion, Take
 from session import APP, STUDY, Study, pictures_of
 
-FILES = ("picture", "heat")  # columns that name files of the build folder
+FILES = ("picture", "heat")  # columns with files in the build folder
 
 
 def flat(prefix: str, values: dict[str, Any]) -> Row:
-    """Numbers of a JSON object as columns; nested ones joined by _."""
+    """The numbers and strings of a JSON object as columns; names of nested members are joined by _."""
     row: Row = {}
     for name, value in values.items():
         if isinstance(value, dict):
@@ -32,7 +32,7 @@ def flat(prefix: str, values: dict[str, Any]) -> Row:
 
 
 def shares(flux: dict[str, list[float]]) -> Row:
-    """Where the light went, as shares of what the traced paths emitted; colours summed."""
+    """The energy account as shares of the flux that the traced paths emitted; colours summed."""
     emitted = sum(flux.get("emitted", [0.0]))
     return {f"{name}_share": sum(flux[name]) / emitted for name in flux if name != "emitted" and emitted > 0}
 
@@ -46,7 +46,7 @@ def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
     line = record["errors"]
     row["reference_noise"] = line["noise"]["indirect"]
     for part, errors in line["errors"].items():
-        row.update(flat(f"{part}_", errors or {}))  # nothing may lie off all edges
+        row.update(flat(f"{part}_", errors or {}))  # null if there are no pixels off edges
     row.update(flat("", {name: line[name] for name in ("flip", "work", "memory")}))
     vpls = line.get("vpls") or {"alive": 0, "paths": 0, "flux": {}}
     row.update({"alive": vpls["alive"], "paths": vpls["paths"], **shares(vpls["flux"])})
@@ -57,8 +57,8 @@ def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
 
 
 def ratio_to_forward(one: Point, records: dict[str, journal.Record | None]) -> Row:
-    """Frame times over those of the same configuration on the path `forward`, round by round: what a machine is busy
-    with besides falls on both."""
+    """Frame times relative to those of the same configuration on the path `forward` in the same round, so that other
+    load of the machine affects both."""
     forward = records.get(matrix.point_id({**one.axes, "path": "forward"})) or {"times": []}
     times = {line["round"]: line["frame_ms"] for line in forward["times"]}
     mine = (records[one.id] or {"times": []})["times"]
@@ -78,7 +78,7 @@ def rows_of(study: Study, groups: list[Group]) -> list[Row]:
 
 
 def tracer_rows(study: Study, groups: list[Group]) -> list[Row]:
-    """The path tracer's own points."""
+    """The points of the path tracer itself."""
     rows = []
     for group in groups:
         record = study.records.get(study.keys(group)["tracer"], {}) if group.tracer_samples else {}
@@ -93,7 +93,7 @@ FRAME_FIGURES = ("full_ms", "refined")
 
 
 def motion_row(motion: Motion, take: Take, record: journal.Record | None) -> Row:
-    """One configuration in one script; what is known of each frame as lists."""
+    """One configuration in one script; values per frame are lists."""
     row: Row = {"suite": motion.suite, "scene": motion.script, "id": take.id, "failed": ""}
     row.update({"width": motion.size[0], "height": motion.size[1], "config": take.config})
     if record is None or "motion" not in record:
@@ -116,7 +116,7 @@ def motion_rows(study: Study, motions: list[Motion]) -> list[Row]:
 
 
 def rounded(value: Any) -> Any:
-    """Floats to five digits, which is more than repeats."""
+    """Rounds floats to five digits, more than is reproducible."""
     if isinstance(value, float):
         return float(f"{value:.5g}")
     if isinstance(value, dict):
@@ -145,19 +145,19 @@ def describe(group: Group) -> dict[str, Any]:
 
 
 def app_default() -> dict[str, Any]:
-    """What the app does when no flag is given."""
+    """The app's configuration without flags."""
     printed = subprocess.run([APP, "--print-config"], check=True, capture_output=True, text=True)
     return json.loads(printed.stdout)
 
 
 def is_app_default(best: Row, default: dict[str, Any], points: tuple[Point, ...]) -> bool:
-    """Whether the chosen point sets nothing but what the app does anyway."""
+    """Whether the chosen point does not differ from the app's default."""
     config = next(one.config for one in points if one.id == best["id"])
     return same(matrix.merged(default, config), default)
 
 
 def same(a: Any, b: Any) -> bool:
-    """Configurations, whose numbers the app holds in single precision."""
+    """Compares configurations; the app stores numbers in single precision."""
     if isinstance(a, dict) and isinstance(b, dict):
         return a.keys() == b.keys() and all(same(a[name], b[name]) for name in a)
     if isinstance(a, float) and isinstance(b, float):
@@ -166,7 +166,7 @@ def same(a: Any, b: Any) -> bool:
 
 
 def choice(rows: list[Row], groups: list[Group]) -> dict[str, Any] | None:
-    """The best default on the front, in words as well."""
+    """The best default, with the reason in words."""
     best = analysis.best_default(rows)
     points = tuple(one for group in groups if group.suite == "matrix" for one in group.points)
     if best is None:
@@ -199,7 +199,7 @@ def write_results(study: Study, groups: list[Group], rows: list[Row], extra: dic
 
 
 def by_lines(content: dict[str, Any]) -> str:
-    """JSON with a line for each member, and for each item of a member that is a list."""
+    """JSON with one line for each member, and for each item of a member that is a list."""
     members = []
     for name, value in content.items():
         items = [json.dumps(item, separators=(",", ":")) for item in value] if isinstance(value, list) else []

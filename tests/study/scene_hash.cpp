@@ -8,7 +8,7 @@
 namespace candela::study {
 namespace {
 
-/// Preceded by the length, so that bytes cannot move from one content to the next unnoticed.
+/// Adds the length first, so that moving bytes from one content to the next changes the hash.
 std::uint64_t add(std::uint64_t state, const std::vector<unsigned char>& content) {
     state = fnv1a(fmt::format("{};", content.size()), state);
     return fnv1a({reinterpret_cast<const char*>(content.data()), content.size()}, state);

@@ -15,7 +15,7 @@ using sandbox::write_text;
 
 namespace {
 
-/// An empty scene whose buffer lies in `buffer`.
+/// An empty scene whose buffer is in `buffer`.
 std::string gltf_with(const char* buffer) {
     return fmt::format(R"({{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{}}],)"
                        R"( "buffers": [{{"byteLength": 4, "uri": "{}"}}]}})",

@@ -1,5 +1,5 @@
-"""Where the study's scenes come from: those shipped with the sandbox, those that its generator writes on demand, and
-plain ones of the study's own, each of which lets one thing vary or makes one error vanish."""
+"""The scenes of the study: those shipped with the sandbox, those that its generator writes on demand, and simple scenes
+of the study, each of which varies one thing or avoids one kind of error."""
 
 import functools
 import hashlib
@@ -13,7 +13,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "sandbox" / "scenes"
 sys.path.append(str(SHIPPED))
-sys.dont_write_bytecode = True  # or modules would leave files among the sources
+sys.dont_write_bytecode = True  # otherwise importing modules would leave files in the source folders
 
 from gltf_writer import Scene  # noqa: E402
 from shapes import Surface, flat, looking  # noqa: E402
@@ -22,8 +22,8 @@ DAYLIGHT = [1.0, 0.92, 0.8]
 
 
 def plates() -> Scene:
-    """Two squares of 2 m that face each other 1 m apart, with a light between: nothing hides anything, and no two
-    surfaces that light each other come closer than 1 m, so that light gathered from VPLs has no singularity."""
+    """Two squares of 2 m that face each other, 1 m apart, with a light between them. Nothing is occluded, and surfaces
+    that light each other are at least 1 m apart, so that light gathered from VPLs has no singularity."""
     scene = Scene()
     white, rose = scene.material("white", [0.7, 0.7, 0.7]), scene.material("rose", [0.75, 0.4, 0.35])
     below = [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]
@@ -36,7 +36,7 @@ def plates() -> Scene:
 
 
 def sphere_inwards(radius: float, rings: int) -> Surface:
-    """A sphere seen from inside, its normals smooth; twice as many segments as rings."""
+    """A sphere that faces inwards, with smooth normals and twice as many segments as rings."""
     surface, segments = Surface(), 2 * rings
     for ring in range(rings + 1):
         polar = math.pi * ring / rings
@@ -56,7 +56,7 @@ def sphere_inwards(radius: float, rings: int) -> Surface:
 
 
 def sphere() -> Scene:
-    """A furnace of one albedo in which every point sees every other under the same geometry term, 1 / (4 R²)."""
+    """A furnace of uniform albedo in which any two points have the same geometry term, 1 / (4 R²)."""
     scene = Scene()
     grey = scene.material("grey", [0.5, 0.5, 0.5])
     scene.place("sphere", sphere_inwards(2.0, 64), grey)
@@ -66,7 +66,7 @@ def sphere() -> Scene:
 
 
 def hills(cells: int) -> Scene:
-    """A hilly square of 4 m cut into cells × cells quads, the same hills however fine the mesh."""
+    """A hilly square of 4 m, divided into cells × cells quads; the hills do not depend on the resolution."""
     scene, surface = Scene(), Surface()
     height = lambda x, z: 0.25 * math.sin(2.1 * x) * math.cos(1.7 * z)  # noqa: E731
     for row in range(cells + 1):
@@ -91,13 +91,13 @@ OWN = {"plates": plates, "sphere": sphere}
 
 @functools.cache
 def generators_hash() -> str:
-    """Of the sources that scenes are written by."""
+    """The hash of the sources of the scene generators."""
     sources = [*sorted(SHIPPED.glob("*.py")), pathlib.Path(__file__)]
     return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
 
 
 def generate(name: str, folder: pathlib.Path) -> None:
-    """Writes a scene that is not shipped. `hills-N` has N cells a side, `hall-N` N lights."""
+    """Writes a scene that is not shipped. `hills-N` has N cells per side, `hall-N` has N lights."""
     kind, _, number = name.partition("-")
     if name in OWN or kind == "hills":
         scene = OWN[name]() if name in OWN else hills(int(number))
@@ -108,7 +108,7 @@ def generate(name: str, folder: pathlib.Path) -> None:
 
 
 def find(name: str, folder: pathlib.Path) -> pathlib.Path:
-    """The scene's file. One that is not shipped is written to `folder`, unless these sources have done so before."""
+    """The file of the scene. A scene that is not shipped is written to `folder`, unless these sources did so before."""
     shipped, written = SHIPPED / f"{name}.gltf", folder / generators_hash() / f"{name}.gltf"
     if shipped.exists():
         return shipped
@@ -122,7 +122,7 @@ def find(name: str, folder: pathlib.Path) -> pathlib.Path:
 
 @functools.cache
 def content_hash(path: pathlib.Path) -> str:
-    """Of the file and of all files beside it that it names."""
+    """The hash of the file and of all files that it refers to."""
     digest = hashlib.sha256(path.read_bytes())
     document = json.loads(path.read_text(encoding="utf-8"))
     for item in document.get("buffers", []) + document.get("images", []):

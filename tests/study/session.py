@@ -1,4 +1,4 @@
-"""One run of the study: what is measured where, and what is known so far."""
+"""One run of the study: where files are, and what has been measured so far."""
 
 import pathlib
 from typing import Any
@@ -16,17 +16,17 @@ BUILD = scenes.ROOT / "build"
 STUDY = BUILD / "release" / "candela-study"
 APP = BUILD / "release" / "candela"
 ANIMATIONS = scenes.ROOT / "sandbox" / "animations"
-SCENES = BUILD / "study" / "scenes"  # those that are not shipped
+SCENES = BUILD / "study" / "scenes"  # scenes that are not shipped
 
 
 def pictures_of(group: Group) -> pathlib.Path:
-    """Where the group's pictures and heat maps go; those that the page shows are copied from there to `Study.out`, which
-    lies elsewhere: its own folder of pictures is made anew with each page."""
+    """The folder for the group's pictures and heat maps. Those that the page shows are copied to the folder of pictures
+    in `Study.out`, which is deleted and written again with each page."""
     return BUILD / "study" / "pictures" / group.name.replace("/", "-")
 
 
 class Study:
-    """`out` holds the journal; what it knows of this machine and this program counts as measured."""
+    """`out` contains the journal. Its results for this machine and this program are not measured again."""
 
     def __init__(self, out: pathlib.Path) -> None:
         self.out = out
@@ -47,14 +47,14 @@ class Study:
         return {"scene": content, "machine": self.machine, "program": self.program}
 
     def keys(self, group: Group) -> dict[str, str]:
-        """Of the group's points and, as 'tracer', of its baseline."""
+        """The keys of the group's points and, as 'tracer', of its baseline."""
         circumstances = self.circumstances(group)
         keys = {one.id: matrix.key_of(group, one, circumstances) for one in group.points}
         samples = Point({}, {"tracer": group.tracer_samples}, ())
         return {**keys, "tracer": matrix.key_of(group, samples, circumstances)}
 
     def reference(self, group: Group) -> pathlib.Path:
-        """The folder of the group's reference: named by all that goes into it."""
+        """The folder of the group's reference; its name is a hash of everything that the reference depends on."""
         request = {**vars(group.reference), "size": group.size, "tracer": self.tracer}
         name = matrix.digest({**request, "scene": scenes.content_hash(self.scene(group))})
         return BUILD / "study" / "references" / name
@@ -68,7 +68,7 @@ class Study:
         return bool(group.tracer_samples) and "tracer" not in found
 
     def motion_key(self, played: Motion, take: Take) -> str:
-        """Of one configuration in one script; the script's own text counts."""
+        """The key of one configuration in one script; depends on the text of the script."""
         content = scenes.content_hash(scenes.find(motion.scene_of(played, ANIMATIONS), SCENES))
         text = motion.script_text(played, ANIMATIONS)
         circumstances = {"scene": content, "script": text, "machine": self.machine, "program": self.program}
@@ -79,7 +79,7 @@ class Study:
         return [take for take in played.takes if not known(take)]
 
     def script(self, played: Motion) -> pathlib.Path:
-        """The script's file, which is written where none is shipped."""
+        """The file of the script; writes it if it is not shipped."""
         shipped = ANIMATIONS / f"{played.script}.json"
         if shipped.exists():
             return shipped
@@ -89,7 +89,7 @@ class Study:
         return written
 
     def frame_references(self, played: Motion) -> pathlib.Path:
-        """The folder of the frames' references, which are known within it by what they show."""
+        """The folder of the frames' references, whose names within it are hashes of what they show."""
         request = {**vars(played.reference), "size": played.size, "tracer": self.tracer}
         return BUILD / "study" / "references" / f"frames-{matrix.digest(request)}"
 

@@ -16,7 +16,7 @@ constexpr int rounds = 15;
 struct Candidate {
     ShadingPath path;
     Bench bench;
-    std::vector<double> full;   // ms, all that depends on the view
+    std::vector<double> full;   // ms, everything that depends on the view
     std::vector<double> still;  // ms, nothing changed
 };
 

@@ -11,93 +11,95 @@
 
 namespace candela::study {
 
-// The parts of `candela-study`. Each prints a table and takes what follows its name on the command line.
+// The subcommands of `candela-study`. Each prints a table or JSON lines.
 
-/// What the frame graph itself costs. Arguments are Google Benchmark's.
+/// The cost of the frame graph itself. The arguments are those of Google Benchmark.
 int graph(int count, char** arguments);
-/// Forward against deferred shading, and a frame in which nothing changed.
+/// Compares forward with deferred shading, and measures a frame in which nothing changed.
 int shading(const std::filesystem::path& scene);
 
-/// What interleaved gathering is timed on.
+/// The input of `gather`.
 struct GatherStudy {
     std::filesystem::path scene;
     glm::uvec2 size{512, 512};
     std::vector<std::uint32_t> vpls{256, 1024};
     int rounds = 5;
 };
-/// Time and difference of indirect light that is gathered interleaved, of asking all VPLs at every pixel.
+/// Compares interleaved gathering of indirect light with gathering all VPLs at every pixel: time and
+/// difference.
 int gather(const GatherStudy& study);
 
-/// Which shading paths are timed on what.
+/// The input of `paths`.
 struct PathStudy {
     std::filesystem::path scene;
     std::vector<ShadingPath> paths{all_shading_paths.begin(),
-                                   all_shading_paths.end()};  ///< ratios are to the first
+                                   all_shading_paths.end()};  ///< ratios are relative to the first one
     glm::uvec2 size{640, 480};
     int rounds = 5;
     std::uint32_t vpls = 0;
-    std::filesystem::path csv;  ///< lines are appended to it; empty: none
+    std::filesystem::path csv;  ///< lines are appended to it; empty: no file
 };
-/// Frame times of shading paths, interleaved, with the share that goes into building lists.
+/// Frame times of shading paths, measured in turns, with the share that building lists takes.
 int paths(const PathStudy& study);
 
-/// How `reference` traces: see reference::Settings.
+/// The input of `reference`: see reference::Settings.
 struct ReferenceStudy {
     std::filesystem::path scene;
     glm::uvec2 size{1};  ///< pixels
     std::uint32_t samples = 0;
     std::optional<std::uint32_t> bounces;
     std::uint32_t seed = 0;
-    std::filesystem::path out;  ///< the folder; left alone if it holds the same already
+    std::filesystem::path out;  ///< the folder; unchanged if it already holds the same
 };
-/// Traces what the renderer's pictures are measured against.
+/// Traces a reference for the renderer's pictures.
 int reference(const ReferenceStudy& study);
 
-/// What the path tracer is asked for in the place of the renderer.
+/// The input of `baseline`.
 struct BaselineStudy {
     std::filesystem::path scene;
     std::filesystem::path reference;  ///< the folder
     std::vector<std::uint32_t> samples;
     std::uint32_t rounds = 3;
 };
-/// Error and time of the path tracer itself: a line of JSON for each number of samples a pixel.
+/// Error and time of the path tracer itself: one line of JSON for each number of samples per pixel.
 int baseline(const BaselineStudy& study);
 
-/// Which points are measured against which reference.
+/// The input of `measure`: which points are measured against which reference.
 struct MeasureStudy {
     std::filesystem::path scene;
     std::filesystem::path reference;  ///< the folder
     std::filesystem::path points;     ///< see read_points
-    std::filesystem::path pictures;   ///< the folder that pictures and heat maps go to
-    std::uint32_t rounds = 3;         ///< of times; 0: errors only
+    std::filesystem::path pictures;   ///< the folder for pictures and heat maps
+    std::uint32_t rounds = 3;         ///< of time measurements; 0: errors only
     ContextKind context = ContextKind::egl;
 };
-/// Error, work, memory and times of configurations, a line of JSON as each is known.
+/// Error, work, memory and times of configurations; a line of JSON as soon as each is known.
 int measure(const MeasureStudy& study);
 
-/// Which points are played through which script.
+/// The input of `animate`: which points are rendered with which script.
 struct AnimateStudy {
-    std::filesystem::path script;      ///< a file, or the name of a shipped one; it names its scene
-    std::filesystem::path references;  ///< the folder of the frames' references, each in a folder of its own
-    std::filesystem::path points;      ///< see read_points; of seeds only the first counts
+    std::filesystem::path script;      ///< a file, or the name of a shipped one; it must name its scene
+    std::filesystem::path references;  ///< the folder of the frames' references, one folder each
+    std::filesystem::path points;      ///< see read_points; only the first seed is used
     glm::uvec2 size{1};                ///< pixels
-    std::uint32_t samples = 0;         ///< of the references, and so on: see reference::Settings
+    std::uint32_t samples = 0;         ///< of the references, like the next two: see reference::Settings
     std::optional<std::uint32_t> bounces;
     std::uint32_t seed = 0;
-    int frames = 0;  ///< 0: as many as the script has
+    int frames = 0;  ///< 0: the length of the script
     ContextKind context = ContextKind::egl;
 };
-/// Error, time and work of each frame of a script, a line of JSON each, and a point's flicker at its end.
-/// Frames that show the same share a reference.
+/// Error, time and work of each frame of a script, as one line of JSON per frame, and the flicker of each
+/// point at its end. Frames that show the same share a reference.
 int animate(const AnimateStudy& study);
 
-/// What a frame costs in which nothing, the camera or a light moved.
+/// The input of `moves`.
 struct MovesStudy {
     glm::uvec2 size{128, 96};
     std::uint32_t vpls = 256;
     int rounds = 15;
 };
-/// Prints ratios of what frames spend before shading, and on VPLs, in the Cornell box.
+/// Prints the cost of such frames in the Cornell box: of a still one relative to the passes of a full frame
+/// before shading, of the others for VPLs.
 int moves(const MovesStudy& study);
 
 }  // namespace candela::study

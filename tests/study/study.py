@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Speed against accuracy: measures a matrix of configurations against references and writes tables, charts and a page.
 
-Called by tests/study/run, which builds candela-study first. What was measured is written down line by line in the
-output folder's journal.jsonl; a study that is started again measures only what is missing there.
+Called by tests/study/run, which builds candela-study first. Results are recorded line by line in journal.jsonl in the
+output folder; a study that is started again measures only what is missing there.
 """
 
 import argparse
@@ -32,7 +32,7 @@ RESULTS = scenes.ROOT / "tests" / "study" / "results"
 
 
 def names(text: str) -> list[str]:
-    """Of an argument that is a list."""
+    """Splits an argument that is a list."""
     return text.split(",")
 
 
@@ -78,7 +78,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
 
 
 def planned_motions(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Motion]:
-    """All scripts to play, in order."""
+    """All scripts to render, in order."""
     wanted = motion.motions() if not parts or "motion" in parts else []
     wanted += motion.camera_motions() if not parts or "gather" in parts else []
     chosen = motion.quick_motions() if quick else wanted
@@ -86,7 +86,7 @@ def planned_motions(quick: bool, parts: list[str] | None, only: list[str] | None
 
 
 def lights_rows(study: Study) -> list[Row]:
-    """Frame times as lights grow, measured where the journal does not have them."""
+    """Frame times for growing numbers of lights; measures those that are not in the journal."""
     rows = []
     for lights in growth.LIGHTS:
         key = matrix.digest({"lights": lights, "machine": study.machine, "program": study.program})
@@ -119,7 +119,7 @@ def run_program_part(part: str) -> None:
 
 
 def report(study: Study, groups: list[Group], motions: list[Motion], lights: list[Row]) -> None:
-    """Tables, charts and the page. Matplotlib is needed here and nowhere else."""
+    """Writes tables, charts and the page. Only this function needs Matplotlib."""
     import charts
     import motion_charts
     import page

@@ -1,4 +1,4 @@
-"""Tests of the study's own arithmetic and bookkeeping; nothing here renders. Run with `python3 -m unittest`."""
+"""Tests of the study's arithmetic and bookkeeping, without rendering. Run with `python3 -m unittest`."""
 
 import json
 import math
@@ -121,7 +121,7 @@ class BestDefault(unittest.TestCase):
     def test_looks_at_the_scene_where_it_is_worst(self) -> None:
         rows = self.rows("a", 1.0) + self.rows("b", 1.0)
         rows[1]["total_rel_mse"] = 0.001
-        rows[5]["total_rel_mse"] = 0.45  # of "good", whose mean is still the least
+        rows[5]["total_rel_mse"] = 0.45  # of "good", whose mean is still the smallest
         best = analysis.best_default(rows)
         self.assertEqual((best["id"], best["error"], best["worst_scene"]), ("cheap", 0.4, "a"))
 
@@ -177,7 +177,7 @@ class Matrix(unittest.TestCase):
         self.assertFalse(config["refinement"]["enabled"])
 
     def test_shadow_levers_leave_no_light_without_a_map(self) -> None:
-        # 256 cubes of six faces of 1,024² texels of four bytes take 6 GiB.
+        # 256 cube maps of six faces of 1,024² texels of four bytes take 6 GiB.
         for name in ("shadow-maps-half", "shadow-maps-double"):
             shadows = matrix.blind(256, lever=name).config["shadows"]
             self.assertGreaterEqual(shadows["budget_mib"] * 2**20, 256 * 6 * shadows["cube_resolution"] ** 2 * 4)
@@ -305,7 +305,7 @@ class Journal(unittest.TestCase):
         self.assertTrue(journal.is_done(again, 0))
 
 
-# Stands for candela-study: measures what it is asked for, crashes at the points whose names say so.
+# Replaces candela-study: "measures" all points, and crashes at the points whose names say so.
 FAKE = """#!{python}
 import json, os, sys
 points = json.load(open(sys.argv[sys.argv.index("--points") + 1]))
@@ -329,7 +329,7 @@ for round in range(rounds):
 
 class Program(unittest.TestCase):
     def measured(self, *names: str) -> dict[str, list[str]]:
-        """By point, the kinds of its lines, or a failure's words."""
+        """For each point, the kinds of its lines; for failures, the message."""
         plain = {"vpls": 1, "bounces": 1, "bound": 1, "visibility": "none", "lever": "none"}
         axes = [{"path": name, **plain} for name in names]
         points = tuple(matrix.Point(each, {}, (0,)) for each in axes)

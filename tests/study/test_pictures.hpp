@@ -10,7 +10,7 @@ namespace candela::study {
     return {size, std::vector<glm::vec3>(static_cast<std::size_t>(size.x * size.y), value)};
 }
 
-/// Channels evenly spread over [0, 1), the same for a seed on every machine.
+/// Channels are uniformly distributed over [0, 1), the same for a seed on every machine.
 [[nodiscard]] inline sandbox::Picture noise(glm::ivec2 size, std::uint32_t seed) {
     std::mt19937 bits(seed);
     const auto value = [&] { return static_cast<float>(bits() >> 8) / 16777216.0F; };

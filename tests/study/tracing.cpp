@@ -5,7 +5,7 @@
 namespace candela::study {
 namespace {
 
-/// Direct light is exact, however few samples indirect light is given.
+/// Direct light is exact, whatever the number of samples for indirect light.
 sandbox::Picture trace_fine_direct(const reference::Scene& scene, Entity camera, glm::uvec2 size) {
     const reference::Settings settings{
         .size = size * static_cast<unsigned>(fine_side), .samples = 2, .bounces = 0};

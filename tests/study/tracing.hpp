@@ -6,11 +6,10 @@
 
 namespace candela::study {
 
-/// Stands for the path tracer's sources.
+/// Identifies the path tracer's sources.
 [[nodiscard]] std::string_view tracer_name();
 
-/// Traces what is asked for, as the world's first camera sees it. Throws std::invalid_argument if there is
-/// none.
+/// Traces the request as seen by the world's first camera. Throws std::invalid_argument if there is none.
 [[nodiscard]] Reference trace_request(const World& world, const Request& request);
 
 }  // namespace candela::study

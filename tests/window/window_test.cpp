@@ -1,7 +1,6 @@
-// Opens the app's window, drags a light with the pointer as a person would, and looks at what the display
-// shows.
+// Opens the app's window, drags a light with the pointer like a user, and examines what the display shows.
 
-// Before the macros of X11.
+// Before X11's macros.
 #include <doctest/doctest.h>
 
 #include <X11/Xlib.h>
@@ -41,11 +40,11 @@ using candela::sandbox::TemporaryFolder;
 constexpr int width = 480;
 constexpr int height = 360;
 
-// The shipped Cornell box, as its file has it: a camera at (0, 1, 3.9) with this field of view looks along -Z
-// at a back wall at z = -1, and a light hangs at (0, 1.6, 0).
+// As in the file of the shipped Cornell box: a camera at (0, 1, 3.9) with this field of view looks along -Z
+// at a back wall at z = -1; a light is at (0, 1.6, 0).
 constexpr double vertical_fov = 0.685914;
 
-/// Pixels that a metre spans at this depth before the camera.
+/// Pixels per metre at this distance in front of the camera.
 double pixels_per_metre(double depth) {
     return height / (2.0 * depth * std::tan(vertical_fov / 2.0));
 }
@@ -64,7 +63,7 @@ struct CloseDisplay {
     void operator()(Display* display) const { XCloseDisplay(display); }
 };
 
-/// What the window shows: brightness of each pixel, the sum of its channels of 0 to 255.
+/// The contents of the window: the brightness of each pixel, which is the sum of its channels of 0 to 255.
 struct Shot {
     std::vector<int> pixels;
     [[nodiscard]] int at(int x, int y) const {
@@ -81,10 +80,10 @@ double mean(const Shot& shot, int left, int right) {
     return sum / (height * (right - left));
 }
 
-/// The app in a window. Its panel hides the picture in part, and is hidden itself at once.
+/// The app in a window. Its panel covers part of the picture, so it is hidden immediately.
 class App {
  public:
-    /// What it says on stderr goes to the file `errors`, or where the test's own goes.
+    /// The app's stderr goes to the file `errors`, or, if that is empty, to the test's stderr.
     explicit App(std::vector<std::string> flags, const fs::path& errors = {})
         : display_(XOpenDisplay(nullptr)) {
         REQUIRE_MESSAGE(display_, "no display: run under xvfb-run");
@@ -104,7 +103,7 @@ class App {
         REQUIRE(fault == 0);
         REQUIRE_MESSAGE(wait_until([&] { return find_window(DefaultRootWindow(display_.get())); }),
                         "no window");
-        // Words on black, which come first, are darker.
+        // Before the picture there is text on black, which is darker.
         REQUIRE_MESSAGE(wait_until([&] { return mean(shoot(), 0, width) > 30.0; }), "no picture");
         move_pointer(width / 2.0, height - 10.0);
         press_key(XK_F1);
@@ -132,7 +131,7 @@ class App {
         return shot;
     }
 
-    /// The picture as soon as it is at rest.
+    /// Waits until the picture stops changing; returns it.
     [[nodiscard]] Shot settled() {
         Shot last = shoot();
         int equal = 0;
@@ -165,7 +164,7 @@ class App {
         pause();
     }
 
-    /// Closes it by keyboard; the exit status.
+    /// Closes the app by keyboard; returns the exit status.
     int quit() {
         press_key(XK_Escape);
         int status = -1;
@@ -213,7 +212,7 @@ class App {
         pause();
     }
 
-    /// People are slow too.
+    /// Waits a little, like a user.
     void pause() {
         XSync(display_.get(), False);
         std::this_thread::sleep_for(30ms);
@@ -224,7 +223,8 @@ class App {
     pid_t process_ = 0;
 };
 
-/// Exposed so that nothing comes near white, where differences vanish; and at rest as soon as nothing moves.
+/// Dark enough that nothing is clipped to white, where differences vanish. Without refinement, so that the
+/// picture stops changing as soon as nothing moves.
 class DarkConfiguration {
  public:
     DarkConfiguration() {
@@ -241,8 +241,8 @@ std::string text_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The middle of the brightest stretch of the back wall, on a row above the blocks and below the light's
-/// marker.
+/// The middle of the brightest part of the back wall, in a row above the blocks and below the marker of the
+/// light.
 double brightest_column(const Shot& shot) {
     const int row = static_cast<int>(std::lround(height / 2.0 - 0.4 * pixels_per_metre(4.9)));
     const int left = static_cast<int>(width / 2.0 - 0.95 * pixels_per_metre(4.9));
@@ -251,7 +251,7 @@ double brightest_column(const Shot& shot) {
     double sum = 0.0;
     int count = 0;
     for (int x = left; x < width - left; ++x) {
-        if (shot.at(x, row) < most - 3) continue;  // a step of rounding in each channel
+        if (shot.at(x, row) < most - 3) continue;  // a rounding step in each channel
         sum += x + 0.5;
         ++count;
     }
@@ -272,7 +272,7 @@ void drag_light(App& app) {
     app.drag(light_x(), light_y(), light_x() + moved_by * pixels_per_metre(light_depth), light_y());
 }
 
-/// A script in a file of its own.
+/// A script in a temporary file.
 class ScriptFile {
  public:
     explicit ScriptFile(const std::string& json) { std::ofstream(path()) << json; }
@@ -282,16 +282,15 @@ class ScriptFile {
     TemporaryFolder folder_;
 };
 
-/// Where the wall is brightest with the light at `x` metres, if the camera stands at `camera_x`.
+/// Where the wall is brightest with the light at `x` metres and the camera at `camera_x` metres, in pixels.
 double column_of(double x, double camera_x = 0.0) {
     return width / 2.0 + (x - camera_x) * pixels_per_metre(4.9);
 }
 
-/// The stretch of the wall that rounds to the same brightness is some 20 pixels wide; its middle is good for
-/// a few.
+/// About 20 pixels of the wall are rounded to the same brightness; their middle is accurate to a few pixels.
 constexpr double column_tolerance = 4.0;
 
-/// Left and right of the box nothing is ever lit.
+/// To the left and right of the box nothing is ever lit.
 void check_same_beside_the_box(const Shot& before, const Shot& after) {
     const int edge = static_cast<int>(width / 2.0 - 1.02 * pixels_per_metre(2.9));
     REQUIRE(edge > 10);
@@ -309,7 +308,7 @@ TEST_SUITE("window") {
     TEST_CASE("a wall is brightest right behind the light, before it is dragged and after") {
         const DarkConfiguration dark;
         App app({"--indirect", "off", "--config", dark.path()});
-        // Irradiance I·d/r³ on the wall is largest at the foot of the perpendicular.
+        // The irradiance I·d/r³ on the wall is largest at the foot of the perpendicular.
         const Shot before = app.settled();
         CHECK(std::abs(brightest_column(before) - column_of(0.0)) < column_tolerance);
         drag_light(app);
@@ -325,7 +324,8 @@ TEST_SUITE("window") {
         const Shot before = app.settled();
         drag_light(app);
         const Shot after = app.settled();
-        // VPLs gather where the light has come nearer to, and leave the wall that it went away from.
+        // VPLs concentrate on the wall that the light has approached, and leave the one that it moved away
+        // from.
         CHECK(mean(after, width / 2, width) > mean(before, width / 2, width));
         CHECK(mean(after, 0, width / 2) < mean(before, 0, width / 2));
         check_same_beside_the_box(before, after);
@@ -341,7 +341,7 @@ TEST_SUITE("window") {
         CHECK_FALSE(before == turned);
         app.drag(200.0, 290.0, 240.0, 300.0);
         const Shot back = app.settled();
-        // Up to where roundings of the pose move an edge across a pixel.
+        // Except where rounding of the pose moves an edge across a pixel.
         int changed = 0;
         for (std::size_t i = 0; i < before.pixels.size(); ++i)
             changed += std::abs(before.pixels[i] - back.pixels[i]) > 6 ? 1 : 0;
@@ -423,7 +423,7 @@ TEST_SUITE("window") {
         App app({"--indirect", "off", "--config", config.string(), "--report", report.string(),
                  "--describe-graph", graph.string()},
                 errors);
-        // Paths agree in what they show, so that the exposure has to tell which file is in force.
+        // All paths show the same picture, so the exposure shows which configuration is active.
         const double before = mean(app.settled(), 0, width);
         std::ofstream(config) << R"({"path": "forward+", "tone_map": {"exposure_ev": -3}})";
         CHECK(wait_until([&] { return mean(app.shoot(), 0, width) < 0.7 * before; }));
