@@ -24,7 +24,7 @@ struct LightListRange {
 LightListRange light_list_at(uvec2 pixel, vec3 position) {
     float depth = grid.slices > 1u ? -(view.view_from_world * vec4(position, 1.0)).z : 0.0;
     uint cell = cell_index(pixel / grid.tile_size, grid.slices > 1u ? slice_of(depth) : 0u);
-    return LightListRange(list_first[cell], light_constants.count == 0u ? 0u : global_light_count() + list_count[cell]);
+    return LightListRange(list_first[cell], global_light_count() + list_count[cell]);
 }
 
 uint light_list_entry(LightListRange list, uint i) {

@@ -26,6 +26,8 @@ vec3 irradiance_from_light(Light light, Surface surface) {
     return incident.irradiance * (cos_surface * visibility);
 }
 
+#ifndef DIRECT_HIDDEN
+
 // Adds the irradiance from the lights of the surfaces' list. Loops over lights outside and surfaces inside, so that
 // each light is fetched once.
 void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
@@ -44,6 +46,12 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
     }
 #endif
 }
+
+#else
+
+void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {}
+
+#endif
 
 #ifdef INDIRECT_IRRADIANCE
 

@@ -41,7 +41,7 @@ struct Light {
 
 // What all lights have in common. A uniform block: shaders/light_list.glsl.
 struct LightConstants {
-    uint count;  // of lights that are shown
+    uint count;  // of lights
     uint pad0;
     uint pad1;
     uint pad2;

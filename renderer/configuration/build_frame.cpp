@@ -44,7 +44,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         add_shadow_maps(graph, gpu, scene, frame.lights, frame.metrics, configuration.shadows);
     frame.shadows = shadows.plan;
     frame.drawn_shadows = shadows.drawn;
-    const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan, configuration.show);
+    const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
     ValueHandle<CameraView> camera = add_view(graph, frame.request);
     if (configuration.refinement.enabled) {
         frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");

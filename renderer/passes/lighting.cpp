@@ -10,18 +10,17 @@ namespace candela {
 
 namespace {
 
-std::uint32_t shown_lights(const LightTable& lights, Show show) {
-    return show == Show::indirect ? 0U : static_cast<std::uint32_t>(lights.entries.size());
+std::uint32_t light_count(const LightTable& lights) {
+    return static_cast<std::uint32_t>(lights.entries.size());
 }
 
 }  // namespace
 
 LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                              ValueHandle<ShadowPlan> plan, Show show) {
+                              ValueHandle<ShadowPlan> plan) {
     return graph.add("light-upload", [&](Pass& pass) {
         pass.read(lights);
         pass.read(plan);
-        pass.parameter(show);
         const LightBuffers out{
             .constants = pass.write(
                 graph.buffer<gpu::LightConstants>("light constants", 1, Lifetime::persistent), Usage::copy),
@@ -37,7 +36,7 @@ LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<Lig
                 records.push_back(table.entries[i].light);
                 records.back().shadow = shadows.shadow_of_light[i];
             }
-            upload_one(gpu, run, out.constants, gpu::LightConstants{.count = shown_lights(table, show)});
+            upload_one(gpu, run, out.constants, gpu::LightConstants{.count = light_count(table)});
             upload<gpu::Light>(gpu, run, out.lights, records);
             upload<gpu::Shadow>(gpu, run, out.shadows, shadows.shadows);
         });
@@ -54,6 +53,9 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.emplace_back("VPLS");
         words.push_back(
             fmt::format("MOST_VPLS={}", std::min(most_asked(*lighting.vpls), lighting.most_vpls)));
+    }
+    if (lighting.show == Show::indirect) {
+        words.emplace_back("DIRECT_HIDDEN");
     }
     if (lighting.lists) {
         words.emplace_back("LIGHT_LIST_CELLS");
@@ -84,8 +86,8 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
 }
 
 std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting) {
-    return std::max(
-        (shown_lights(run.value(lighting.lights), lighting.show) + most_visited - 1) / most_visited, 1U);
+    const std::uint32_t shown = lighting.show == Show::indirect ? 0 : light_count(run.value(lighting.lights));
+    return std::max((shown + most_visited - 1) / most_visited, 1U);
 }
 
 void begin_lighting_part(const gl::Program& program, std::uint32_t part) {

@@ -28,7 +28,7 @@ struct LightBuffers {
 /// Adds node `light-upload` (CPU, then upload): the lights, each with the index of its shadow. Depends on the
 /// lights and the shadow plan.
 [[nodiscard]] LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                                            ValueHandle<ShadowPlan> plan, Show show);
+                                            ValueHandle<ShadowPlan> plan);
 
 /// Everything that the evaluator in shaders/lighting.glsl reads.
 struct Lighting {

@@ -30,6 +30,7 @@ void clear_pass(const Device& device, GraphBackend& backend, const PassTargets& 
 TEST_SUITE("gl graph backend") {
     TEST_CASE_FIXTURE(GlFixture, "resources get objects of their description, and give them back") {
         GraphBackend backend(device);
+        const ObjectCounts before = device.live();
         const ObjectId texture =
             backend.create_texture("picture", {.size = {8, 4}, .format = Format::rgba16f});
         const ObjectId buffer = backend.create_buffer("list", {.count = 10, .stride = 12});
@@ -40,7 +41,47 @@ TEST_SUITE("gl graph backend") {
         CHECK(device.live()[ObjectKind::buffer] == 1);
         backend.destroy_texture(texture);
         backend.destroy_buffer(buffer);
-        CHECK(device.live() == ObjectCounts{});
+        CHECK(device.live() == before);
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "objects are bound where shaders find them") {
+        GraphBackend backend(device);
+        const TextureDesc colour{.size = {8, 4}, .format = Format::rgba16f};
+        const TextureDesc depth{.size = {8, 4}, .format = Format::depth32f};
+        const ObjectId sampled = backend.create_texture("sampled", colour);
+        const ObjectId compared = backend.create_texture("compared", depth);
+        const ObjectId image = backend.create_texture("image", colour);
+        const ObjectId list = backend.create_buffer("list", {.count = 10, .stride = 16});
+        const ObjectId constants = backend.create_buffer("constants", {.count = 1, .stride = 16});
+        backend.begin_pass("pass", 0, nullptr);
+        backend.bind_texture(sampled, colour, {Usage::sampled, 2});
+        backend.bind_texture(compared, depth, {Usage::compared, 3});
+        backend.bind_texture(image, colour, {Usage::storage, 0});
+        backend.bind_buffer(list, {Usage::storage, 5});
+        backend.bind_buffer(constants, {Usage::uniform, 1});
+        backend.bind_buffer(list, Usage::indirect);
+        const auto bound = [&](GLenum what, GLuint index) {
+            GLint name = -1;
+            device.gl().GetIntegeri_v(what, index, &name);
+            return static_cast<ObjectId>(name);
+        };
+        const auto texture_at = [&](GLuint unit, GLenum what) {
+            device.gl().ActiveTexture(GL_TEXTURE0 + unit);
+            GLint name = -1;
+            device.gl().GetIntegerv(what, &name);
+            return static_cast<ObjectId>(name);
+        };
+        CHECK(texture_at(2, GL_TEXTURE_BINDING_2D) == sampled);
+        CHECK(texture_at(2, GL_SAMPLER_BINDING) == 0);
+        CHECK(texture_at(3, GL_TEXTURE_BINDING_2D) == compared);
+        CHECK(texture_at(3, GL_SAMPLER_BINDING) != 0);
+        CHECK(bound(GL_IMAGE_BINDING_NAME, 0) == image);
+        CHECK(bound(GL_IMAGE_BINDING_FORMAT, 0) == GL_RGBA16F);
+        CHECK(bound(GL_SHADER_STORAGE_BUFFER_BINDING, 5) == list);
+        CHECK(bound(GL_UNIFORM_BUFFER_BINDING, 1) == constants);
+        CHECK(texture_at(0, GL_DISPATCH_INDIRECT_BUFFER_BINDING) == list);
+        CHECK(texture_at(0, GL_DRAW_INDIRECT_BUFFER_BINDING) == list);
+        backend.end_pass();
     }
 
     TEST_CASE_FIXTURE(GlFixture, "a pass draws into its targets, from a known state") {

@@ -50,6 +50,10 @@ const std::vector<Layout>& layouts() {
          {MEMBER(Light, position), MEMBER(Light, kind), MEMBER(Light, direction), MEMBER(Light, range),
           MEMBER(Light, intensity), MEMBER(Light, shadow), MEMBER(Light, shape), MEMBER(Light, cos_inner),
           MEMBER(Light, cos_outer)}},
+        {"LightConstants",
+         sizeof(gpu::LightConstants),
+         {MEMBER(LightConstants, count), MEMBER(LightConstants, pad0), MEMBER(LightConstants, pad1),
+          MEMBER(LightConstants, pad2)}},
         {"Shadow",
          sizeof(gpu::Shadow),
          {MEMBER(Shadow, from_world), MEMBER(Shadow, axis), MEMBER(Shadow, texel), MEMBER(Shadow, near_plane),
@@ -220,7 +224,7 @@ TEST_SUITE("gpu types") {
                       static_cast<GLint>(member.offset));
             }
         }
-        CHECK(blocks == 3);
+        CHECK(blocks == 4);
     }
 
     TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is among those compared") {

@@ -96,9 +96,8 @@ class TraceRays : public GlFixture {
             read_tracing(pass, tracing);
             pass.side_effect();
             pass.run([&](Execution& run) {
-                bind_tracing(gpu, run, program, tracing);
-                gpu.bind_storage(BINDING_LAST + 1, ray_buffer.name());
-                gpu.bind_storage(BINDING_LAST + 2, hit_buffer.name());
+                ray_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_LAST + 1);
+                hit_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_LAST + 2);
                 program.set("ray_count", static_cast<std::uint32_t>(rays.size()));
                 program.use();
                 gpu.gl().DispatchCompute(static_cast<GLuint>(rays.size() + 31) / 32, 1, 1);

@@ -107,6 +107,8 @@ class Idle final : public Backend {
     void barrier(Barrier) override {}
     void begin_pass(std::string_view, std::uint32_t, const PassTargets*) override {}
     void end_pass() override {}
+    void bind_texture(ObjectId, const TextureDesc&, Binding) override {}
+    void bind_buffer(ObjectId, Binding) override {}
     std::uint64_t texture_digest(ObjectId) override { return 0; }
     std::uint64_t buffer_digest(ObjectId) override { return 0; }
 
