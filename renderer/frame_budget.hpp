@@ -6,16 +6,9 @@
 
 #include <glm/vec2.hpp>
 
-#include "renderer/frame_report.hpp"
+#include <candela/report.hpp>
 
 namespace candela {
-
-/// How far rendering is reduced to keep a frame within its time budget.
-struct Quality {
-    float scale = 1.0F;            ///< rendered size / target size along each axis; then scaled up
-    std::uint32_t interleave = 1;  ///< least interleave factor n: see `interleaving`
-    bool operator==(const Quality&) const = default;
-};
 
 /// Time of a frame in milliseconds, by what it grows with.
 struct FrameCost {

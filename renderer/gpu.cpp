@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 #include "shaders/bindings.glsl"
 
 namespace candela {

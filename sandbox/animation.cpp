@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 
 namespace candela::sandbox {
 

@@ -9,7 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 
 namespace candela::sandbox {
 

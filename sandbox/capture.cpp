@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "renderer/device_of.hpp"
+#include "renderer/passes/view/view.hpp"
 #include "sandbox/output_file.hpp"
 
 namespace candela::sandbox {
@@ -76,8 +78,8 @@ Capture::Canvas::Canvas(gl::Device& device, glm::uvec2 size, Format format)
 Capture::Capture(Renderer& renderer, glm::ivec2 size)
     : renderer_(&renderer),
       size_(size),
-      linear_(renderer.device(), size_, Format::rgba32f),
-      encoded_(renderer.device(), size_, Format::rgba8) {}
+      linear_(device_of(renderer), size_, Format::rgba32f),
+      encoded_(device_of(renderer), size_, Format::rgba8) {}
 
 void Capture::add_pixels(std::vector<glm::vec3>& sum) const {
     const std::vector<float> rgba = linear_.colour.read_floats();

@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "renderer/renderer.hpp"
+#include <candela/renderer.hpp>
+#include "renderer/gl/texture.hpp"
 #include "sandbox/picture.hpp"
 
 namespace candela::sandbox {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "renderer/configuration/configuration.hpp"
+#include <candela/configuration.hpp>
 #include "sandbox/options.hpp"
 
 namespace candela::sandbox {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "renderer/context/headless.hpp"
-#include "renderer/renderer.hpp"
+#include <candela/headless_context.hpp>
+#include <candela/renderer.hpp>
 #include "sandbox/options.hpp"
 #include "sandbox/report.hpp"
 #include "sandbox/scene.hpp"

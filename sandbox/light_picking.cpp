@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "sandbox/scene.hpp"
 
 namespace candela::sandbox {

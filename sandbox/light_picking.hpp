@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 #include "sandbox/viewport.hpp"
 
 namespace candela::sandbox {

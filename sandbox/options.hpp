@@ -8,7 +8,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "renderer/configuration/configuration.hpp"
+#include <candela/configuration.hpp>
 
 namespace candela::sandbox {
 

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 #include "sandbox/report.hpp"
 
 namespace candela::sandbox {
@@ -225,7 +225,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
 void Panel::draw_configuration(Configuration& wanted, const Quality& present) {
     draw_named_configurations(wanted);
     combo("path", wanted.path, all_shading_paths);
-    draw_list_settings(parts_of(wanted.path).list, wanted.lists);
+    draw_list_settings(info_of(wanted.path).lights, wanted.lists);
     combo("show", wanted.show, std::array{Show::total, Show::direct, Show::indirect});
     ImGui::Checkbox("indirect light", &wanted.indirect);
     combo("placement", wanted.vpls.placement, std::array{VplPlacement::paths, VplPlacement::surfels});

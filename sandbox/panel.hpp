@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/renderer.hpp"
+#include <candela/renderer.hpp>
 #include "sandbox/interaction.hpp"
 #include "sandbox/playback.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "renderer/renderer.hpp"
+#include <candela/renderer.hpp>
 
 namespace candela::sandbox {
 

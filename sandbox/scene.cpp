@@ -10,10 +10,10 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <candela/scene/components.hpp>
+#include <candela/scene/gltf.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "engine/bvh/box.hpp"
-#include "engine/scene/components.hpp"
-#include "engine/scene/gltf.hpp"
-#include "engine/scene/hierarchy.hpp"
 
 namespace candela::sandbox {
 

@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 #include "sandbox/animation.hpp"
 
 namespace candela::sandbox {

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 #include "sandbox/animation_script.hpp"
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/config_watch.hpp"

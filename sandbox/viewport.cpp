@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/hierarchy.hpp"
-#include "renderer/passes/view.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include "renderer/passes/view/view.hpp"
 
 namespace candela::sandbox {
 

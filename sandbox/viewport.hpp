@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 
 namespace candela::sandbox {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 
 namespace candela::sandbox {
 

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/hierarchy.hpp"
-#include "renderer/renderer.hpp"
+#include <candela/renderer.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "sandbox/capture.hpp"
 #include "sandbox/gui.hpp"
 #include "sandbox/headless.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/configuration/configuration.hpp"
+#include <candela/configuration.hpp>
 #include "sandbox/config_watch.hpp"
 #include "sandbox/options.hpp"
 #include "sandbox/scene.hpp"

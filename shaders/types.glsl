@@ -39,7 +39,7 @@ struct Light {
     float cos_outer;
 };
 
-// What all lights have in common. A uniform block: shaders/light_list.glsl.
+// What all lights have in common. A uniform block: shaders/lights/light_list.glsl.
 struct LightConstants {
     uint count;  // of lights
     uint pad0;
@@ -65,7 +65,7 @@ struct Shadow {
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u
 
-// The camera's view of the current frame. A uniform block: shaders/view.glsl.
+// The camera's view of the current frame. A uniform block: shaders/view/view.glsl.
 struct ViewConstants {
     mat4 clip_from_world;
     mat4 world_from_clip;
@@ -80,8 +80,8 @@ struct ViewConstants {
     uint pad2;
 };
 
-// The grid of cells that the view is divided into; see CellGrid in renderer/passes/light_bins.hpp. A uniform block:
-// shaders/light_cells.glsl.
+// The grid of cells that the view is divided into; see CellGrid in renderer/passes/lights/light_bins.hpp. A uniform block:
+// shaders/lights/light_cells.glsl.
 struct CellConstants {
     uvec2 tiles;         // cells across and up
     uvec2 target_size;   // pixels
@@ -158,7 +158,7 @@ struct CellLight {
     float pad1;
 };
 
-// Constants that all VPLs share. A uniform block: shaders/vpl_constants.glsl.
+// Constants that all VPLs share. A uniform block: shaders/vpls/vpl_constants.glsl.
 struct VplConstants {
     uint count;
     float radius2;            // m², R²: bounds the geometry term to 4/3 of 1/R²; of traced VPLs

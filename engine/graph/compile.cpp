@@ -1,4 +1,4 @@
-#include "engine/graph/compile.hpp"
+#include <candela/graph/compile.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "engine/graph/describe.hpp"
+#include <candela/graph/describe.hpp>
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "engine/graph/execute.hpp"
+#include <candela/graph/execute.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "engine/graph/resources.hpp"
+#include <candela/graph/resources.hpp>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/graph/execute.hpp"
+#include <candela/graph/execute.hpp>
 
 namespace candela {
 namespace {

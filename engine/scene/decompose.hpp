@@ -4,7 +4,7 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 
 namespace candela {
 

@@ -1,4 +1,4 @@
-#include "engine/scene/gltf.hpp"
+#include <candela/scene/gltf.hpp>
 
 #include <algorithm>
 #include <exception>

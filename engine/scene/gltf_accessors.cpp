@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/scene_error.hpp>
 
 namespace candela::gltf {
 

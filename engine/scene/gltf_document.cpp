@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <candela/scene/scene_error.hpp>
 #include "engine/scene/gltf_schema.hpp"
-#include "engine/scene/scene_error.hpp"
 
 namespace candela::gltf {
 

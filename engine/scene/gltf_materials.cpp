@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
+#include <candela/scene/scene_error.hpp>
 #include "engine/scene/gltf_accessors.hpp"
-#include "engine/scene/scene_error.hpp"
 
 namespace candela::gltf {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 #include "engine/scene/gltf_document.hpp"
 
 namespace candela::gltf {

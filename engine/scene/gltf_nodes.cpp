@@ -9,9 +9,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <candela/scene/scene_error.hpp>
 #include "engine/scene/decompose.hpp"
 #include "engine/scene/gltf_document.hpp"
-#include "engine/scene/scene_error.hpp"
 
 namespace candela::gltf {
 

@@ -9,7 +9,7 @@
 
 #include <tiny_gltf.h>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 
 namespace candela::gltf {
 

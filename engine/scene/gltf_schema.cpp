@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/scene_error.hpp>
 
 namespace candela::gltf {
 

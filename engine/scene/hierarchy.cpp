@@ -1,4 +1,4 @@
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/hierarchy.hpp>
 
 #include <cstddef>
 #include <string>

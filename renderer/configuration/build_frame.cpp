@@ -2,18 +2,19 @@
 
 #include <algorithm>
 
-#include "renderer/passes/accumulate.hpp"
-#include "renderer/passes/deferred.hpp"
-#include "renderer/passes/depth_prepass.hpp"
-#include "renderer/passes/forward.hpp"
-#include "renderer/passes/gbuffer.hpp"
-#include "renderer/passes/light_lists.hpp"
-#include "renderer/passes/surfel_light.hpp"
-#include "renderer/passes/transparent.hpp"
-#include "renderer/passes/view_cull.hpp"
-#include "renderer/passes/vpl_gather.hpp"
-#include "renderer/passes/vpl_maps.hpp"
-#include "renderer/passes/vpl_reconstruct.hpp"
+#include "renderer/passes/indirect/vpl_gather.hpp"
+#include "renderer/passes/indirect/vpl_reconstruct.hpp"
+#include "renderer/passes/lights/light_lists.hpp"
+#include "renderer/passes/output/accumulate.hpp"
+#include "renderer/passes/output/tone_map.hpp"
+#include "renderer/passes/shading/deferred.hpp"
+#include "renderer/passes/shading/forward.hpp"
+#include "renderer/passes/shading/transparent.hpp"
+#include "renderer/passes/surfaces/depth_prepass.hpp"
+#include "renderer/passes/surfaces/gbuffer.hpp"
+#include "renderer/passes/view/view_cull.hpp"
+#include "renderer/passes/vpls/surfel_light.hpp"
+#include "renderer/passes/vpls/vpl_maps.hpp"
 
 namespace candela {
 namespace {
@@ -81,6 +82,9 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         }
     }
     const bool shows_indirect = vpl_light && configuration.show != Show::direct;
+    if (!shows_indirect) {
+        frame.vpls.reset();  // nothing reads them: their passes are culled
+    }
     frame.interleave =
         shows_indirect
             ? std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
@@ -92,22 +96,22 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         shows_indirect && (frame.interleave > 1 || configuration.vpls.count > most_asked(*vpl_light));
 
     // Visible surfaces that are found before shading.
-    const PathParts path = parts_of(configuration.path);
+    const ShadingPathInfo& path = info_of(configuration.path);
     std::optional<VisibleSurfaces> visible;
     std::optional<Gbuffer> gbuffer;
-    if (path.surface == SurfaceStage::gbuffer) {
+    if (path.surfaces == SurfaceStage::gbuffer) {
         gbuffer = add_gbuffer(graph, gpu, seen, view, size);
         visible = {gbuffer->depth, gbuffer->normal};
-    } else if (path.surface == SurfaceStage::forward_after_prepass || gathers) {
+    } else if (path.surfaces == SurfaceStage::forward_after_prepass || gathers) {
         visible = add_depth_prepass(graph, gpu, seen, view, size);
     }
-    const bool bounds_lists = path.surface != SurfaceStage::forward;
+    const bool bounds_lists = path.surfaces != SurfaceStage::forward;
 
-    if (path.list == LightList::tile) {
+    if (path.lights == LightList::tile) {
         const LightGrid grid = add_tile_grid(graph, gpu, size, configuration.lists);
         frame.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, grid,
                                       bounds_lists ? depth_of(visible) : std::nullopt);
-    } else if (path.list == LightList::cluster) {
+    } else if (path.lights == LightList::cluster) {
         const LightGrid grid = add_cluster_grid(graph, gpu, camera, frame.metrics, size, configuration.lists);
         frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, grid);
     }
@@ -125,7 +129,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     if (frame.interleave > 1) {
         of_blended.most_vpls = most_vpls_of_blended;
     }
-    if (path.list == LightList::tile && bounds_lists) {
+    if (path.lights == LightList::tile && bounds_lists) {
         of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
                                                    frame.lists->grid, scene.layout);
     }

@@ -2,16 +2,16 @@
 
 #include <optional>
 
-#include "engine/graph/frame_graph.hpp"
-#include "renderer/configuration/configuration.hpp"
-#include "renderer/passes/bvh.hpp"
-#include "renderer/passes/light_lists.hpp"
-#include "renderer/passes/lights.hpp"
-#include "renderer/passes/refinement.hpp"
-#include "renderer/passes/shadow_maps.hpp"
-#include "renderer/passes/view.hpp"
-#include "renderer/passes/vpl_reconstruct.hpp"
-#include "renderer/passes/vpl_trace.hpp"
+#include <candela/configuration.hpp>
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/passes/indirect/vpl_reconstruct.hpp"
+#include "renderer/passes/lights/light_lists.hpp"
+#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/shadow_maps.hpp"
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/view/refinement.hpp"
+#include "renderer/passes/view/view.hpp"
+#include "renderer/passes/vpls/vpl_trace.hpp"
 
 namespace candela {
 

@@ -1,6 +1,7 @@
-#include "renderer/configuration/configuration.hpp"
+#include <candela/configuration.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -12,9 +13,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, all_shading_paths.size()> path_names{
-    "forward",        "tiled-forward",     "forward+",          "deferred",
-    "tiled-deferred", "clustered-forward", "clustered-deferred"};
+constexpr auto path_names = [] {
+    std::array<std::string_view, shading_paths.size()> names;
+    std::ranges::transform(shading_paths, names.begin(), &ShadingPathInfo::name);
+    return names;
+}();
 constexpr std::array<std::string_view, 3> show_names{"total", "direct", "indirect"};
 constexpr std::array<std::string_view, 3> visibility_names{"none", "maps", "rays"};
 constexpr std::array<std::string_view, 2> placement_names{"paths", "surfels"};
@@ -300,17 +303,8 @@ std::span<const NamedConfiguration> named_configurations() {
             change(configuration);
             named.push_back({name, description, configuration});
         };
-        constexpr std::array<std::string_view, all_shading_paths.size()> descriptions{
-            "surfaces shaded as they are rasterised, by all lights",
-            "the same, by the lights of their screen tile",
-            "the same after a depth pre-pass, which bounds the tiles in depth",
-            "G-buffer, then one dispatch over all lights",
-            "the same, by the lights of each tile, bounded in depth",
-            "forward, by the lights of each cluster: a tile cut into slices of depth",
-            "deferred, by the lights of each cluster"};
-        for (std::size_t i = 0; i < all_shading_paths.size(); ++i) {
-            add(path_names.at(i), descriptions.at(i),
-                [&](Configuration& c) { c.path = all_shading_paths.at(i); });
+        for (const ShadingPathInfo& path : shading_paths) {
+            add(path.name, path.description, [&](Configuration& c) { c.path = path.path; });
         }
         add("direct", "the default path without indirect light",
             [](Configuration& c) { c.indirect = false; });
@@ -322,20 +316,8 @@ std::span<const NamedConfiguration> named_configurations() {
     return configurations;
 }
 
-PathParts parts_of(ShadingPath path) {
-    static constexpr std::array<PathParts, all_shading_paths.size()> parts{
-        {{SurfaceStage::forward, LightList::all},
-         {SurfaceStage::forward, LightList::tile},
-         {SurfaceStage::forward_after_prepass, LightList::tile},
-         {SurfaceStage::gbuffer, LightList::all},
-         {SurfaceStage::gbuffer, LightList::tile},
-         {SurfaceStage::forward, LightList::cluster},
-         {SurfaceStage::gbuffer, LightList::cluster}}};
-    return parts.at(static_cast<std::size_t>(path));
-}
-
 std::string_view to_string(ShadingPath path) {
-    return path_names[static_cast<std::size_t>(path)];
+    return info_of(path).name;
 }
 std::string_view to_string(Show show) {
     return show_names[static_cast<std::size_t>(show)];

@@ -1,4 +1,4 @@
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 
 #include "renderer/context/kinds.hpp"
 

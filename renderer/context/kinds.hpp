@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 
 // What HeadlessContext::create calls for each kind. Both functions throw ContextError.
 

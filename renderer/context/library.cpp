@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 
 namespace candela {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include <candela/gl_error.hpp>
 #include "renderer/gl/debug_log.hpp"
-#include "renderer/gl/error.hpp"
 #include "renderer/gl/functions.hpp"
 
 namespace candela::gl {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/gl/error.hpp"
+#include <candela/gl_error.hpp>
 
 namespace candela::gl {
 namespace {

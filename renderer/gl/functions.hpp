@@ -2,7 +2,7 @@
 
 #include <GL/glcorearb.h>
 
-#include <functional>
+#include <candela/gl_loader.hpp>
 
 /// The functions of OpenGL 4.5 core that are loaded: X(name without "gl", the same in capitals).
 // clang-format off
@@ -236,10 +236,6 @@
     X(GetObjectLabel, GETOBJECTLABEL)  // clang-format on
 
 namespace candela::gl {
-
-/// Looks up a GL function by name ("glDrawArrays"); returns null if there is none. Called with the context
-/// current. glfwGetProcAddress, eglGetProcAddress and OSMesaGetProcAddress have this form.
-using GetProc = std::function<void (*(const char* name))()>;
 
 /// Function pointers of one context. `functions.DrawArrays(...)` calls glDrawArrays.
 struct Functions {

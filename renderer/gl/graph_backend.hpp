@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/graph/backend.hpp"
+#include <candela/graph/backend.hpp>
 #include "renderer/gl/device.hpp"
 #include "renderer/gl/objects.hpp"
 #include "renderer/gl/texture.hpp"

@@ -61,7 +61,7 @@ class Program : public Object {
 };
 
 /// Compiles and links shader files. The file extension gives the stage: .vert, .frag, .geom or .comp.
-/// `compile(device, library, {"mesh_surface.vert", "gbuffer.frag"}, {{"MASKED", "1"}})`.
+/// `compile(device, library, {"surfaces/mesh_surface.vert", "surfaces/gbuffer.frag"}, {{"MASKED", "1"}})`.
 /// Throws ProgramError with the driver's messages, by file and line.
 [[nodiscard]] Program compile(Device& device, const ShaderLibrary& library,
                               const std::vector<std::string>& stages,

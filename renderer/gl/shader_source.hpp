@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "renderer/gl/error.hpp"
+#include <candela/gl_error.hpp>
 
 namespace candela::gl {
 
@@ -56,8 +56,8 @@ struct ShaderSource {
                                     std::span<const Define> defines = {});
 
 /// Replaces the file numbers in a driver's messages by names. Mesa's "2:42(10): error: ..." becomes
-/// "shaders/lighting.glsl:42: error: ...", and so does NVIDIA's "2(42) : error ...". Lines of another form do
-/// not change.
+/// "shaders/shading/lighting.glsl:42: error: ...", and so does NVIDIA's "2(42) : error ...". Lines of another
+/// form do not change.
 [[nodiscard]] std::string map_log(std::string_view log, std::span<const std::string> files);
 
 }  // namespace candela::gl

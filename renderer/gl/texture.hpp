@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/graph/resources.hpp"
+#include <candela/graph/resources.hpp>
 #include "renderer/gl/objects.hpp"
 
 namespace candela::gl {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "engine/graph/execute.hpp"
+#include <candela/graph/execute.hpp>
 #include "renderer/gpu.hpp"
 
 namespace candela {

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/ecs/world.hpp"
-#include "engine/scene/gltf.hpp"
+#include <candela/ecs/world.hpp>
+#include <candela/scene/gltf.hpp>
 
 namespace candela::test {
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/graph/describe.hpp"
+#include <candela/graph/describe.hpp>
 
 namespace {
 

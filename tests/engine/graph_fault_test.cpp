@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/compile.hpp"
+#include <candela/graph/compile.hpp>
 
 namespace {
 

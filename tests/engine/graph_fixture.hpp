@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/graph/compile.hpp"
-#include "engine/graph/execute.hpp"
+#include <candela/graph/compile.hpp>
+#include <candela/graph/execute.hpp>
 #include "tests/engine/recording_backend.hpp"
 
 namespace candela {

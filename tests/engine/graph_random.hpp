@@ -7,8 +7,8 @@
 
 #include <rapidcheck.h>
 
-#include "engine/graph/compile.hpp"
-#include "engine/graph/execute.hpp"
+#include <candela/graph/compile.hpp>
+#include <candela/graph/execute.hpp>
 
 /// Random graphs, kept as plain lists in addition to the declaration, so that checks do not rely on the
 /// latter.

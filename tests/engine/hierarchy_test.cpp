@@ -1,4 +1,4 @@
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/hierarchy.hpp>
 
 #include <doctest/doctest.h>
 #include <rapidcheck.h>

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/graph/backend.hpp"
+#include <candela/graph/backend.hpp>
 
 namespace candela {
 

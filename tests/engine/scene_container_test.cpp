@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/hierarchy.hpp>
 #include "tests/engine/gltf_builder.hpp"
 
 using namespace candela;

@@ -10,9 +10,9 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include <candela/scene/gltf.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "engine/bvh/bvh.hpp"
-#include "engine/scene/gltf.hpp"
-#include "engine/scene/hierarchy.hpp"
 
 namespace candela::test {
 

@@ -1,4 +1,4 @@
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 
 #include <algorithm>
 #include <iterator>

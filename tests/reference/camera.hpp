@@ -3,7 +3,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 #include "tests/reference/geometry.hpp"
 
 namespace candela::reference {

@@ -10,8 +10,8 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 
 namespace candela::reference {
 

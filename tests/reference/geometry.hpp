@@ -9,7 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 #include "tests/reference/embree.hpp"
 #include "tests/reference/materials.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 
 namespace candela::reference {
 

@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 
 namespace candela::reference {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/scene_error.hpp>
 #include "tests/reference/camera.hpp"
 #include "tests/reference/edges.hpp"
 #include "tests/reference/paths.hpp"

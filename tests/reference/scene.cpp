@@ -1,6 +1,6 @@
 #include "tests/reference/scene.hpp"
 
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/hierarchy.hpp>
 #include "tests/reference/scene_content.hpp"
 
 namespace candela::reference {

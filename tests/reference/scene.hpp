@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "engine/ecs/world.hpp"
+#include <candela/ecs/world.hpp>
 
 namespace candela::reference {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 #include "tests/reference/emission.hpp"
 #include "tests/reference/geometry.hpp"
 #include "tests/reference/lights.hpp"

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/scene_error.hpp>
 #include "tests/reference/pictures.hpp"
 #include "tests/renderer/path_fixture.hpp"
 

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/vpls/vpl_paths.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/hierarchy.hpp>
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;

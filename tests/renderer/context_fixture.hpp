@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
+#include <candela/renderer.hpp>
 #include "renderer/gl/device.hpp"
-#include "renderer/renderer.hpp"
 
 namespace candela {
 

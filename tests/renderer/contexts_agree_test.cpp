@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/device_of.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;
@@ -41,8 +42,8 @@ Shown show(ContextKind kind) {
     const auto context = HeadlessContext::create(kind, {.debug = true});
     context->make_current();
     TestedRenderer renderer(context->get_proc());
-    const RenderTarget target(renderer.device(), size);
-    Shown shown{renderer.device().renderer(), {}};
+    const RenderTarget target(device_of(renderer), size);
+    Shown shown{device_of(renderer).renderer(), {}};
     for (const Configuration& configuration : configurations()) {
         Scene scene = cornell_box();
         REQUIRE(renderer.configure(configuration).empty());
@@ -53,7 +54,7 @@ Shown show(ContextKind kind) {
             scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.2F; });
         }
     }
-    for (const gl::DebugMessage& message : renderer.device().take_messages()) {
+    for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {
         INFO(message.text);
         CHECK_FALSE(message.is_fault());
     }

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/scene_error.hpp>
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;

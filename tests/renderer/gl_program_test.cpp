@@ -87,12 +87,12 @@ TEST_SUITE("gl shader source") {
     }
 
     TEST_CASE("drivers' messages name the files") {
-        const std::vector<std::string> files = {"a.frag", "lighting.glsl"};
+        const std::vector<std::string> files = {"a.frag", "shading/lighting.glsl"};
         CHECK(map_log("1:42(10): error: no such thing\n", files) ==
-              "shaders/lighting.glsl:42: error: no such thing\n");
+              "shaders/shading/lighting.glsl:42: error: no such thing\n");
         CHECK(map_log("0(7) : error C1008: undefined variable \"x\"\n1(9) : warning C7050: unset", files) ==
               "shaders/a.frag:7: error C1008: undefined variable \"x\"\n"
-              "shaders/lighting.glsl:9: warning C7050: unset\n");
+              "shaders/shading/lighting.glsl:9: warning C7050: unset\n");
         CHECK(map_log("2:1(1): of no file\nsome words\n", files) == "2:1(1): of no file\nsome words\n");
     }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/device_of.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;
@@ -169,10 +170,10 @@ TEST_SUITE("host state") {
             CAPTURE(oddity.name);
             const auto context = make_current_context();
             TestedRenderer renderer(context->get_proc());
-            const gl::VertexArray array(renderer.device(), "host's");
-            const gl::Buffer buffer(renderer.device(), "host's", 4096);
-            const RenderTarget target(renderer.device(), size);
-            const gl::Functions& gl = renderer.device().gl();
+            const gl::VertexArray array(device_of(renderer), "host's");
+            const gl::Buffer buffer(device_of(renderer), "host's", 4096);
+            const RenderTarget target(device_of(renderer), size);
+            const gl::Functions& gl = device_of(renderer).gl();
             oddity.set({gl, array.name(), buffer.name()});
             for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
                 CAPTURE(to_string(path));
@@ -185,7 +186,7 @@ TEST_SUITE("host state") {
                 renderer.invalidate();
             }
             CHECK(mean(usual[ShadingPath::forward]) > 0.01);
-            for (const gl::DebugMessage& message : renderer.device().take_messages()) {
+            for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {
                 CAPTURE(message.text);
                 CHECK_FALSE(message.is_fault());
             }

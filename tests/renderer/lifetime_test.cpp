@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "renderer/device_of.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;
@@ -76,10 +77,10 @@ TEST_SUITE("lifetime") {
             draw(target.target());
         };
         round(240, 48);  // every configuration and every size once, to fill pools and the driver's caches
-        const gl::ObjectCounts before = renderer.device().live();
+        const gl::ObjectCounts before = device_of(renderer).live();
         const std::uint64_t memory_before = resident_bytes();
         round(1000, 200);
-        CHECK(renderer.device().live() == before);
+        CHECK(device_of(renderer).live() == before);
         // Allows for fragmentation by the allocator. A leak of one small object per switch would not show
         // here, but is counted above. AddressSanitizer delays freeing memory, and finds leaks by itself.
         if (!is_sanitized) CHECK(resident_bytes() < memory_before + (8U << 20U));
@@ -95,20 +96,20 @@ TEST_SUITE("lifetime") {
             material.base_colour_texture = std::make_shared<const Image>(
                 Image{.width = 64, .height = 64, .texels = std::vector(64 * 64, glm::u8vec4(200))});
             const auto mesh = square(0.5F, std::make_shared<const Material>(material));
-            const std::uint32_t textures = renderer.device().live()[gl::ObjectKind::texture];
+            const std::uint32_t textures = device_of(renderer).live()[gl::ObjectKind::texture];
             const Entity extra = add(scene.world, at({0, 0.5F, 0.5F}), MeshInstance{mesh});
             CHECK(render(scene, size) != before);
-            CHECK(renderer.device().live()[gl::ObjectKind::texture] == textures + 1);
+            CHECK(device_of(renderer).live()[gl::ObjectKind::texture] == textures + 1);
             scene.world.destroy(extra);
             CHECK(render(scene, size) == before);
             static_cast<void>(renderer.take_frames(true));
         };
         come_and_go();  // buffers grow and keep their size
-        const gl::ObjectCounts objects = renderer.device().live();
+        const gl::ObjectCounts objects = device_of(renderer).live();
         for (int i = 0; i < 20; ++i) {
             come_and_go();
         }
-        CHECK(renderer.device().live() == objects);
+        CHECK(device_of(renderer).live() == objects);
     }
 
     TEST_CASE_FIXTURE(RenderFixture,
@@ -141,7 +142,7 @@ TEST_SUITE("lifetime") {
             REQUIRE(other.configure(linear_configuration()).empty());
             for (int i = 0; i < 3; ++i) {
                 second->make_current();
-                const RenderTarget target(other.device(), size);
+                const RenderTarget target(device_of(other), size);
                 other.render(scene.world, scene.camera, target.target());
                 CHECK(target.read() == alone);
                 context->make_current();

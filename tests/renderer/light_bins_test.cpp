@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/passes/light_bins.hpp"
+#include "renderer/passes/lights/light_bins.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/hierarchy.hpp>
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/scene/gltf.hpp"
+#include <candela/scene/gltf.hpp>
 
 namespace candela {
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/passes/view/refinement.hpp"
+#include "renderer/passes/view/view.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;

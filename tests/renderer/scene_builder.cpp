@@ -13,8 +13,8 @@
 #include <random>
 #include <utility>
 
-#include "engine/scene/gltf.hpp"
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/gltf.hpp>
+#include <candela/scene/hierarchy.hpp>
 
 namespace candela {
 namespace {

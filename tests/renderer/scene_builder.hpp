@@ -8,10 +8,11 @@
 #include <span>
 #include <vector>
 
+#include <candela/ecs/world.hpp>
+#include <candela/renderer.hpp>
+#include <candela/scene/components.hpp>
 #include "engine/bvh/bvh.hpp"
-#include "engine/ecs/world.hpp"
-#include "engine/scene/components.hpp"
-#include "renderer/renderer.hpp"
+#include "renderer/gl/texture.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
 namespace candela {

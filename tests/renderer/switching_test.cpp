@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "renderer/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
@@ -89,8 +90,8 @@ TEST_SUITE("switching") {
                     CHECK((!ran(pass) || (round == 0 && path == ShadingPath::forward)));
                 }
             }
-            if (round == 0) after_first_round = renderer.device().live();
-            CHECK(renderer.device().live() == after_first_round);
+            if (round == 0) after_first_round = device_of(renderer).live();
+            CHECK(device_of(renderer).live() == after_first_round);
         }
     }
 

@@ -1,5 +1,5 @@
 // Traces the rays of a buffer through the uploaded scene: see trace_rays_test.cpp.
-#include "bvh.glsl"
+#include "scene/bvh.glsl"
 
 layout(local_size_x = 32) in;
 

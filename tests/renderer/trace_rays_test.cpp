@@ -10,8 +10,10 @@
 #include <limits>
 #include <random>
 
-#include "engine/graph/compile.hpp"
-#include "renderer/passes/bvh.hpp"
+#include <candela/graph/compile.hpp>
+#include <candela/graph/execute.hpp>
+#include "renderer/gl/graph_backend.hpp"
+#include "renderer/passes/scene/bvh.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;

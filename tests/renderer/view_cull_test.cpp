@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "renderer/passes/view_cull.hpp"
+#include "renderer/passes/view/view_cull.hpp"
 #include "tests/seed.hpp"
 
 using namespace candela;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/passes/indirect/vpl_gather.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;

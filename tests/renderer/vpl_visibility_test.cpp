@@ -8,7 +8,9 @@
 #include <numbers>
 #include <string_view>
 
-#include "engine/graph/execute.hpp"
+#include <candela/graph/execute.hpp>
+#include "renderer/device_of.hpp"
+#include "renderer/passes/vpls/vpl_constants.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
@@ -314,9 +316,9 @@ TEST_SUITE("VPL visibility") {
         configure(indirect_only(VplVisibility::none));
         const Picture before = render(scene, size);
         CHECK(round() == before);
-        const gl::ObjectCounts once = renderer.device().live();
+        const gl::ObjectCounts once = device_of(renderer).live();
         CHECK(round() == before);
-        CHECK(renderer.device().live() == once);
+        CHECK(device_of(renderer).live() == once);
     }
 
     TEST_CASE_FIXTURE(VplVisibilityTests,

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "sandbox/scene.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 

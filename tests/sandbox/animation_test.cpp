@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 
 namespace candela::sandbox {
 

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/hierarchy.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 
 namespace candela::sandbox {
 

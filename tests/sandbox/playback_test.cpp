@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "engine/scene/components.hpp"
+#include <candela/scene/components.hpp>
 
 namespace candela::sandbox {
 

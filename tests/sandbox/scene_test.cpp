@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 #include <glm/vector_relational.hpp>
 
-#include "engine/scene/components.hpp"
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/components.hpp>
+#include <candela/scene/scene_error.hpp>
 #include "sandbox/viewport.hpp"
 
 namespace candela::sandbox {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 #include "sandbox/animation_script.hpp"
 #include "sandbox/scene.hpp"
 #include "tests/study/frame_hash.hpp"

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "renderer/device_of.hpp"
 #include "sandbox/scene.hpp"
 
 namespace candela::study {
@@ -21,8 +22,8 @@ Bench::Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size)
     : world_(&world),
       camera_(first_camera(world)),
       renderer_(get_proc),
-      target_(renderer_.device(), "radiance", {size, Format::rgba32f}),
-      framebuffer_(renderer_.device(), "radiance") {
+      target_(device_of(renderer_), "radiance", {size, Format::rgba32f}),
+      framebuffer_(device_of(renderer_), "radiance") {
     framebuffer_.attach_colour(0, target_.name());
     framebuffer_.draw_buffers(1);
 }
@@ -38,7 +39,7 @@ void Bench::configure(Configuration configuration) {
 double Bench::frame(glm::vec2 jitter) {
     const auto start = std::chrono::steady_clock::now();
     renderer_.render(*world_, camera_, {framebuffer_.name(), target_.desc().size}, jitter);
-    renderer_.device().gl().Finish();
+    device_of(renderer_).gl().Finish();
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scene/gltf.hpp"
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
+#include <candela/scene/gltf.hpp>
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 
@@ -60,7 +60,7 @@ int gather(const GatherStudy& study) {
         Candidate{Interleave::four, bench(), {}, {}}, Candidate{Interleave::eight, bench(), {}, {}}};
     fmt::print("{}, indirect light with depth maps, {} x {}, medians of {} interleaved rounds, {}\n",
                study.scene.filename().string(), study.size.x, study.size.y, study.rounds,
-               candidates[0].bench.renderer().device().renderer());
+               device_of(candidates[0].bench.renderer()).renderer());
     fmt::print("{:>6} {:>3} {:>12} {:>12} {:>10} {:>11} {:>12}\n", "VPLs", "n", "frame ms", "gather ms",
                "of n = 1", "asked more", "relMSE to 1");
     for (const std::uint32_t vpls : study.vpls) {

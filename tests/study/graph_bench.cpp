@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/graph/compile.hpp"
-#include "engine/graph/execute.hpp"
-#include "engine/graph/frame_graph.hpp"
+#include <candela/graph/compile.hpp>
+#include <candela/graph/execute.hpp>
+#include <candela/graph/frame_graph.hpp>
 #include "tests/study/study.hpp"
 
 namespace {

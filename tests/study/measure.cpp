@@ -6,7 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
+#include "renderer/passes/view/view.hpp"
 #include "sandbox/capture.hpp"
 #include "sandbox/scene.hpp"
 #include "tests/study/flip.hpp"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
 #include "sandbox/animation_script.hpp"
 #include "sandbox/scene.hpp"
 #include "tests/study/bench.hpp"

@@ -4,8 +4,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "engine/scene/gltf.hpp"
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
+#include <candela/scene/gltf.hpp>
+#include "renderer/device_of.hpp"
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 
@@ -59,7 +60,7 @@ void print(const PathStudy& study, std::vector<Candidate>& candidates) {
     Renderer& first = candidates.front().bench->renderer();
     fmt::print("{}, {} lights, {} VPLs, {} x {}, medians of {} interleaved rounds, {}\n",
                study.scene.filename().string(), first.report().lights.count, study.vpls, study.size.x,
-               study.size.y, study.rounds, first.device().renderer());
+               study.size.y, study.rounds, device_of(first).renderer());
     fmt::print("{:<20} {:>10} {:>8} {:>12} {:>10} {:>10}\n", "path", "frame ms", "ratio", "lists/frame",
                "list mean", "list max");
     for (Candidate& candidate : candidates) {

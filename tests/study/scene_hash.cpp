@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <candela/scene/scene_error.hpp>
 #include "engine/scene/gltf_document.hpp"
-#include "engine/scene/scene_error.hpp"
 
 namespace candela::study {
 namespace {

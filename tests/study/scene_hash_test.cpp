@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/scene_error.hpp"
+#include <candela/scene/scene_error.hpp>
 #include "sandbox/output_file.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 

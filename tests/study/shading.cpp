@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/scene/gltf.hpp"
-#include "renderer/context/headless.hpp"
+#include <candela/headless_context.hpp>
+#include <candela/scene/gltf.hpp>
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 
@@ -47,7 +47,7 @@ int shading(const std::filesystem::path& scene) {
         candidate.bench.configure(configuration);
         candidate.bench.frame({});
     }
-    fmt::print("{}, {}\n", scene.filename().string(), candidates[0].bench.renderer().device().renderer());
+    fmt::print("{}, {}\n", scene.filename().string(), device_of(candidates[0].bench.renderer()).renderer());
     print_passes("first frame", candidates[1].bench.renderer());
 
     std::vector<double> ratios;

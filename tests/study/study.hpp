@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/configuration/configuration.hpp"
-#include "renderer/context/headless.hpp"
+#include <candela/configuration.hpp>
+#include <candela/headless_context.hpp>
 
 namespace candela::study {
 

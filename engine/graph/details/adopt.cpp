@@ -2,8 +2,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include <candela/graph/execute.hpp>
 #include "engine/graph/details/index_table.hpp"
-#include "engine/graph/execute.hpp"
 
 namespace candela {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/graph/compile.hpp"
+#include <candela/graph/compile.hpp>
 
 namespace candela::detail {
 

@@ -1,4 +1,4 @@
-#include "engine/graph/details/declaration.hpp"
+#include <candela/graph/details/declaration.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/graph/compile.hpp"
+#include <candela/graph/compile.hpp>
 
 namespace candela::detail {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "engine/graph/compile.hpp"
-#include "engine/graph/details/declaration.hpp"
+#include <candela/graph/compile.hpp>
+#include <candela/graph/details/declaration.hpp>
 
 namespace candela::detail {
 

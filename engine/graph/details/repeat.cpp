@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "engine/graph/details/state.hpp"
+#include <candela/graph/details/state.hpp>
 
 namespace candela::detail {
 namespace {

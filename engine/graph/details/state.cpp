@@ -1,4 +1,4 @@
-#include "engine/graph/details/state.hpp"
+#include <candela/graph/details/state.hpp>
 
 #include <fmt/format.h>
 

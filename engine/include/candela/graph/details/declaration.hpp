@@ -1,0 +1,198 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <memory_resource>
+#include <new>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <typeindex>
+#include <utility>
+#include <vector>
+
+#include <candela/ecs/world.hpp>
+#include <candela/graph/fault.hpp>
+#include <candela/graph/resources.hpp>
+
+namespace candela {
+
+class Execution;
+
+namespace detail {
+
+/// The size as a 32-bit index.
+template <class T>
+[[nodiscard]] std::uint32_t size_of(const std::vector<T>& list) {
+    return static_cast<std::uint32_t>(list.size());
+}
+
+inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+struct Resource {
+    std::string_view name;
+    ResourceKind kind = ResourceKind::texture;
+    Lifetime lifetime = Lifetime::transient;
+    std::uint32_t desc = 0;           // index into the textures, buffers or value types, by kind
+    std::uint32_t versions = 0;       // number of writes declared so far
+    std::uint32_t reader = none;      // the pass with the last declared read
+    std::uint32_t writer = none;      // the pass with the last declared write
+    std::uint32_t history_of = none;  // for a history: the resource whose history it is
+    std::uint32_t history = none;     // the resource that is this one's history
+};
+
+struct Access {
+    std::uint32_t resource;
+    std::uint32_t version;  // the version read, or the one that the write produces
+    Usage usage;            // not used for values
+    bool write;
+    std::uint32_t point;  // see Binding
+};
+
+struct ComponentRead {
+    std::string_view name;
+    Tick (*revision)(const World&);
+    bool operator==(const ComponentRead&) const = default;
+};
+
+struct Parameter {
+    std::type_index type;
+    const void* value;
+    bool (*equal)(const void*, const void*);
+};
+
+struct PassNode {
+    std::string_view name;
+    void* function = nullptr;
+    void (*invoke)(void*, Execution&) = nullptr;
+    std::uint32_t first_access = 0;  // each list ends where the next pass's begins
+    std::uint32_t first_component = 0;
+    std::uint32_t first_parameter = 0;
+    std::uint32_t first_after = 0;
+    bool side_effect = false;
+    bool remembers = false;
+};
+
+/// Owns objects of any type, and text, until it is destroyed. Their addresses do not change.
+class Arena {
+ public:
+    Arena() = default;
+    Arena(const Arena&) = delete;
+    Arena& operator=(const Arena&) = delete;
+    ~Arena() {
+        for (const Owned& owned : owned_) {
+            owned.destroy(owned.object);
+        }
+    }
+
+    template <class T>
+    T* store(T value) {
+        if constexpr (!std::is_trivially_destructible_v<T>) {
+            owned_.reserve(owned_.size() + 1);
+        }
+        T* const object = ::new (memory_.allocate(sizeof(T), alignof(T))) T(std::move(value));
+        if constexpr (!std::is_trivially_destructible_v<T>) {
+            owned_.push_back({object, [](void* stored) { static_cast<T*>(stored)->~T(); }});
+        }
+        return object;
+    }
+
+    [[nodiscard]] std::string_view store_text(std::string_view text) {
+        char* const copy = static_cast<char*>(memory_.allocate(text.size(), 1));
+        return {copy, text.copy(copy, text.size())};
+    }
+
+ private:
+    struct Owned {
+        void* object;
+        void (*destroy)(void*);
+    };
+
+    std::pmr::monotonic_buffer_resource memory_;
+    std::vector<Owned> owned_;
+};
+
+/// A write to a version that another pass has already overwritten. Valid only if the pass is declared `after`
+/// the pass that wrote the newest version.
+struct LateWrite {
+    std::uint32_t resource;
+    std::uint32_t version;  // the version of the handle
+    std::uint32_t writer;   // the pass that wrote the newest version at that time
+};
+
+/// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in one arena.
+class Declaration {
+ public:
+    Declaration();
+
+    ResourceHandle add_texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime);
+    ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime);
+    ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
+    ResourceHandle add_history(ResourceHandle of, ResourceKind kind);
+
+    void begin_pass(std::string_view name);
+    void end_pass();
+    void read(ResourceHandle handle, ResourceKind kind, Binding binding);
+    ResourceHandle write(ResourceHandle handle, ResourceKind kind, Binding binding);
+    void after(std::string_view pass) { afters.push_back(arena_->store_text(pass)); }
+
+    template <class T>
+    T* store(T value) {
+        return arena_->store(std::move(value));
+    }
+
+    [[nodiscard]] std::uint32_t pass_count() const { return static_cast<std::uint32_t>(passes.size()); }
+    [[nodiscard]] std::span<const Access> accesses_of(std::uint32_t pass) const {
+        return part(accesses, pass, &PassNode::first_access);
+    }
+    [[nodiscard]] std::span<const ComponentRead> components_of(std::uint32_t pass) const {
+        return part(components, pass, &PassNode::first_component);
+    }
+    [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const {
+        return part(parameters, pass, &PassNode::first_parameter);
+    }
+    [[nodiscard]] std::span<const std::string_view> afters_of(std::uint32_t pass) const {
+        return part(afters, pass, &PassNode::first_after);
+    }
+    [[nodiscard]] const TextureDesc& texture(const Resource& resource) const {
+        return textures[resource.desc];
+    }
+    [[nodiscard]] const BufferDesc& buffer(const Resource& resource) const { return buffers[resource.desc]; }
+
+    std::uint32_t id = 0;
+    std::vector<PassNode> passes;
+    std::vector<Access> accesses;
+    std::vector<ComponentRead> components;
+    std::vector<Parameter> parameters;
+    std::vector<std::string_view> afters;
+    std::vector<Resource> resources;
+    std::vector<TextureDesc> textures;
+    std::vector<BufferDesc> buffers;
+    std::vector<std::type_index> value_types;
+    std::vector<Fault> faults;  // those found while declaring
+
+ private:
+    template <class T>
+    [[nodiscard]] std::span<const T> part(const std::vector<T>& all, std::uint32_t pass,
+                                          std::uint32_t PassNode::*first) const {
+        const std::size_t begin = passes[pass].*first;
+        const std::size_t end = pass + 1 < passes.size() ? passes[pass + 1].*first : all.size();
+        return std::span(all).subspan(begin, end - begin);
+    }
+    ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
+                                std::size_t desc);
+    [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
+    [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
+    void fault(FaultCode code, std::string message) { faults.push_back({code, std::move(message)}); }
+    void check_binding(const Resource& resource, Binding binding, bool write);
+    void check_late_writes();
+    void check_attachments();
+
+    std::unique_ptr<Arena> arena_;
+    std::vector<LateWrite> late_writes_;  // of the pass being declared
+    bool declaring_ = false;
+};
+
+}  // namespace detail
+}  // namespace candela

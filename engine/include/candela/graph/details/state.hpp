@@ -1,0 +1,152 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <candela/ecs/world.hpp>
+#include <candela/graph/backend.hpp>
+#include <candela/graph/compile.hpp>
+#include <candela/graph/resources.hpp>
+
+namespace candela {
+
+class Execution;
+
+namespace detail {
+
+/// A version gets a new stamp from a counter each time its content changes: equal stamps mean equal content.
+using Stamp = std::uint64_t;
+
+/// The current state of one object: a texture, a buffer or a value.
+struct Slot {
+    ResourceKind kind = ResourceKind::value;
+    bool owned = false;    // created by the runtime; false for imports and for values
+    bool changed = false;  // a value: the running pass may have changed the content of its version
+    bool filled = false;   // written since it was created, or bound by the host
+    ObjectId object = 0;
+    TextureDesc texture;
+    BufferDesc buffer;
+    std::shared_ptr<void> value;
+    bool (*equal)(const void*, const void*) = nullptr;  // compares values; null if T has no operator==
+    // Key of a persistent object: its name and its declared description. `reserve` may have changed the
+    // actual description. Empty for all others.
+    std::string kept_as;
+};
+
+template <class T>
+bool holds_equal(const Slot& slot, const T& content) {
+    if constexpr (std::equality_comparable<T>) {
+        return slot.value && *static_cast<const T*>(slot.value.get()) == content;
+    } else {
+        return false;
+    }
+}
+
+template <class T>
+void put_value(Slot& slot, T content) {
+    slot.value = std::make_shared<T>(std::move(content));
+    if constexpr (std::equality_comparable<T>) {
+        slot.equal = [](const void* a, const void* b) {
+            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+        };
+    }
+}
+
+/// One version of one resource.
+struct Version {
+    Stamp stamp = 0;
+    std::uint32_t producer = 0;  // the step that makes it; the number of steps if no step does
+    bool present = true;         // in its slot, and not about to be overwritten in this frame
+};
+
+/// The content of a version when it was last written, for verification. The value is shared, not copied:
+/// values are replaced, never modified.
+struct Content {
+    bool known = false;
+    bool drifted = false;  // may have changed without a new stamp, so its readers have not seen the change
+    std::uint64_t digest = 0;
+    std::shared_ptr<void> value;
+};
+
+struct Output {
+    std::uint32_t version;  // id
+    std::uint32_t slot;
+    bool value;       // a CPU value, not a texture or buffer
+    bool turns_over;  // first write to a resource with a history, which is in the next slot: swap the two
+};
+
+struct Revision {
+    Tick (*of)(const World&);
+    Tick tick = 0;  // at the pass's last run
+};
+
+struct Target {
+    std::uint32_t slot;
+    bool depth;
+};
+
+/// What the back end binds for a pass.
+struct Bound {
+    std::uint32_t resource;
+    Binding binding;
+};
+
+/// A kept pass, in execution order. Its lists end where those of the next step begin.
+struct Step {
+    void (*invoke)(void*, Execution&) = nullptr;
+    void* function = nullptr;
+    std::string_view name;
+    std::uint32_t first_input = 0;
+    std::uint32_t first_output = 0;
+    std::uint32_t first_revision = 0;
+    std::uint32_t first_target = 0;
+    std::uint32_t first_bound = 0;
+    Barrier barrier = Barrier::none;
+    bool side_effect = false;
+    bool writes_import = false;
+    bool remembers = false;
+    bool has_run = false;
+};
+
+/// The steps of one graph and the state kept between its frames. Slot i belongs to object i of the plan.
+struct State {
+    std::vector<Step> steps;            // and one more, which ends the lists
+    std::vector<std::uint32_t> inputs;  // version ids that passes read or modify in place
+    std::vector<Stamp> input_stamps;    // per input: its stamp at the pass's last run
+    std::vector<Output> outputs;
+    std::vector<Revision> revisions;
+    std::vector<Target> targets;
+    std::vector<Bound> bound;
+    std::vector<Version> versions;  // per version id
+    std::vector<Slot> slots;
+    std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
+    std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
+    std::vector<std::uint32_t> imports;  // resources that the host must provide
+    std::vector<std::uint8_t> need;      // per step, and one more: scratch of a frame
+    std::vector<Content> contents;       // per version id; empty without verification
+
+    [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()) - 1; }
+};
+
+/// The state of a graph that has not run. The slots have no objects yet.
+[[nodiscard]] State make_state(const CompiledGraph& graph);
+
+/// Per step: whether verification may run it again after a frame. Excluded are
+/// - passes with side effects and passes that write imports,
+/// - passes that read a history or have declared Pass::remembers,
+/// - passes with a missing input that only an excluded pass could make again, and
+/// - passes that would overwrite an output of an excluded pass.
+[[nodiscard]] std::vector<std::uint8_t> repeatable_steps(const State& state);
+
+/// Takes over from `before` what both graphs declare in the same way: slots (objects and values), stamps, and
+/// the records of passes. Returns, for each slot of `before`, whether it was taken over.
+std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
+                                  const State& before);
+
+}  // namespace detail
+}  // namespace candela

@@ -1,0 +1,297 @@
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <candela/ecs/world.hpp>
+#include <candela/graph/backend.hpp>
+#include <candela/graph/compile.hpp>
+#include <candela/graph/details/state.hpp>
+#include <candela/graph/fault.hpp>
+#include <candela/graph/records.hpp>
+#include <candela/graph/resources.hpp>
+
+namespace candela {
+
+class GraphRuntime;
+
+/// The interface of a running pass; valid only during its function. Every access to a resource that the pass
+/// has not declared throws GraphError, which names the pass and the resource.
+class Execution {
+ public:
+    /// The world given to GraphRuntime::run. Read only components that the pass has declared: an undeclared
+    /// read is not checked here, and the pass would miss changes.
+    [[nodiscard]] const World& world() const { return world_; }
+
+    /// The back end's object that holds the resource in this frame. `reserve` may replace it.
+    [[nodiscard]] ObjectId object(TextureHandle texture) const { return slot(texture, false).object; }
+    template <class T>
+    [[nodiscard]] ObjectId object(BufferHandle<T> buffer) const {
+        return slot(buffer, false).object;
+    }
+
+    /// The current description, including changes by `reserve`; for imports, that given to `bind`.
+    [[nodiscard]] const TextureDesc& desc(TextureHandle texture) const {
+        return slot(texture, false).texture;
+    }
+    /// Number of elements that the buffer can hold now: for imports as bound, else at least as many as
+    /// declared or reserved.
+    template <class T>
+    [[nodiscard]] std::uint64_t count(BufferHandle<T> buffer) const {
+        return slot(buffer, false).buffer.count;
+    }
+
+    /// The reference is valid until a pass or the host sets the value again. Throws GraphError if the value
+    /// was never set.
+    template <class T>
+    [[nodiscard]] const T& value(ValueHandle<T> value) const {
+        return *static_cast<const T*>(content(value));
+    }
+
+    /// The current content of a value that the pass reads or writes; null if it was never set. A pass reads
+    /// its own previous result this way (see Pass::remembers). Valid until the value is set again.
+    template <class T>
+    [[nodiscard]] const T* find(ValueHandle<T> value) const {
+        return static_cast<const T*>(slot(value, false).value.get());
+    }
+
+    /// Whether an input (a version that the pass reads or modifies in place) has changed since the pass last
+    /// ran. For passes that update only parts of their previous result. Always true if there is no previous
+    /// result: in the first run, after GraphRuntime::invalidate, if the result was overwritten, or if the
+    /// pass threw. Also always true during verification, which thereby compares partial updates with a full
+    /// one. Throws GraphError for anything that is not an input, histories included.
+    [[nodiscard]] bool changed(ResourceHandle read) const;
+    /// Whether any of several inputs has.
+    [[nodiscard]] bool changed(std::span<const ResourceHandle> reads) const {
+        return std::ranges::any_of(reads, [this](ResourceHandle read) { return changed(read); });
+    }
+
+    /// Sets a value that the pass writes. If T has operator== and the new content equals the old, the readers
+    /// of the value do not run again because of it.
+    template <class T>
+    void set(ValueHandle<T> value, std::type_identity_t<T> content);
+
+    /// Ensures that a persistent buffer can hold `count` elements. The pass must write the buffer from
+    /// version 0; GraphError otherwise. The buffer grows by at least half its size and never shrinks. Growing
+    /// replaces the object, and its content is lost.
+    template <class T>
+    void reserve(BufferHandle<T> buffer, std::uint64_t count) {
+        reserve_buffer(buffer, count);
+    }
+    /// Changes the description of a persistent texture. The pass must write the texture from version 0, and
+    /// not as colour_target or depth_target; GraphError otherwise. A description that differs from the
+    /// current one replaces the object, and its content is lost.
+    void reserve(TextureHandle texture, const TextureDesc& desc);
+
+    /// Whether a history has usable content: it was written, the resource has the same description now, and
+    /// GraphRuntime::invalidate_history was not called since the previous frame. GraphError if the handle is
+    /// not a history.
+    [[nodiscard]] bool history_valid(TextureHandle history) const { return valid(history); }
+    template <class T>
+    [[nodiscard]] bool history_valid(BufferHandle<T> history) const {
+        return valid(history);
+    }
+
+ private:
+    friend GraphRuntime;
+    Execution(GraphRuntime& runtime, const World& world) : runtime_(runtime), world_(world) {}
+
+    [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
+    [[nodiscard]] const void* content(ResourceHandle value) const;
+    [[nodiscard]] bool valid(ResourceHandle history) const;
+    void reserve_buffer(ResourceHandle buffer, std::uint64_t count);
+    [[nodiscard]] detail::Slot& reservable(ResourceHandle handle) const;
+
+    GraphRuntime& runtime_;
+    const World& world_;
+    std::uint32_t position_ = 0;
+    bool anew_ = true;  // the running pass has no previous result that it could keep
+};
+
+/// Runs a compiled graph, frame by frame, and can switch to another graph. Owns what is kept between frames:
+/// the GPU objects of the graph's resources (except imported ones), the values, and the change stamps that
+/// decide whether a pass must run again. Not thread-safe.
+///
+/// In each frame only some passes run. A pass runs if
+/// - it has not run yet,
+/// - one of its inputs has changed since it last ran: a resource version that it reads or modifies in place,
+///   a component pool or an imported resource,
+/// - it has a side effect or writes an imported resource, or
+/// - a pass that runs needs one of its results, and that result has been overwritten.
+/// Otherwise its previous results stay in use.
+class GraphRuntime {
+ public:
+    /// Keeps a reference: the back end must outlive the runtime.
+    explicit GraphRuntime(Backend& backend) : backend_(backend) {}
+    GraphRuntime(const GraphRuntime&) = delete;
+    GraphRuntime& operator=(const GraphRuntime&) = delete;
+    /// Destroys every object that the runtime has created, not the imported ones.
+    ~GraphRuntime();
+
+    /// Switches to another graph and takes ownership of it. Handles of the old graph become invalid.
+    ///
+    /// Persistent resources and values that both graphs declare with the same kind, name and description keep
+    /// their content. A pass that both graphs declare with the same name, accesses and parameters stays up to
+    /// date: it runs again only to provide results that were not kept, such as transients. Imported textures
+    /// and buffers must be bound again; imported values stay set.
+    ///
+    /// Objects that the new graph does not use go to a free pool. The next call of `adopt` reuses what it can
+    /// from there and destroys the rest; `trim` destroys them at once. If the back end throws, the exception
+    /// passes through and the runtime keeps the old graph, unchanged.
+    void adopt(CompiledGraph graph);
+
+    /// The current graph, or null before the first `adopt`. Valid until the next `adopt`.
+    [[nodiscard]] const CompiledGraph* graph() const { return graph_ ? &*graph_ : nullptr; }
+
+    /// Sets an imported value, which stays until it is set again. If T has operator== and the new value
+    /// equals the old, the readers do not run again because of it. Does nothing if only culled passes use the
+    /// value. GraphError if there is no graph, or if the handle is of another graph or not imported.
+    template <class T>
+    void set(ValueHandle<T> imported, std::type_identity_t<T> value);
+
+    /// Provides the object of an imported texture or buffer. The host keeps ownership, and the object must
+    /// stay alive while it is bound. The binding stays until the next `bind` or `adopt`. Each call counts as
+    /// new content, so the readers run again. If passes read the host's content and later passes overwrite
+    /// it, call `bind` before each run. `object` may be 0 for the window's framebuffer. Does nothing if only
+    /// culled passes use the resource. Throws GraphError like `set`.
+    void bind(TextureHandle imported, ObjectId object, const TextureDesc& desc) {
+        bind(imported, object, desc, {});
+    }
+    template <class T>
+    void bind(BufferHandle<T> imported, ObjectId object, std::uint64_t count) {
+        bind(imported, object, {}, {count, sizeof(T)});
+    }
+
+    /// Runs one frame and returns which passes ran. The record is valid until the next run. `timing` turns on
+    /// PassRecord::cpu_ms. Throws GraphError if there is no graph, or if an imported resource that a kept
+    /// pass uses was not bound or set. Exceptions from a pass pass through: that pass then counts as not
+    /// having run, and the next `run` runs it again; passes that had completed keep their results.
+    ///
+    /// Changes of the world are detected by its address and the revisions of its component pools. Call
+    /// `invalidate` after assigning another world to the same object.
+    const FrameRecord& run(const World& world, Timing timing = Timing::off);
+
+    /// Turns recording for `verify` on or off; initially off. While on, the outputs of a pass are read back
+    /// (as digests) each time that it runs; while off, there is no cost.
+    void set_verification(bool on);
+    [[nodiscard]] bool verifies() const { return verifying_; }
+    /// Checks for undeclared inputs: runs the passes of the last frame again, including those that did not
+    /// run in it, and compares what they write with what they wrote before. Textures and buffers are compared
+    /// by the back end's digests, values with operator== where their type has it.
+    ///
+    /// Throws GraphError if there is no graph or verification is off, and at the first difference. That error
+    /// names the pass, the first one in execution order, and the resource: the pass depends on something that
+    /// it did not declare, or is not deterministic. The pass then counts as not having run.
+    ///
+    /// Call `verify` after `run`, with the same world, unchanged. Each pass reads what the passes before it
+    /// have just written again, so the check also covers versions that later passes modify in place and
+    /// transients whose object another resource uses later in the frame. Not run again are
+    /// - passes with side effects and passes that write imports (they run in every frame),
+    /// - passes that read a history or have declared Pass::remembers,
+    /// - passes that would overwrite a result of one of those, and
+    /// - passes with an input that has been overwritten and that only one of those could write again.
+    ///
+    /// `reserve` finds the capacity that it made before. PassRecord::verified is set; the rest of the frame's
+    /// record stays. Transients that share objects may hold other content afterwards than without `verify`,
+    /// so the next frame may have to run other passes to restore their results.
+    ///
+    /// While verification is on, `run` makes the same comparison, with the same GraphError, for a pass that
+    /// it runs only to restore an overwritten result.
+    void verify(const World& world);
+
+    /// Makes all passes run in the next frame.
+    void invalidate();
+    /// Makes all histories invalid in the next frame, for example after a camera cut.
+    void invalidate_history() { cut_ = true; }
+    /// Destroys the objects in the free pool (see `adopt`).
+    void trim();
+
+    /// A value of the current graph; the reference is valid until the value is set again or `adopt` is
+    /// called. GraphError if it was never set.
+    template <class T>
+    [[nodiscard]] const T& value(ValueHandle<T> value) const {
+        return *static_cast<const T*>(content(value));
+    }
+    /// The object that holds a resource of the current graph; 0 if only culled passes use it. A transient's
+    /// content is valid only until another resource uses the same object.
+    [[nodiscard]] ObjectId object(ResourceHandle resource) const;
+    [[nodiscard]] MemoryUse memory() const;
+
+ private:
+    friend Execution;
+    void require_imports() const;
+    void notice_world(const World& world);
+    void mark(const World& world, std::uint32_t from);
+    void mark_dirty(const World& world, std::uint32_t from);
+    [[nodiscard]] bool mark_missing(std::uint32_t from);
+    [[nodiscard]] bool dirty(const detail::Step& step, const World& world) const;
+    void run_step(Execution& execution, bool changed);
+    void begin_outputs(const detail::Step& step);
+    void begin_pass(std::uint32_t position);
+    void bind_resources(std::uint32_t position);
+    void rebind(std::uint32_t position, std::uint32_t resource);
+    void bind(const detail::Bound& bound);
+    void keep_record(detail::Step& step, const World& world, bool changed);
+    [[nodiscard]] bool has_results(const detail::Step& step) const;
+    [[nodiscard]] bool renewed_results(const detail::Step& step) const;
+    void note_contents(const detail::Step& step, bool changed);
+    [[nodiscard]] detail::Content content_of(const detail::Slot& slot) const;
+    [[noreturn]] void report_difference(const detail::Step& step, std::uint32_t version) const;
+    void release(std::uint32_t slot);
+    void turn_over(std::uint32_t slot);
+
+    void provide_objects(const CompiledGraph& graph, detail::State& state, std::vector<detail::Slot>& stock);
+    void create(detail::Slot& slot, std::string_view name);
+    void destroy(const detail::Slot& slot);
+
+    [[nodiscard]] const detail::Resource& resource(ResourceHandle handle) const;
+    [[nodiscard]] detail::Slot* slot_of(std::uint32_t resource);
+    [[nodiscard]] detail::Slot* import_slot(ResourceHandle handle);
+    void bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture, const BufferDesc& buffer);
+    void touch(ResourceHandle imported);
+    [[nodiscard]] const void* content(ResourceHandle value) const;
+
+    Backend& backend_;
+    std::optional<CompiledGraph> graph_;
+    detail::State state_;
+    std::vector<detail::Slot> spare_;  // free pool: objects of the previous graph
+    FrameRecord record_;
+    std::uint64_t frame_ = 0;
+    std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
+    const World* world_ = nullptr;   // of the last run
+    detail::Stamp clock_ = 0;
+    Barrier carried_ = Barrier::none;  // pending: planned for passes that were skipped
+    bool cut_ = false;
+    bool verifying_ = false;
+    bool repeating_ = false;  // during verify
+};
+
+template <class T>
+void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
+    detail::Slot& target = slot(value, true);
+    if (detail::holds_equal<T>(target, content)) {
+        return;
+    }
+    detail::put_value<T>(target, std::move(content));
+    target.changed = true;
+}
+
+template <class T>
+void GraphRuntime::set(ValueHandle<T> imported, std::type_identity_t<T> value) {
+    detail::Slot* const target = import_slot(imported);
+    if (!target || detail::holds_equal<T>(*target, value)) {
+        return;
+    }
+    detail::put_value<T>(*target, std::move(value));
+    touch(imported);
+}
+
+}  // namespace candela

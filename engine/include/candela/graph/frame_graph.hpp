@@ -1,0 +1,180 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+#include <typeindex>
+#include <utility>
+
+#include <candela/ecs/world.hpp>
+#include <candela/graph/details/declaration.hpp>
+#include <candela/graph/resources.hpp>
+
+namespace candela {
+
+class CompiledGraph;
+class Execution;  // the interface of a running pass: execute.hpp
+class FrameGraph;
+struct CompileOptions;
+struct CompileResult;
+
+/// Declares one pass: what it reads, what it writes and the function that it runs. The object exists only
+/// during the call of `FrameGraph::add`.
+///
+/// A handle names one version of a resource. Each write returns the handle of the next version, and passes
+/// declared after the write must use that handle. A write to version 0 does not depend on earlier content:
+/// the pass must fill the resource. A write to version 1 or later modifies the content in place: the pass
+/// depends on that content and does not declare a read of it. Two passes may not write the same version: a
+/// pass that writes a handle which another pass has already overwritten must also call `after` with the name
+/// of the pass that wrote the newest version; it then modifies that newest version.
+///
+/// No member throws on misuse; `compile` reports the errors.
+class Pass {
+ public:
+    Pass(const Pass&) = delete;
+    Pass& operator=(const Pass&) = delete;
+
+    /// The pass reads this version of the resource, and runs again when it changes (histories excepted). The
+    /// version must be the newest one, and it must have been written by a pass, be imported or be a history.
+    /// With a place, as in `pass.read(lights, {Usage::storage, 2})`, the graph binds it there for the pass.
+    void read(TextureHandle texture, Binding binding) {
+        declared_.read(texture, ResourceKind::texture, binding);
+    }
+    template <class T>
+    void read(BufferHandle<T> buffer, Binding binding) {
+        declared_.read(buffer, ResourceKind::buffer, binding);
+    }
+    template <class T>
+    void read(ValueHandle<T> value) {
+        declared_.read(value, ResourceKind::value, {});
+    }
+
+    /// The pass reads components of type C from the world (Execution::world). It runs again when a C of any
+    /// entity was added, changed or removed.
+    template <Component C>
+    void read() {
+        declared_.components.push_back(
+            {component_name<C>(), [](const World& world) { return world.revision<C>(); }});
+    }
+
+    /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
+    /// imported values cannot be written.
+    [[nodiscard]] TextureHandle write(TextureHandle texture, Binding binding) {
+        return {declared_.write(texture, ResourceKind::texture, binding)};
+    }
+    template <class T>
+    [[nodiscard]] BufferHandle<T> write(BufferHandle<T> buffer, Binding binding) {
+        return {declared_.write(buffer, ResourceKind::buffer, binding)};
+    }
+    template <class T>
+    [[nodiscard]] ValueHandle<T> write(ValueHandle<T> value) {
+        return {declared_.write(value, ResourceKind::value, {})};
+    }
+
+    /// A constant on which the pass's result depends, for example one that the function captures.
+    /// `GraphRuntime::adopt` keeps the results of a pass only if its parameters are equal in both graphs. The
+    /// graph owns the copy.
+    template <std::equality_comparable T>
+    void parameter(T value) {
+        const auto equal = [](const void* a, const void* b) {
+            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+        };
+        declared_.parameters.push_back({typeid(T), declared_.store(std::move(value)), equal});
+    }
+
+    /// The pass is never culled and runs in every frame.
+    void side_effect() { declared_.passes.back().side_effect = true; }
+
+    /// The result depends on the pass's own previous result (`Execution::find`), so a second run with the
+    /// same inputs may give a different result. Implied for passes that read a history. Only verification
+    /// uses this: it does not run such passes again.
+    void remembers() { declared_.passes.back().remembers = true; }
+
+    /// This pass runs after the named one, which may be declared later. For order without a data dependency:
+    /// it does not prevent the named pass from being culled. `compile` reports unknown names.
+    void after(std::string_view pass) { declared_.after(pass); }
+
+    /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
+    /// replaces the function; a pass without one only has its barriers issued and its attachments bound.
+    template <std::invocable<Execution&> F>
+    void run(F function) {
+        detail::PassNode& pass = declared_.passes.back();
+        pass.function = declared_.store(std::move(function));
+        pass.invoke = [](void* object, Execution& execution) { (*static_cast<F*>(object))(execution); };
+    }
+
+ private:
+    friend FrameGraph;
+    explicit Pass(detail::Declaration& declared) : declared_(declared) {}
+
+    detail::Declaration& declared_;
+};
+
+/// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
+/// reports every error. `compile` consumes the graph: afterwards it may only be assigned to or destroyed.
+class FrameGraph {
+ public:
+    // Names appear in messages and reports. They also identify persistent and imported resources across
+    // graphs (GraphRuntime::adopt), so the names of persistent and imported resources must be unique within
+    // each kind (texture, buffer, value). The graph copies the names.
+
+    /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
+    /// and GraphRuntime::bind gives the actual description.
+    [[nodiscard]] TextureHandle texture(std::string_view name, const TextureDesc& desc,
+                                        Lifetime lifetime = Lifetime::transient) {
+        return {declared_.add_texture(name, desc, lifetime)};
+    }
+
+    /// A buffer of `count` elements of type `T`, sizeof(T) bytes apart.
+    template <class T>
+    [[nodiscard]] BufferHandle<T> buffer(std::string_view name, std::uint64_t count,
+                                         Lifetime lifetime = Lifetime::transient) {
+        return {declared_.add_buffer(name, {count, sizeof(T)}, lifetime)};
+    }
+
+    /// A CPU value that a pass sets (Execution::set). It is kept from frame to frame.
+    template <class T>
+    [[nodiscard]] ValueHandle<T> value(std::string_view name) {
+        return {declared_.add_value(name, typeid(T), Lifetime::persistent)};
+    }
+
+    /// A CPU value that the host sets (GraphRuntime::set): before the first run, and again whenever it
+    /// changes.
+    template <class T>
+    [[nodiscard]] ValueHandle<T> import_value(std::string_view name) {
+        return {declared_.add_value(name, typeid(T), Lifetime::imported)};
+    }
+
+    /// A read-only handle for the content that the resource had at the end of the previous frame. Makes the
+    /// resource persistent; imported resources cannot have a history. The history is invalid in the first
+    /// frame, after a camera cut and after a resize: ask `Execution::history_valid`. A change of the history
+    /// does not make its readers run again.
+    [[nodiscard]] TextureHandle history(TextureHandle texture) {
+        return {declared_.add_history(texture, ResourceKind::texture)};
+    }
+    template <class T>
+    [[nodiscard]] BufferHandle<T> history(BufferHandle<T> buffer) {
+        return {declared_.add_history(buffer, ResourceKind::buffer)};
+    }
+
+    /// Adds a pass. Calls `declare(Pass&)` immediately and returns its result, usually the handles that the
+    /// pass writes. Pass names must be unique in the graph. `declare` may add resources, but no other pass.
+    template <std::invocable<Pass&> Declare>
+    std::invoke_result_t<Declare, Pass&> add(std::string_view name, Declare&& declare) {
+        declared_.begin_pass(name);
+        const struct Close {
+            detail::Declaration& declared;
+            ~Close() { declared.end_pass(); }
+        } close{declared_};
+        Pass pass(declared_);
+        return std::forward<Declare>(declare)(pass);
+    }
+
+ private:
+    friend CompileResult compile(FrameGraph&& graph, CompileOptions options);
+
+    detail::Declaration declared_;
+};
+
+}  // namespace candela

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <candela/ecs/world.hpp>
+
+namespace candela {
+
+// The components of a scene. All are plain values that compare by value. Large data (meshes, images) is
+// shared and immutable, so comparing pointers is enough to detect a change. Conventions are those of glTF:
+// right-handed, +Y up, cameras and lights point along their local -Z, lengths in metres, linear RGB.
+
+/// Display name of the entity; not unique.
+struct Name {
+    std::string value;
+    bool operator==(const Name&) const = default;
+};
+
+/// Local-to-parent transform: scale, then rotation, then translation (metres). A null `parent` means world
+/// space.
+struct Transform {
+    glm::vec3 translation{0.0F};
+    glm::quat rotation{1.0F, 0.0F, 0.0F, 0.0F};
+    glm::vec3 scale{1.0F};
+    Entity parent{};
+    bool operator==(const Transform&) const = default;
+};
+
+/// How texture coordinates outside [0, 1] are mapped back.
+enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
+
+/// An 8-bit image of sRGB-encoded colour with linear alpha, rows top to bottom, tightly packed.
+struct Image {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<glm::u8vec4> texels;  ///< width × height
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+};
+
+/// What a material's alpha means (glTF's alphaMode).
+enum class AlphaMode : std::uint8_t {
+    opaque,  ///< alpha is ignored
+    mask,    ///< where alpha is below the cutoff there is no surface: it is not visible and blocks no light
+    blend    ///< alpha is the fraction of the light behind the surface that it blocks; see add_transparent
+};
+
+/// A Lambertian surface. Albedo and alpha are `base_colour` × the decoded texture, each channel in [0, 1].
+/// The back of a single-sided surface is not drawn and reflects no light, but it still blocks light.
+struct Material {
+    std::string name;
+    glm::vec4 base_colour{1.0F};                       ///< linear
+    std::shared_ptr<const Image> base_colour_texture;  ///< null: none
+    glm::vec3 emissive{0.0F};                          ///< linear; not used yet: it emits no light
+    bool double_sided = false;
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;  ///< of AlphaMode::mask, >= 0
+};
+
+/// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.
+struct Vertex {
+    glm::vec3 position;
+    glm::vec3 normal;
+    glm::vec2 uv;
+    bool operator==(const Vertex&) const = default;
+};
+
+/// Indexed triangles of one material, counter-clockwise seen from the front. `indices.size()` is a multiple
+/// of 3 and every index is below `vertices.size()`.
+struct Primitive {
+    std::vector<Vertex> vertices;
+    std::vector<std::uint32_t> indices;
+    std::shared_ptr<const Material> material;  ///< never null
+};
+
+/// Immutable geometry, shared by its instances.
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+};
+
+/// A mesh placed by the entity's Transform. `mesh` is never null.
+struct MeshInstance {
+    std::shared_ptr<const Mesh> mesh;
+    bool operator==(const MeshInstance&) const = default;
+};
+
+/// Isotropic point light at the entity's origin. Its intensity does not scale with the transform.
+struct PointLight {
+    glm::vec3 colour{1.0F};  ///< linear, multiplies `intensity`
+    float intensity = 1.0F;  ///< candela
+    /// Metres; the light falls to zero at this distance (KHR_lights_punctual).
+    float range = std::numeric_limits<float>::infinity();
+    bool casts_shadow = true;
+    bool operator==(const PointLight&) const = default;
+};
+
+/// Spot light at the entity's origin along its -Z.
+struct SpotLight {
+    glm::vec3 colour{1.0F};                                ///< linear, multiplies `intensity`
+    float intensity = 1.0F;                                ///< candela, inside the inner cone
+    float range = std::numeric_limits<float>::infinity();  ///< metres
+    float inner_cone = 0.0F;                               ///< radians from the axis, < outer_cone
+    float outer_cone = 0.785398163F;                       ///< radians from the axis, <= pi/2
+    bool casts_shadow = true;
+    bool operator==(const SpotLight&) const = default;
+};
+
+/// Parallel light travelling along the entity's -Z.
+struct DirectionalLight {
+    glm::vec3 colour{1.0F};    ///< linear, multiplies `illuminance`
+    float illuminance = 1.0F;  ///< lux, on a surface that faces the light
+    bool casts_shadow = true;
+    bool operator==(const DirectionalLight&) const = default;
+};
+
+/// Viewpoint at the entity's origin looking along its -Z, +Y up.
+struct Camera {
+    enum class Projection : std::uint8_t { perspective, orthographic };
+    Projection projection = Projection::perspective;
+    float vertical_fov = 0.785398163F;  ///< radians, perspective only; the width follows the target's aspect
+    float half_height = 1.0F;           ///< metres, orthographic only (glTF's ymag)
+    float near_plane = 0.01F;           ///< metres; > 0, or 0 too if orthographic
+    float far_plane = std::numeric_limits<float>::infinity();  ///< metres; finite if orthographic
+    bool operator==(const Camera&) const = default;
+};
+
+}  // namespace candela

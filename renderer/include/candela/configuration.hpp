@@ -1,0 +1,202 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace candela {
+
+/// Which part of the light the picture shows.
+enum class Show : std::uint8_t { total, direct, indirect };
+
+/// How VPLs are placed. Names in JSON: paths, surfels.
+enum class VplPlacement : std::uint8_t {
+    paths,   ///< where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997)
+    surfels  ///< evenly on all surfaces, independent of the lights; they gather their light
+};
+
+/// Largest VplSettings::count with VplPlacement::surfels. The form factors between them then take 256 MiB.
+inline constexpr std::uint32_t most_surfels = 65536;
+
+/// Number and placement of VPLs.
+struct VplSettings {
+    VplPlacement placement = VplPlacement::surfels;
+    std::uint32_t count = 512;  ///< with paths: most VPLs, up to 2^20; with surfels: about so many
+    /// Most bounces, up to 64. 1: light → surface → visible surface; 0: no indirect light. Surfels stop when
+    /// less than 0.1 % of the first reflected light is left.
+    std::uint32_t bounces = 64;
+    std::uint32_t seed = 0;  ///< of the pseudo-random placement
+    bool operator==(const VplSettings&) const = default;
+};
+
+/// Interleaved sampling with factor n: pixels fall into n × n classes by their coordinates modulo n. Each
+/// class evaluates its share, 1/n², of the VPLs; add_vpl_reconstruct combines the results of neighbouring
+/// pixels. Names in JSON, on the command line and in the panel: auto, 1, 2, 4, 8.
+enum class Interleave : std::uint8_t { automatic, one, two, four, eight };
+
+/// How the visibility between a VPL and a surface is determined. Names in JSON: none, maps, rays.
+enum class VplVisibility : std::uint8_t {
+    none,  ///< everything is visible: light of VPLs passes through walls
+    maps,  ///< by a depth map of the hemisphere of each VPL
+    rays   ///< by a shadow ray through the BVH: exact, but slow on software drivers
+};
+
+/// Visibility of VPLs.
+struct VplVisibilitySettings {
+    VplVisibility method = VplVisibility::maps;
+    std::uint32_t map_resolution = 64;  ///< texels along a side of a VPL's map, from 8 to 1024
+    bool operator==(const VplVisibilitySettings&) const = default;
+};
+
+/// How the view is divided into cells that have a light list each: tiles of pixels, and for clusters also
+/// depth slices.
+struct ListSettings {
+    std::uint32_t tile_size = 16;  ///< pixels along an edge: a multiple of 16, from 16 to 64
+    std::uint32_t slices = 24;     ///< depth slices of a cluster grid, from 2 to 256
+    bool operator==(const ListSettings&) const = default;
+};
+
+/// Resolutions of shadow maps, in texels along an edge, and their memory budget.
+struct ShadowSettings {
+    bool enabled = true;
+    std::uint32_t cube_resolution = 512;  ///< cube faces: point lights, and spots of more than 60° half angle
+    std::uint32_t map_resolution = 1024;  ///< flat maps: other spot lights, and directional lights
+    std::uint32_t budget_mib = 256;       ///< MiB for all maps together
+    bool operator==(const ShadowSettings&) const = default;
+};
+
+/// Refinement: while nothing moves, frames are averaged. Each has its own sample position in the pixels and
+/// its own VPLs on paths; surfels change every frames_a_surfel_set frames.
+struct RefinementSettings {
+    bool enabled = false;
+    std::uint32_t frames = 1024;  ///< frames to average, at least 1; without VPLs at most 64 are averaged
+    bool operator==(const RefinementSettings&) const = default;
+};
+
+/// How radiance becomes the colours of the target.
+struct ToneMapSettings {
+    bool enabled = true;       ///< off: linear radiance without exposure; alpha 1 where there is a surface
+    float exposure_ev = 0.0F;  ///< in stops, from -32 to 32: radiance is multiplied by 2^exposure_ev
+    bool operator==(const ToneMapSettings&) const = default;
+};
+
+/// How visible surfaces are found, and which lights each of them evaluates: see shading_paths. All paths give
+/// the same picture.
+enum class ShadingPath : std::uint8_t {
+    forward,
+    tiled_forward,
+    forward_plus,
+    deferred,
+    tiled_deferred,
+    clustered_forward,
+    clustered_deferred
+};
+
+/// How a shading path finds the surfaces that it shades.
+enum class SurfaceStage : std::uint8_t { forward, forward_after_prepass, gbuffer };
+
+/// Which lights a pixel evaluates: all, those of its screen tile, or those of its cluster, a tile cut into
+/// slices of depth. Tiles are bounded in depth where depth is known before shading.
+enum class LightList : std::uint8_t { all, tile, cluster };
+
+/// A shading path: two independent choices, with a name in JSON and on the command line.
+struct ShadingPathInfo {
+    ShadingPath path;
+    std::string_view name;
+    SurfaceStage surfaces;
+    LightList lights;
+    std::string_view description;
+};
+
+/// In the order of ShadingPath.
+inline constexpr std::array<ShadingPathInfo, 7> shading_paths{{
+    {ShadingPath::forward, "forward", SurfaceStage::forward, LightList::all,
+     "surfaces shaded as they are rasterised, by all lights"},
+    {ShadingPath::tiled_forward, "tiled-forward", SurfaceStage::forward, LightList::tile,
+     "the same, by the lights of their screen tile"},
+    {ShadingPath::forward_plus, "forward+", SurfaceStage::forward_after_prepass, LightList::tile,
+     "the same after a depth pre-pass, which bounds the tiles in depth"},
+    {ShadingPath::deferred, "deferred", SurfaceStage::gbuffer, LightList::all,
+     "G-buffer, then one dispatch over all lights"},
+    {ShadingPath::tiled_deferred, "tiled-deferred", SurfaceStage::gbuffer, LightList::tile,
+     "the same, by the lights of each tile, bounded in depth"},
+    {ShadingPath::clustered_forward, "clustered-forward", SurfaceStage::forward, LightList::cluster,
+     "forward, by the lights of each cluster: a tile cut into slices of depth"},
+    {ShadingPath::clustered_deferred, "clustered-deferred", SurfaceStage::gbuffer, LightList::cluster,
+     "deferred, by the lights of each cluster"},
+}};
+
+inline constexpr auto all_shading_paths = [] {
+    std::array<ShadingPath, shading_paths.size()> paths{};
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        paths[i] = shading_paths[i].path;
+    }
+    return paths;
+}();
+
+[[nodiscard]] constexpr const ShadingPathInfo& info_of(ShadingPath path) {
+    return shading_paths[static_cast<std::size_t>(path)];
+}
+
+/// All settings of a frame. The defaults are those of the app when it renders a single frame without a
+/// window; with a window, the app also turns on refinement and the automatic frame budget. `validate` checks
+/// the ranges of the values.
+struct Configuration {
+    ShadingPath path = ShadingPath::deferred;
+    Show show = Show::total;
+    bool indirect = true;  ///< off: no VPLs are placed
+    VplSettings vpls;
+    Interleave interleave = Interleave::automatic;
+    VplVisibilitySettings visibility;
+    /// Factor on the upper bound of the geometry term of VPLs that are placed by paths, at least 1e-6;
+    /// infinity removes the bound. See vpl_radius2.
+    float geometry_bound = 1.0F;
+    ListSettings lists;
+    ShadowSettings shadows;
+    RefinementSettings refinement;
+    ToneMapSettings tone_map;
+    /// Time budget of a frame in milliseconds while something moves. To keep to it, fewer pixels are rendered
+    /// (and scaled up), and each pixel evaluates fewer VPLs. 0: no budget. Without a value ("auto" in JSON):
+    /// 16 on a GPU, 100 with a software driver.
+    std::optional<float> frame_budget_ms = 0.0F;
+    bool operator==(const Configuration&) const = default;
+};
+
+/// A configuration, or the errors that prevent it, one per string. There is a configuration exactly if
+/// `faults` is empty.
+struct ConfigurationResult {
+    std::optional<Configuration> configuration;
+    std::vector<std::string> faults;
+};
+
+/// Reads a JSON object. Members that are left out keep the values of `base`. Unknown members, wrong types and
+/// values out of range are errors; each message starts with the member's path: "vpls.count: ...".
+[[nodiscard]] ConfigurationResult read_configuration(std::string_view json, const Configuration& base = {});
+
+/// All members as a JSON object; `read_configuration` reads the same value back.
+[[nodiscard]] std::string write_configuration(const Configuration& configuration);
+
+/// The errors in a configuration's values, one per string; empty if it is valid.
+[[nodiscard]] std::vector<std::string> validate(const Configuration& configuration);
+
+/// A configuration that the app offers by name. The strings have static storage duration.
+struct NamedConfiguration {
+    std::string_view name;
+    std::string_view description;
+    Configuration configuration;
+};
+[[nodiscard]] std::span<const NamedConfiguration> named_configurations();
+
+/// Names as in JSON and on the command line; static storage duration.
+[[nodiscard]] std::string_view to_string(ShadingPath path);
+[[nodiscard]] std::string_view to_string(Show show);
+[[nodiscard]] std::string_view to_string(VplVisibility visibility);
+[[nodiscard]] std::string_view to_string(VplPlacement placement);
+[[nodiscard]] std::string_view to_string(Interleave interleave);
+
+}  // namespace candela

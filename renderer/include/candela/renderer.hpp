@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <candela/configuration.hpp>
+#include <candela/ecs/world.hpp>
+#include <candela/gl_error.hpp>
+#include <candela/gl_loader.hpp>
+#include <candela/report.hpp>
+
+namespace candela {
+
+namespace gl {
+class Device;
+}
+
+/// The host's framebuffer that a frame is drawn into. The frame fills `size` pixels from the lower left
+/// corner. Only colour is written. The host keeps ownership.
+struct Target {
+    std::uint32_t framebuffer = 0;  ///< GL name; 0: the default framebuffer (the window)
+    glm::uvec2 size{1};             ///< pixels
+};
+
+/// Output of Renderer::describe: plain text, Graphviz DOT, or JSON.
+enum class GraphFormat : std::uint8_t { text, dot, json };
+
+/// Renders worlds. An instance belongs to one GL context, which must be current in every call, including the
+/// destructor. Instances share nothing. Not synchronised.
+class Renderer {
+ public:
+    /// `get_proc` returns the addresses of GL functions, as glfwGetProcAddress does; it is called only here.
+    /// The shaders are embedded in the library; `shader_directory`, if given, is read in their place. Throws
+    /// gl::GlError if the context offers less than OpenGL 4.5 or lacks a function, and gl::ProgramError if a
+    /// shader does not compile.
+    explicit Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {});
+    Renderer(Renderer&& other) noexcept;
+    Renderer& operator=(Renderer&& other) noexcept;
+    ~Renderer();
+
+    /// Switches to `configuration` from the next frame on. Returns the errors, one per string; if there are
+    /// any, the current configuration stays. Scene data, VPLs and shadow maps are kept where their settings
+    /// do not change.
+    [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
+    [[nodiscard]] const Configuration& configuration() const;
+
+    /// Renders `world` as seen by `camera`, an entity with a Camera, into `target`. Only passes whose inputs
+    /// have changed since the last frame run. `jitter` moves the samples off the pixel centres, in rendered
+    /// pixels, +x right, +y up. Restores the host's GL state as described at gl::HostState.
+    ///
+    /// Throws EntityError if there is no such camera, SceneError if an entity's parents form a cycle or were
+    /// destroyed, and gl::GlError if the target's size is 0 or above the driver's limit, if a driver limit is
+    /// exceeded, or if the driver runs out of memory. After an exception, the next call runs the passes that
+    /// did not finish.
+    void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
+
+    /// Makes the next frame compute everything again. A world is recognised by its address and the revisions
+    /// of its component pools: call this after putting another world at the address of the last one.
+    void invalidate();
+
+    /// For tests. Runs the passes of every frame a second time where that is possible, including passes that
+    /// had nothing to do. `render` then throws GraphError where a pass gives another result than before,
+    /// because it depends on an input that it does not declare: see GraphRuntime::verify. Reads all results
+    /// back and takes more than twice the time.
+    void verify(bool on);
+
+    /// Tone-maps a picture of linear radiance that was computed elsewhere, for example an average of frames,
+    /// into `target`. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
+    /// Throws gl::GlError if it holds another number of pixels.
+    void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
+
+    /// CPU and GPU times of the frames whose GPU times have arrived since the last call, oldest first. Does
+    /// not wait for the GPU unless `wait` is set; then it returns all finished frames. Of frames that are not
+    /// taken, the latest `kept_frames` are kept.
+    [[nodiscard]] std::vector<FrameReport> take_frames(bool wait = false);
+    static constexpr std::size_t kept_frames = 1024;
+
+    /// Reads counts and sums of the last frame back; waits for the GPU. Call it after a frame was rendered
+    /// with the current configuration; before the first frame it throws GraphError.
+    [[nodiscard]] Report report();
+
+    /// The frame graph of the current configuration: passes, resources and barriers.
+    [[nodiscard]] std::string describe(GraphFormat format) const;
+
+    /// Quality of the last frame. `scale` is below 1 only to keep the frame within its budget; `interleave`
+    /// is the factor n that was used.
+    [[nodiscard]] Quality quality() const;
+
+    /// All passes of the last frame, with whether each ran. Empty between a change of the configuration and
+    /// the next frame.
+    [[nodiscard]] const std::vector<PassRecord>& last_passes() const;
+
+ private:
+    class State;
+    friend gl::Device& device_of(Renderer& renderer);
+
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace candela

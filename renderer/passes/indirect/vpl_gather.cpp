@@ -1,0 +1,136 @@
+#include "renderer/passes/indirect/vpl_gather.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+namespace {
+
+// Least number of VPLs per class of pixels for Interleave::automatic. With fewer, pixels at edges would be
+// noisy, because some of their classes have no neighbour on the same surface.
+constexpr std::uint32_t least_share = 8;
+// Least height of the picture in pixels, divided by n: across n pixels, the light near an edge should hardly
+// change.
+constexpr std::uint32_t least_rows = 60;
+
+BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> paths) {
+    return graph.add("vpl-deal", [&](Pass& pass) {
+        pass.read(paths);
+        const auto order =
+            pass.write(graph.buffer<std::uint32_t>("vpl order", 1, Lifetime::persistent), Usage::copy);
+        pass.run([=, &gpu](Execution& run) {
+            upload<std::uint32_t>(gpu, run, order, deal_vpls(run.value(paths)));
+        });
+        return order;
+    });
+}
+
+/// Number of blocks of pixels that cover `pixels` along an edge.
+std::uint32_t blocks(std::uint32_t pixels) {
+    return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
+}
+
+/// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
+/// the sum of the ones before.
+void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::uvec2 size,
+                     std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t most) {
+    const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
+    const std::uint32_t classes = interleave * interleave;
+    const std::uint32_t share = (vpl_count + classes - 1) / classes;
+    program.set("asked_now", most);
+    program.use();
+    for (std::uint32_t asked = 0; asked == 0 || asked < share; asked += most) {
+        if (asked > 0) {
+            gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        }
+        program.set("asked_before", asked);
+        gl.DispatchCompute(blocks(of_class.x), blocks(of_class.y), classes);
+    }
+}
+
+}  // namespace
+
+std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size) {
+    if (interleave != Interleave::automatic) {
+        return 1U << (static_cast<std::uint32_t>(interleave) - 1U);
+    }
+    std::uint32_t n = 8;
+    while (n > 1 && (vpl_count < least_share * n * n || size.y < least_rows * n)) {
+        n /= 2;
+    }
+    return n;
+}
+
+namespace {
+
+/// Surfels are ordered by surface. This order makes each share contain surfels from all surfaces.
+std::vector<std::uint32_t> deal_surfels(std::uint32_t count) {
+    constexpr std::uint32_t most_shares = 64;
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t share = 0; share < most_shares; ++share) {
+        for (std::uint32_t i = share; i < count; i += most_shares) {
+            order.push_back(i);
+        }
+    }
+    return order;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
+    if (plan.paths.empty()) {
+        return deal_surfels(plan.vpl_count);
+    }
+    using Group = std::pair<std::uint32_t, std::uint32_t>;  // light and bounce
+    std::map<Group, std::uint32_t> sizes;
+    for (const gpu::Path& path : plan.paths) {
+        for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
+            ++sizes[{path.light, bounce}];
+        }
+    }
+    // Relative position of the VPL in its group, from 0 to 1, and its index.
+    std::vector<std::pair<double, std::uint32_t>> dealt;
+    dealt.reserve(plan.vpl_count);
+    std::map<Group, std::uint32_t> seen;
+    for (const gpu::Path& path : plan.paths) {
+        for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
+            const Group group{path.light, bounce};
+            dealt.emplace_back((seen[group]++ + 0.5) / sizes[group], path.first_vpl + bounce);
+        }
+    }
+    std::ranges::stable_sort(dealt, {}, &std::pair<double, std::uint32_t>::first);
+    std::vector<std::uint32_t> order(dealt.size());
+    std::ranges::transform(dealt, order.begin(), &std::pair<double, std::uint32_t>::second);
+    return order;
+}
+
+GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+                            const VplLight& light, const FrameView& view, std::uint32_t interleave,
+                            glm::uvec2 size) {
+    const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.plan);
+    return graph.add("vpl-gather", [&](Pass& pass) {
+        pass.read(surfaces.normal, {Usage::sampled, UNIT_NORMAL});
+        pass.read(surfaces.depth, {Usage::sampled, UNIT_DEPTH});
+        pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
+        read_vpl_light(pass, light);
+        read_view(pass, view);
+        pass.parameter(interleave);
+        const gl::Program& program = gpu.program({"indirect/vpl_gather.comp"}, vpl_light_variant(light));
+        const GatheredVpls out{
+            .irradiance = pass.write(graph.texture("gathered irradiance", {size, Format::rgba32f}),
+                                     {Usage::storage, IMAGE_INDIRECT}),
+            .order = order};
+        pass.run([=, &gpu, &program](Execution& run) {
+            program.set("interleave", interleave);
+            dispatch_gather(gpu.gl(), program, size, interleave, run.value(light.vpls.plan).vpl_count,
+                            most_asked(light));
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <candela/configuration.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/indirect/vpl_light.hpp"
+#include "renderer/passes/surfaces/depth_prepass.hpp"
+#include "renderer/passes/view/view.hpp"
+
+namespace candela {
+
+/// The factor n for `vpl_count` VPLs and a picture of `size` pixels. `automatic` gives the largest n of 8, 4,
+/// 2, 1 with at least eight VPLs per class and a picture height of at least 60 · n pixels.
+[[nodiscard]] std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size);
+
+/// The order of VPLs, as indices, from which classes of pixels take consecutive ranges as their shares. Each
+/// range contains VPLs of each light and bounce in proportion. Within these, they are consecutive points of
+/// the light's low-discrepancy sequence, which are evenly distributed. Surfels are ordered so that each range
+/// contains surfels from all surfaces.
+[[nodiscard]] std::vector<std::uint32_t> deal_vpls(const VplPlan& paths);
+
+/// What each pixel has gathered from its share of the VPLs.
+struct GatheredVpls {
+    /// rgba32f: estimate of π times the irradiance from all VPLs, extrapolated from the share of the pixel's
+    /// class; in lux or W/m², by the unit of the lights. Alpha is 1 where there is a surface, else 0.
+    TextureHandle irradiance;
+    BufferHandle<std::uint32_t> order;  ///< result of `deal_vpls`
+};
+
+/// Adds nodes `vpl-deal` (CPU, then upload: deal_vpls) and `vpl-gather` (compute): each pixel sums the light
+/// of the VPLs in the share of its class (Wald et al., "Interactive Global Illumination using Fast Ray
+/// Tracing", 2002; Segovia et al., "Non-interleaved Deferred Shading of Interleaved Sample Patterns", 2006).
+/// Depends on the VPLs, the visible surfaces and the view. `interleave`: n. `size`: of the picture in pixels.
+[[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+                                          const VplLight& light, const FrameView& view,
+                                          std::uint32_t interleave, glm::uvec2 size);
+
+}  // namespace candela

@@ -1,0 +1,41 @@
+#include "renderer/passes/indirect/vpl_light.hpp"
+
+namespace candela {
+
+std::uint32_t most_asked(const VplLight& light) {
+    if (light.rays) {
+        return 64;
+    }
+    return light.vpls.points ? 2048 : 8192;
+}
+
+std::vector<std::string> vpl_light_variant(const VplLight& light) {
+    std::vector<std::string> words;
+    if (light.vpls.points) {
+        words.emplace_back("SURFELS");
+    }
+    if (light.maps) {
+        words.emplace_back("VPL_VISIBILITY_MAPS");
+    }
+    if (light.rays) {
+        words.emplace_back("VPL_VISIBILITY_RAYS");
+    }
+    return words;
+}
+
+void read_vpl_light(Pass& pass, const VplLight& light) {
+    pass.read(light.vpls.plan);
+    pass.read(light.vpls.vpls, {Usage::storage, BINDING_VPLS});
+    read_vpl_constants(pass, light.common);
+    if (light.vpls.points) {
+        pass.read(*light.vpls.points, {Usage::storage, BINDING_LIT_POINTS});
+    }
+    if (light.maps) {
+        pass.read(*light.maps, {Usage::compared, UNIT_VPL_MAPS});
+    }
+    if (light.rays) {
+        read_tracing(pass, *light.rays);
+    }
+}
+
+}  // namespace candela

@@ -1,0 +1,136 @@
+#include "renderer/passes/indirect/vpl_reconstruct.hpp"
+
+#include <candela/graph/execute.hpp>
+
+namespace candela {
+namespace {
+
+/// Inputs of all nodes.
+struct Pixels {
+    VisibleSurfaces surfaces;
+    FrameView view;
+    std::uint32_t interleave;
+    glm::uvec2 size;
+};
+
+void read_pixels(Pass& pass, const Pixels& pixels) {
+    pass.read(pixels.surfaces.normal, {Usage::sampled, UNIT_NORMAL});
+    pass.read(pixels.surfaces.depth, {Usage::sampled, UNIT_DEPTH});
+    read_view(pass, pixels.view);
+    pass.parameter(pixels.interleave);
+}
+
+std::uint32_t groups_of_row(glm::uvec2 size) {
+    return (size.x + RECONSTRUCT_GROUP - 1) / RECONSTRUCT_GROUP;
+}
+
+void dispatch(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) {
+    program.set("interleave", pixels.interleave);
+    program.use();
+    gpu.gl().DispatchCompute(groups_of_row(pixels.size), pixels.size.y, 1);
+}
+
+TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle gathered) {
+    return graph.add("vpl-reconstruct-rows", [&](Pass& pass) {
+        read_pixels(pass, pixels);
+        pass.read(gathered, {Usage::sampled, UNIT_INDIRECT});
+        const gl::Program& program = gpu.program({"indirect/vpl_reconstruct.comp"});
+        const TextureHandle out =
+            pass.write(graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}),
+                       {Usage::storage, IMAGE_INDIRECT});
+        pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
+        return out;
+    });
+}
+
+struct Columns {
+    TextureHandle irradiance;
+    BufferHandle<std::uint32_t> lacking_mask;  ///< one bit per pixel, `row_words` words per row
+};
+
+/// Words of the mask per row of pixels: 32 pixels per word, rounded up to whole work groups.
+std::uint32_t row_words(glm::uvec2 size) {
+    return groups_of_row(size) * (RECONSTRUCT_GROUP / 32);
+}
+
+Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle rows) {
+    return graph.add("vpl-reconstruct", [&](Pass& pass) {
+        read_pixels(pass, pixels);
+        pass.read(rows, {Usage::sampled, UNIT_INDIRECT});
+        const gl::Program& program = gpu.program({"indirect/vpl_reconstruct.comp"}, {"COLUMNS"});
+        const Columns out{
+            .irradiance = pass.write(graph.texture("indirect irradiance", {pixels.size, Format::rgba32f}),
+                                     {Usage::storage, IMAGE_INDIRECT}),
+            .lacking_mask =
+                pass.write(graph.buffer<std::uint32_t>("mask of pixels lacking neighbours",
+                                                       std::uint64_t{row_words(pixels.size)} * pixels.size.y),
+                           {Usage::storage, BINDING_LACKING_MASK})};
+        pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
+        return out;
+    });
+}
+
+BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns& columns, glm::uvec2 size) {
+    return graph.add("vpl-lacking", [&](Pass& pass) {
+        pass.read(columns.lacking_mask, {Usage::storage, BINDING_LACKING_MASK});
+        const gl::Program& program = gpu.program({"indirect/vpl_lacking.comp"});
+        const auto list =
+            pass.write(graph.buffer<std::uint32_t>("pixels lacking neighbours",
+                                                   4 + std::uint64_t{size.x} * size.y, Lifetime::persistent),
+                       {Usage::storage, BINDING_LACKING});
+        pass.run([=, &gpu, &program](Execution&) {
+            program.set("row_words", row_words(size));
+            program.set("mask_words", row_words(size) * size.y);
+            program.use();
+            gpu.gl().DispatchCompute(1, 1, 1);
+        });
+        return list;
+    });
+}
+
+/// Evaluates in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
+/// the sum of the ones before.
+void dispatch_fill(const gl::Functions& gl, const gl::Program& program, std::uint32_t vpl_count,
+                   std::uint32_t most) {
+    program.set("asked_now", most);
+    program.use();
+    for (std::uint32_t asked = 0; asked == 0 || 2 * asked < vpl_count; asked += most) {
+        if (asked > 0) {
+            gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+        }
+        program.set("asked_before", asked);
+        gl.DispatchComputeIndirect(0);
+    }
+}
+
+TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
+                       BufferHandle<std::uint32_t> order, const VplLight& light) {
+    return graph.add("vpl-fill", [&](Pass& pass) {
+        read_pixels(pass, pixels);
+        pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
+        pass.read(found.lacking, {Usage::storage, BINDING_LACKING});
+        pass.read(found.lacking, Usage::indirect);
+        read_vpl_light(pass, light);
+        const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"}, vpl_light_variant(light));
+        const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
+        pass.run([=, &gpu, &program](Execution& run) {
+            dispatch_fill(gpu.gl(), program, run.value(light.vpls.plan).vpl_count, most_asked(light));
+        });
+        return out;
+    });
+}
+
+}  // namespace
+
+IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+                                  const GatheredVpls& gathered, const VplLight& light, const FrameView& view,
+                                  std::uint32_t interleave, glm::uvec2 size) {
+    const Pixels pixels{surfaces, view, interleave, size};
+    const TextureHandle rows = add_rows(graph, gpu, pixels, gathered.irradiance);
+    const Columns columns = add_columns(graph, gpu, pixels, rows);
+    IndirectLight found{columns.irradiance, add_list(graph, gpu, columns, size)};
+    found.irradiance = add_fill(graph, gpu, pixels, found, gathered.order, light);
+    return found;
+}
+
+}  // namespace candela

@@ -1,0 +1,226 @@
+#include "renderer/passes/lights/light_lists.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+namespace {
+
+constexpr std::uint32_t cells_a_group = 64;  // as in shaders/lights/light_cull.glsl
+
+gpu::CellConstants cell_constants(const CellGrid& grid) {
+    return {.tiles = grid.tiles,
+            .target_size = grid.size,
+            .slices = grid.slices,
+            .tile_size = grid.tile_size,
+            .first_depth = grid.first_depth,
+            .depth_ratio = grid.depth_ratio};
+}
+
+/// `declare(Pass&)` declares the inputs of `make_grid(Execution&)`.
+template <class Declare, class MakeGrid>
+LightGrid add_light_grid(FrameGraph& graph, const Gpu& gpu, Declare declare, MakeGrid make_grid) {
+    return graph.add("light-grid", [&](Pass& pass) {
+        declare(pass);
+        const LightGrid out{
+            .cells = pass.write(graph.value<CellGrid>("light grid")),
+            .constants = pass.write(
+                graph.buffer<gpu::CellConstants>("cell constants", 1, Lifetime::persistent), Usage::copy)};
+        pass.run([=, &gpu](Execution& run) {
+            const CellGrid grid = make_grid(run);
+            upload_one(gpu, run, out.constants, cell_constants(grid));
+            run.set(out.cells, grid);
+        });
+        return out;
+    });
+}
+
+void read_light_grid(Pass& pass, const LightGrid& grid) {
+    pass.read(grid.constants, {Usage::uniform, UNIFORMS_CELLS});
+}
+
+/// Adds node `NAME-bins` (CPU): sorts the lights into cells and uploads them. `declare(Pass&)` declares the
+/// inputs of `is_wanted(Execution&)`; if that returns false, the lists stay empty.
+template <class Declare, class IsWanted>
+BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
+                          ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
+                          ValueHandle<CellGrid> cells, Declare declare, IsWanted is_wanted) {
+    return graph.add(fmt::format("{}-bins", name), [&](Pass& pass) {
+        pass.read(lights);
+        pass.read(camera);
+        pass.read(cells);
+        declare(pass);
+        const auto buffer = [&](std::string_view what) {
+            return pass.write(
+                graph.buffer<std::uint32_t>(fmt::format("{} {}", name, what), 1, Lifetime::persistent),
+                Usage::copy);
+        };
+        const BinBuffers out{.bins = pass.write(graph.value<LightBins>(fmt::format("{} bins", name))),
+                             .first = buffer("first"),
+                             .entries = buffer("entries")};
+        pass.run([=, &gpu](Execution& run) {
+            const LightTable nothing;
+            const LightTable& table = is_wanted(run) ? run.value(lights) : nothing;
+            LightBins bins = bin_lights(table, run.value(camera), run.value(cells));
+            upload<std::uint32_t>(gpu, run, out.first, bins.first);
+            upload<std::uint32_t>(gpu, run, out.entries, bins.entries);
+            run.set(out.bins, std::move(bins));
+        });
+        return out;
+    });
+}
+
+BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
+                          ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
+                          ValueHandle<CellGrid> cells) {
+    return add_light_bins(
+        graph, gpu, name, lights, camera, cells, [](Pass&) {}, [](Execution&) { return true; });
+}
+
+/// Culls in as many dispatches as needed to bound the loop of each invocation: see `most_asked`.
+void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const LightBins& bins) {
+    constexpr std::uint32_t most = 32768;
+    std::uint32_t longest = 0;
+    for (std::size_t cell = 0; cell + 1 < bins.first.size(); ++cell) {
+        longest = std::max(longest, bins.first[cell + 1] - bins.first[cell]);
+    }
+    program.set("culled_now", most);
+    program.use();
+    for (std::uint32_t culled = 0; culled == 0 || culled < longest; culled += most) {
+        if (culled > 0) {
+            gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        }
+        program.set("culled_before", culled);
+        gl.DispatchCompute((bins.grid.cells() + cells_a_group - 1) / cells_a_group, 1, 1);
+    }
+}
+
+/// Adds node `NAME` (compute): culls the bins in place. Each cell keeps, in order, the lights that reach it.
+LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
+                       LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
+                       const FrameView& view, const LightGrid& grid,
+                       std::optional<BufferHandle<gpu::TileDepth>> depths) {
+    return graph.add(name, [&](Pass& pass) {
+        pass.read(bins.bins);
+        read_view(pass, view);
+        read_light_grid(pass, grid);
+        pass.read(lights, {Usage::storage, BINDING_LIGHTS});
+        pass.read(bins.first, {Usage::storage, BINDING_LIST_FIRST});
+        if (depths) {
+            pass.read(*depths, {Usage::storage, BINDING_TILE_DEPTHS});
+        }
+        const gl::Program& program = gpu.program({shader});
+        const LightLists out{.kind = kind,
+                             .grid = grid,
+                             .view = view,
+                             .bins = bins.bins,
+                             .first = bins.first,
+                             .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1,
+                                                                             Lifetime::persistent),
+                                                 {Usage::storage, BINDING_LIST_COUNT}),
+                             .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
+        pass.run([=, &gpu, &program](Execution& run) {
+            run.reserve(out.count, run.value(bins.bins).grid.cells());
+            program.set("has_depth", depths.has_value());
+            dispatch_culling(gpu.gl(), program, run.value(bins.bins));
+        });
+        return out;
+    });
+}
+
+BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
+                                             const FrameView& view, const LightGrid& grid) {
+    return graph.add("tile-depths", [&](Pass& pass) {
+        pass.read(depth, {Usage::sampled, UNIT_DEPTH});
+        pass.read(grid.cells);
+        read_view(pass, view);
+        read_light_grid(pass, grid);
+        const gl::Program& program = gpu.program({"lights/tile_depths.comp"});
+        const auto depths = pass.write(graph.buffer<gpu::TileDepth>("tile depths", 1, Lifetime::persistent),
+                                       {Usage::storage, BINDING_TILE_DEPTHS});
+        pass.run([=, &gpu, &program](Execution& run) {
+            const CellGrid& cells = run.value(grid.cells);
+            run.reserve(depths, cells.cells());
+            program.use();
+            gpu.gl().DispatchCompute(cells.tiles.x, cells.tiles.y, 1);
+        });
+        return depths;
+    });
+}
+
+}  // namespace
+
+LightGrid add_tile_grid(FrameGraph& graph, const Gpu& gpu, glm::uvec2 size, const ListSettings& settings) {
+    return add_light_grid(
+        graph, gpu,
+        [&](Pass& pass) {
+            pass.parameter(size);
+            pass.parameter(settings);
+        },
+        [=](Execution&) { return tile_grid(size, settings); });
+}
+
+LightGrid add_cluster_grid(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                           ValueHandle<SceneMetrics> metrics, glm::uvec2 size, const ListSettings& settings) {
+    const auto make_grid = [=](Execution& run) {
+        const SceneMetrics& scene = run.value(metrics);
+        const float distance = glm::length(scene.centre() - run.value(camera).eye);
+        const float farthest = std::max(distance + scene.radius(), 1e-6F);
+        // One slice is enough for depths below a thousandth of the farthest.
+        const float nearest = std::max(distance - scene.radius(), 1e-3F * farthest);
+        return cluster_grid(size, settings, nearest, farthest);
+    };
+    return add_light_grid(
+        graph, gpu,
+        [&](Pass& pass) {
+            pass.read(camera);
+            pass.read(metrics);
+            pass.parameter(size);
+            pass.parameter(settings);
+        },
+        make_grid);
+}
+
+LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                           BufferHandle<gpu::Light> light_buffer, const FrameView& view,
+                           const LightGrid& grid, std::optional<TextureHandle> depth) {
+    const BinBuffers bins = add_light_bins(graph, gpu, "light-tiles", lights, view.camera, grid.cells);
+    std::optional<BufferHandle<gpu::TileDepth>> depths;
+    if (depth) {
+        depths = add_tile_depths(graph, gpu, *depth, view, grid);
+    }
+    return add_culling(graph, gpu, "light-tiles", "lights/light_tiles.comp", LightList::tile, bins,
+                       light_buffer, view, grid, depths);
+}
+
+LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                                   BufferHandle<gpu::Light> light_buffer, const FrameView& view,
+                                   const LightGrid& grid, ValueHandle<SceneLayout> layout) {
+    const BinBuffers bins = add_light_bins(
+        graph, gpu, "blended-light-tiles", lights, view.camera, grid.cells,
+        [&](Pass& pass) { pass.read(layout); },
+        [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
+    return add_culling(graph, gpu, "blended-light-tiles", "lights/light_tiles.comp", LightList::tile, bins,
+                       light_buffer, view, grid, std::nullopt);
+}
+
+LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
+                              BufferHandle<gpu::Light> light_buffer, const FrameView& view,
+                              const LightGrid& grid) {
+    const BinBuffers bins = add_light_bins(graph, gpu, "light-clusters", lights, view.camera, grid.cells);
+    return add_culling(graph, gpu, "light-clusters", "lights/light_clusters.comp", LightList::cluster, bins,
+                       light_buffer, view, grid, std::nullopt);
+}
+
+void read_light_lists(Pass& pass, const LightLists& lists) {
+    read_view(pass, lists.view);
+    read_light_grid(pass, lists.grid);
+    pass.read(lists.first, {Usage::storage, BINDING_LIST_FIRST});
+    pass.read(lists.count, {Usage::storage, BINDING_LIST_COUNT});
+    pass.read(lists.entries, {Usage::storage, BINDING_LIST_ENTRIES});
+}
+
+}  // namespace candela

@@ -1,0 +1,277 @@
+#include "renderer/passes/lights/shadow_maps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/surfaces/draw_scene.hpp"
+
+namespace candela {
+namespace {
+
+constexpr std::uint32_t cube_faces = 6;
+constexpr std::uint32_t most_layers = 2048;  // of an array texture, on every driver (OpenGL 4.5, table 23.53)
+constexpr float slope_offset = 1.0F;         // texels: shaders/lights/shadow.glsl relies on it
+constexpr std::uint64_t bytes_per_depth = 4;
+// Widest half angle of a spot light with a flat map. Beyond it, most texels would cover the rim of the cone.
+constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
+// Near plane of perspective maps, relative to the scene's radius. Nearer geometry is clamped to it, not
+// clipped.
+constexpr float relative_near_plane = 1e-3F;
+
+/// Projection with reversed depth and no far plane: depth = near / distance. `tangent` is the tangent of the
+/// half angle.
+glm::mat4 reversed_perspective(float tangent, float near_plane) {
+    glm::mat4 m(0.0F);
+    m[0][0] = m[1][1] = 1.0F / tangent;
+    m[2][3] = -1.0F;
+    m[3][2] = near_plane;
+    return m;
+}
+
+/// Orthographic projection with reversed depth: 1 at the viewer, 0 at `depth` metres in front of it.
+glm::mat4 reversed_orthographic(glm::vec2 half_extent, float depth) {
+    glm::mat4 m(1.0F);
+    m[0][0] = 1.0F / half_extent.x;
+    m[1][1] = 1.0F / half_extent.y;
+    m[2][2] = 1.0F / depth;
+    m[3][2] = 1.0F;
+    return m;
+}
+
+glm::mat4 look_along(glm::vec3 position, glm::vec3 direction, glm::vec3 up) {
+    return glm::lookAt(position, position + direction, up);
+}
+
+/// Viewing direction and up vector of a cube face, in the order of OpenGL (OpenGL 4.5, table 8.19).
+struct Face {
+    glm::vec3 direction;
+    glm::vec3 up;
+};
+const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
+                                          {{-1, 0, 0}, {0, -1, 0}},
+                                          {{0, 1, 0}, {0, 0, 1}},
+                                          {{0, -1, 0}, {0, 0, -1}},
+                                          {{0, 0, 1}, {0, -1, 0}},
+                                          {{0, 0, -1}, {0, -1, 0}}}};
+
+bool needs_cube(const gpu::Light& light) {
+    return light.kind == gpu::LightKind::point ||
+           (light.kind == gpu::LightKind::spot && light.cos_outer < std::cos(widest_map));
+}
+
+void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::uint32_t resolution) {
+    plan.shadows.push_back({.texel = 2.0F / static_cast<float>(resolution),
+                            .near_plane = near_plane,
+                            .layer = plan.cubes,
+                            .kind = gpu::ShadowKind::cube});
+    const glm::mat4 projection = reversed_perspective(1.0F, near_plane);
+    for (std::uint32_t face = 0; face < cube_faces; ++face) {
+        const glm::mat4 view = look_along(light.position, faces[face].direction, faces[face].up);
+        plan.views.push_back({projection * view, true, plan.cubes * cube_faces + face});
+    }
+    ++plan.cubes;
+}
+
+void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metrics, float near_plane,
+             std::uint32_t resolution) {
+    const auto texels = static_cast<float>(resolution);
+    const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
+    const glm::mat4 view =
+        look_along(light.position, light.direction, basis_around(light.direction).bitangent);
+    gpu::Shadow shadow{.axis = light.direction, .near_plane = near_plane, .layer = plan.maps};
+    if (light.kind == gpu::LightKind::spot) {
+        const float tangent = margin * std::tan(std::acos(light.cos_outer));
+        shadow.kind = gpu::ShadowKind::perspective;
+        shadow.texel = 2.0F * tangent / texels;
+        shadow.from_world = reversed_perspective(tangent, near_plane) * view;
+    } else {
+        const glm::vec2 half = glm::max(light.shape * margin, glm::vec2(near_plane));
+        // The light is in front of the scene; the map reaches as far behind its centre.
+        const float depth = std::max(2.0F * glm::length(metrics.centre() - light.position), near_plane);
+        // look_along's x axis is cross(direction, up) = ± tangent; its extent is that of the tangent.
+        shadow.kind = gpu::ShadowKind::orthographic;
+        shadow.texel = 2.0F * std::max(half.x, half.y) / texels;
+        shadow.from_world = reversed_orthographic(half, depth) * view;
+    }
+    plan.views.push_back({shadow.from_world, false, plan.maps});
+    plan.shadows.push_back(shadow);
+    ++plan.maps;
+}
+
+/// Light indices by decreasing flux; lights of equal flux keep their order.
+std::vector<std::uint32_t> by_importance(const LightTable& lights) {
+    std::vector<std::uint32_t> order(lights.entries.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto power = [&](std::uint32_t i) {
+        const glm::vec3& flux = lights.entries[i].flux;
+        return flux.r + flux.g + flux.b;
+    };
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return power(a) > power(b); });
+    return order;
+}
+
+TextureDesc cube_desc(std::uint32_t resolution, std::uint32_t cubes) {
+    return {{resolution, resolution}, Format::depth32f, TextureShape::cube_array, cubes * cube_faces};
+}
+
+TextureDesc map_desc(std::uint32_t resolution, std::uint32_t maps) {
+    return {{resolution, resolution}, Format::depth32f, TextureShape::array, maps};
+}
+
+struct ShadowPrograms {
+    const gl::Program& opaque;
+    const gl::Program& masked;
+};
+
+void draw_view(const Gpu& gpu, Execution& run, const SceneData& scene, const ShadowPrograms& programs,
+               const glm::mat4& clip_from_world) {
+    programs.opaque.set("clip_from_world", clip_from_world);
+    programs.opaque.use();
+    draw_depth(gpu, run, scene);
+    programs.masked.set("clip_from_world", clip_from_world);
+    programs.masked.use();
+    draw_masked_depth(gpu, run, scene);
+}
+
+/// Gives the texture this description. Returns whether it keeps its content.
+bool reserve(Execution& run, TextureHandle texture, const TextureDesc& desc) {
+    const bool kept = run.desc(texture) == desc;
+    run.reserve(texture, desc);
+    return kept;
+}
+
+/// The views of the plan whose shadow maps are missing or outdated.
+std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out,
+                                        const ShadowSettings& settings) {
+    const ShadowPlan& plan = run.value(out.plan);
+    const bool keeps_cubes = reserve(
+        run, out.cubes, plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
+    const bool keeps_maps =
+        reserve(run, out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
+    const DrawnShadows* const last = run.find(out.drawn);
+    if (last == nullptr || surfaces_changed) {
+        return plan.views;
+    }
+    std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
+    for (const ShadowPlan::View& view : last->views) {
+        if (view.cube ? keeps_cubes : keeps_maps) {
+            shown[{view.cube, view.layer}] = &view;
+        }
+    }
+    std::vector<ShadowPlan::View> due;
+    std::ranges::copy_if(plan.views, std::back_inserter(due), [&](const ShadowPlan::View& view) {
+        const auto found = shown.find({view.cube, view.layer});
+        return found == shown.end() || *found->second != view;
+    });
+    return due;
+}
+
+void draw_views(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
+                const ShadowSettings& settings, const ShadowPrograms& programs,
+                const std::vector<ShadowPlan::View>& due) {
+    run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
+
+    const gl::Functions& gl = gpu.gl();
+    bind_meshes(gpu, run, scene);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.Enable(GL_DEPTH_CLAMP);
+    gl.Enable(GL_POLYGON_OFFSET_FILL);
+    gl.PolygonOffset(-slope_offset, 0.0F);  // away from the light, because depth is reversed
+    gl.Disable(GL_CULL_FACE);
+    gl::Framebuffer& target = gpu.layer_target();
+    for (const ShadowPlan::View& view : due) {
+        const auto resolution =
+            static_cast<GLsizei>(view.cube ? settings.cube_resolution : settings.map_resolution);
+        target.attach_depth_layer(run.object(view.cube ? out.cubes : out.maps), view.layer);
+        target.bind();
+        gl.Viewport(0, 0, resolution, resolution);
+        const float far_depth = 0.0F;
+        gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
+        draw_view(gpu, run, scene, programs, view.clip_from_world);
+    }
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    target.attach_depth(0);
+    gl.Disable(GL_POLYGON_OFFSET_FILL);
+    gl.Disable(GL_DEPTH_CLAMP);
+}
+
+}  // namespace
+
+ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
+                        const ShadowSettings& settings) {
+    ShadowPlan plan;
+    plan.shadow_of_light.assign(lights.entries.size(), -1);
+    const float near_plane = std::max(relative_near_plane * metrics.radius(), 1e-9F);
+    const auto bytes = [](std::uint64_t resolution, std::uint64_t layers) {
+        return resolution * resolution * layers * bytes_per_depth;
+    };
+    std::uint64_t budget = settings.enabled ? static_cast<std::uint64_t>(settings.budget_mib) << 20U : 0;
+    for (const std::uint32_t i : by_importance(lights)) {
+        const LightTable::Entry& entry = lights.entries[i];
+        if (!entry.casts_shadow || !settings.enabled) {
+            continue;
+        }
+        const bool cube = needs_cube(entry.light);
+        const std::uint64_t cost =
+            cube ? bytes(settings.cube_resolution, cube_faces) : bytes(settings.map_resolution, 1);
+        const bool no_layer = cube ? (plan.cubes + 1) * cube_faces > most_layers : plan.maps == most_layers;
+        if (cost > budget || no_layer) {
+            ++plan.lights_without;
+            continue;
+        }
+        budget -= cost;
+        plan.shadow_of_light[i] = static_cast<std::int32_t>(plan.shadows.size());
+        if (cube) {
+            add_cube(plan, entry.light, near_plane, settings.cube_resolution);
+        } else {
+            add_map(plan, entry.light, metrics, near_plane, settings.map_resolution);
+        }
+    }
+    return plan;
+}
+
+ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                           ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
+                           const ShadowSettings& settings) {
+    const auto plan = graph.add("shadow-plan", [&](Pass& pass) {
+        pass.read(lights);
+        pass.read(metrics);
+        pass.parameter(settings);
+        const auto out = pass.write(graph.value<ShadowPlan>("shadow plan"));
+        pass.run([=](Execution& run) {
+            run.set(out, plan_shadows(run.value(lights), run.value(metrics), settings));
+        });
+        return out;
+    });
+    return graph.add("shadow-maps", [&](Pass& pass) {
+        const std::vector<ResourceHandle> surfaces = read_surfaces(pass, scene);
+        pass.read(plan);
+        pass.parameter(settings);
+        const ShadowPrograms programs{
+            .opaque = gpu.program({"lights/shadow_maps.vert"}),
+            .masked = gpu.program({"surfaces/mesh_surface.vert", "surfaces/depth_prepass.frag"},
+                                  {"MASKED", "SHADOW_MAP"})};
+        const ShadowMaps out{
+            .plan = plan,
+            .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
+                                Usage::layer_target),
+            .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
+                               Usage::layer_target),
+            .drawn = pass.write(graph.value<DrawnShadows>("drawn shadows"))};
+        pass.run([=, &gpu](Execution& run) {
+            const auto due = due_views(run, run.changed(surfaces), out, settings);
+            draw_views(gpu, run, scene, out, settings, programs, due);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <candela/configuration.hpp>
+
+#include <cstdint>
+#include <vector>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/scene/scene_upload.hpp"
+
+namespace candela {
+
+/// Which lights get a shadow map, and the views to render for them.
+struct ShadowPlan {
+    /// One rendering of scene depth: a flat map, or a face of a cube map.
+    struct View {
+        glm::mat4 clip_from_world;  ///< metres to clip space with reversed depth in [0, 1]
+        bool cube = false;
+        std::uint32_t layer = 0;  ///< of the cube array (face layer % 6 of cube layer / 6) or the map array
+        bool operator==(const View&) const = default;
+    };
+    std::vector<std::int32_t> shadow_of_light;  ///< by light of the table: index into `shadows`; -1: none
+    std::vector<gpu::Shadow> shadows;
+    std::vector<View> views;
+    std::uint32_t cubes = 0;
+    std::uint32_t maps = 0;
+    std::uint32_t lights_without = 0;  ///< should cast shadows, but exceed the budget or the layer limit
+    bool operator==(const ShadowPlan&) const = default;
+};
+
+/// The views that the maps contain. Has no operator==, because `newly_drawn` depends on what the maps
+/// contained before.
+struct DrawnShadows {
+    std::vector<ShadowPlan::View> views;
+    std::uint32_t newly_drawn = 0;  ///< number of views drawn in the last run of the node
+};
+
+/// The shadow maps of all lights.
+struct ShadowMaps {
+    ValueHandle<ShadowPlan> plan;
+    TextureHandle cubes;  ///< cube array, depth32f, reversed: 1 at the near plane
+    TextureHandle maps;   ///< 2D array, depth32f, reversed
+    ValueHandle<DrawnShadows> drawn;
+};
+
+/// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts.
+[[nodiscard]] ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
+                                      const ShadowSettings& settings);
+
+/// Adds nodes `shadow-plan` (CPU: plan_shadows) and `shadow-maps` (raster): depth of the scene as seen from
+/// every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on Curved Surfaces", 1978).
+/// A point light has the six faces of a cube, a spot light the cone or a cube, a directional light the
+/// rectangle that the scene covers. Both sides of all triangles are drawn, without holes of masks and without
+/// blended surfaces. Views whose content is unchanged are kept: if a light moves, only its views are drawn;
+/// if a mesh moves, all are. Depends on meshes, materials, lights and the scene's metrics.
+/// shaders/lights/shadow.glsl derives the bias.
+[[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                         ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
+                                         const ShadowSettings& settings);
+
+}  // namespace candela

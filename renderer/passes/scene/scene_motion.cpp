@@ -1,0 +1,100 @@
+#include "renderer/passes/scene/scene_motion.hpp"
+
+#include <glm/vec4.hpp>
+#include <utility>
+
+#include <candela/graph/execute.hpp>
+#include "shaders/bindings.glsl"
+
+namespace candela {
+namespace {
+
+Box placed(const Box& box, const glm::mat4& world) {
+    Box around;
+    for (unsigned i = 0; i < 8; ++i) {
+        around.grow(glm::vec3(world * glm::vec4(box.corner(i), 1.0F)));
+    }
+    return around;
+}
+
+/// World-space boxes around the solid drawables of the items that moved, at their old and new places.
+std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& before,
+                             const ScenePlacement& now) {
+    std::vector<Box> boxes;
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        const glm::mat4& from = before.world[drawable.item];
+        const glm::mat4& to = now.world[drawable.item];
+        if (from != to) {
+            boxes.push_back(placed(drawable.bounds, from));
+            boxes.push_back(placed(drawable.bounds, to));
+        }
+    }
+    return boxes;
+}
+
+/// The boxes, or one box around all of them if there are more than `most`.
+std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
+    if (boxes.size() <= most) {
+        return boxes;
+    }
+    Box all;
+    for (const Box& box : boxes) {
+        all.grow(box);
+    }
+    return {all};
+}
+
+}  // namespace
+
+ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene,
+                                          ValueHandle<std::uint64_t> epoch) {
+    return graph.add("scene-motion", [&](Pass& pass) {
+        pass.remembers();
+        pass.read(scene.layout);
+        pass.read(scene.placement);
+        pass.read(epoch);
+        const auto motion = pass.write(graph.value<SceneMotion>("scene motion"));
+        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
+            const SceneMotion* const last = run.find(motion);
+            SceneMotion now;
+            now.epoch = run.value(epoch);
+            now.geometry = run.value(layout).geometry;
+            now.placement = run.value(placement);
+            if (last != nullptr) {
+                now.step = last->step + 1;
+                now.everything = last->epoch != now.epoch || last->geometry != now.geometry;
+            }
+            if (!now.everything) {
+                now.boxes = moved_boxes(run.value(layout), last->placement, now.placement);
+            }
+            run.set(motion, std::move(now));
+        });
+        return motion;
+    });
+}
+
+std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::uint64_t done) {
+    if (motion.step == done) {
+        return std::vector<Box>{};
+    }
+    if (motion.everything || motion.step != done + 1) {
+        return std::nullopt;
+    }
+    return at_most(motion.boxes, MOST_CHANGED_BOXES);
+}
+
+void set_changed_boxes(const gl::Program& program, const std::optional<std::vector<Box>>& boxes,
+                       float slack) {
+    std::vector<glm::vec4> corners;
+    for (const Box& box : boxes.value_or(std::vector<Box>{})) {
+        corners.emplace_back(box.lower - slack, 0.0F);
+        corners.emplace_back(box.upper + slack, 0.0F);
+    }
+    program.set("everything_changed", !boxes.has_value());
+    program.set("changed_box_count", static_cast<std::uint32_t>(corners.size() / 2));
+    if (!corners.empty()) {
+        program.set("changed_boxes", std::span<const glm::vec4>(corners));
+    }
+}
+
+}  // namespace candela

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <candela/graph/frame_graph.hpp>
+#include <candela/scene/components.hpp>
+#include "engine/bvh/box.hpp"
+#include "renderer/gpu.hpp"
+#include "renderer/gpu_types.hpp"
+
+namespace candela {
+
+/// The meshes of the world: one item per MeshInstance, in the order of the world's view.
+struct SceneGeometry {
+    struct Item {
+        std::shared_ptr<const Mesh> mesh;
+        bool mirrored = false;  ///< the world matrix reverses the winding of its triangles
+        bool operator==(const Item&) const = default;
+    };
+    std::vector<Item> items;
+    bool operator==(const SceneGeometry&) const = default;
+};
+
+/// Local-to-world matrix of each item, by index; metres.
+struct ScenePlacement {
+    std::vector<glm::mat4> world;
+    bool operator==(const ScenePlacement&) const = default;
+};
+
+/// A base-colour image on the GPU, with mip levels; the sampler has its wrap modes.
+struct MaterialTexture {
+    gl::Texture texture;
+    gl::Sampler sampler;
+};
+
+/// What the GPU buffers of the scene contain.
+struct SceneLayout {
+    /// One primitive of one item. It has one draw command and one record in the instance buffer.
+    struct Drawable {
+        std::uint32_t item;
+        const Primitive* primitive;  ///< kept alive by `geometry`
+        std::uint32_t material;      ///< index into `materials`
+        Box bounds;                  ///< bounding box of the primitive, local space
+    };
+    /// Consecutive draws that share all render state. Each blended draw has its own group, so that they can
+    /// be sorted.
+    struct Group {
+        std::uint32_t first_draw;
+        std::uint32_t draw_count;
+        AlphaMode alpha;
+        std::shared_ptr<const MaterialTexture> texture;  ///< null: none
+        bool double_sided;
+        bool mirrored;
+        glm::vec3 centre{0.0F};  ///< blended draws: centre of the bounding box, local space
+    };
+    SceneGeometry geometry;
+    std::vector<Drawable> drawables;      ///< in drawing order: opaque, then masked, then blended
+    std::vector<gpu::DrawCommand> draws;  ///< by drawable
+    std::vector<Group> groups;            ///< in drawing order
+    std::vector<std::shared_ptr<const Material>> materials;
+    std::uint32_t opaque_count = 0;  ///< number of opaque drawables
+    std::uint32_t solid_count = 0;   ///< number of opaque and masked drawables: they stop light
+
+    /// The groups of one alpha mode.
+    [[nodiscard]] std::span<const Group> groups_of(AlphaMode alpha) const;
+    /// The drawables that stop light.
+    [[nodiscard]] std::span<const Drawable> solids() const { return std::span(drawables).first(solid_count); }
+};
+
+/// The scene on the GPU, with its description on the CPU.
+struct SceneData {
+    ValueHandle<ScenePlacement> placement;
+    ValueHandle<SceneLayout> layout;
+    BufferHandle<Vertex> vertices;
+    BufferHandle<std::uint32_t> indices;  ///< relative to the draw's base vertex
+    /// 0, 1, 2, ...: a per-instance vertex attribute, which gives shaders the draw's base instance.
+    BufferHandle<std::uint32_t> instance_ids;
+    BufferHandle<gpu::DrawCommand> draws;  ///< by drawable
+    BufferHandle<gpu::Material> materials;
+    BufferHandle<std::uint32_t> texels;     ///< reduced base-colour images, for tracing
+    BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
+};
+
+/// Adds nodes `scene-gather` (CPU: items and their world matrices, from MeshInstance and Transform),
+/// `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes) and
+/// `instance-upload` (CPU, then upload: world matrices, when something moves).
+[[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
+
+}  // namespace candela

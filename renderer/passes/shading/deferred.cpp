@@ -1,0 +1,41 @@
+#include "renderer/passes/shading/deferred.hpp"
+
+#include <candela/graph/execute.hpp>
+#include "shaders/bindings.glsl"
+
+namespace candela {
+namespace {
+
+std::uint32_t blocks(std::uint32_t pixels) {
+    return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
+}
+
+}  // namespace
+
+TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
+                           const FrameView& view, glm::uvec2 size) {
+    return graph.add("deferred", [&](Pass& pass) {
+        pass.read(gbuffer.albedo, {Usage::sampled, UNIT_ALBEDO});
+        pass.read(gbuffer.normal, {Usage::sampled, UNIT_NORMAL});
+        pass.read(gbuffer.depth, {Usage::sampled, UNIT_DEPTH});
+        read_lighting(pass, lighting);
+        read_view(pass, view);
+        const gl::Program& program = gpu.program({"shading/deferred.comp"}, lighting_variant(lighting));
+        const auto radiance =
+            pass.write(graph.texture("radiance", {size, Format::rgba32f}), {Usage::storage, IMAGE_RADIANCE});
+        pass.run([=, &gpu, &program](Execution& run) {
+            const gl::Functions& gl = gpu.gl();
+            program.use();
+            for (std::uint32_t part = 0; part < lighting_parts(run, lighting); ++part) {
+                if (part > 0) {
+                    gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+                }
+                begin_lighting_part(program, part);
+                gl.DispatchCompute(blocks(size.x), blocks(size.y), 1);
+            }
+        });
+        return radiance;
+    });
+}
+
+}  // namespace candela

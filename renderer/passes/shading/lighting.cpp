@@ -1,0 +1,98 @@
+#include "renderer/passes/shading/lighting.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+
+namespace {
+
+std::uint32_t light_count(const LightTable& lights) {
+    return static_cast<std::uint32_t>(lights.entries.size());
+}
+
+}  // namespace
+
+LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
+                              ValueHandle<ShadowPlan> plan) {
+    return graph.add("light-upload", [&](Pass& pass) {
+        pass.read(lights);
+        pass.read(plan);
+        const LightBuffers out{
+            .constants = pass.write(
+                graph.buffer<gpu::LightConstants>("light constants", 1, Lifetime::persistent), Usage::copy),
+            .lights =
+                pass.write(graph.buffer<gpu::Light>("light buffer", 1, Lifetime::persistent), Usage::copy),
+            .shadows =
+                pass.write(graph.buffer<gpu::Shadow>("shadow buffer", 1, Lifetime::persistent), Usage::copy)};
+        pass.run([=, &gpu](Execution& run) {
+            const LightTable& table = run.value(lights);
+            const ShadowPlan& shadows = run.value(plan);
+            std::vector<gpu::Light> records;
+            for (std::size_t i = 0; i < table.entries.size(); ++i) {
+                records.push_back(table.entries[i].light);
+                records.back().shadow = shadows.shadow_of_light[i];
+            }
+            upload_one(gpu, run, out.constants, gpu::LightConstants{.count = light_count(table)});
+            upload<gpu::Light>(gpu, run, out.lights, records);
+            upload<gpu::Shadow>(gpu, run, out.shadows, shadows.shadows);
+        });
+        return out;
+    });
+}
+
+std::vector<std::string> lighting_variant(const Lighting& lighting) {
+    std::vector<std::string> words =
+        lighting.vpls ? vpl_light_variant(*lighting.vpls) : std::vector<std::string>{};
+    if (lighting.indirect) {
+        words.emplace_back("INDIRECT_IRRADIANCE");
+    } else if (lighting.vpls) {
+        words.emplace_back("VPLS");
+        words.push_back(
+            fmt::format("MOST_VPLS={}", std::min(most_asked(*lighting.vpls), lighting.most_vpls)));
+    }
+    if (lighting.show == Show::indirect) {
+        words.emplace_back("DIRECT_HIDDEN");
+    }
+    if (lighting.lists) {
+        words.emplace_back("LIGHT_LIST_CELLS");
+    }
+    if (lighting.lists && lighting.lists->kind == LightList::cluster) {
+        words.emplace_back("LIGHT_LIST_PER_SURFACE");
+    }
+    return words;
+}
+
+void read_lighting(Pass& pass, const Lighting& lighting) {
+    pass.read(lighting.lights);
+    pass.read(lighting.buffers.constants, {Usage::uniform, UNIFORMS_LIGHTS});
+    pass.read(lighting.buffers.lights, {Usage::storage, BINDING_LIGHTS});
+    pass.read(lighting.buffers.shadows, {Usage::storage, BINDING_SHADOWS});
+    pass.read(lighting.shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
+    pass.read(lighting.shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
+    if (lighting.vpls) {
+        read_vpl_light(pass, *lighting.vpls);
+    }
+    if (lighting.indirect) {
+        pass.read(*lighting.indirect, {Usage::sampled, UNIT_INDIRECT});
+    }
+    if (lighting.lists) {
+        read_light_lists(pass, *lighting.lists);
+    }
+    pass.parameter(lighting.show);
+}
+
+std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting) {
+    const std::uint32_t shown = lighting.show == Show::indirect ? 0 : light_count(run.value(lighting.lights));
+    return std::max((shown + most_visited - 1) / most_visited, 1U);
+}
+
+void begin_lighting_part(const gl::Program& program, std::uint32_t part) {
+    program.set("lights_before", part * most_visited);
+    program.set("lights_now", most_visited);
+}
+
+}  // namespace candela

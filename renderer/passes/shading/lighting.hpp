@@ -1,0 +1,62 @@
+#pragma once
+
+#include <candela/configuration.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/indirect/vpl_light.hpp"
+#include "renderer/passes/lights/light_lists.hpp"
+#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/shadow_maps.hpp"
+
+namespace candela {
+
+/// The lights on the GPU, in the order of the LightTable, and their shadow maps.
+struct LightBuffers {
+    BufferHandle<gpu::LightConstants> constants;
+    BufferHandle<gpu::Light> lights;
+    BufferHandle<gpu::Shadow> shadows;
+};
+
+/// Adds node `light-upload` (CPU, then upload): the lights, each with the index of its shadow. Depends on the
+/// lights and the shadow plan.
+[[nodiscard]] LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
+                                            ValueHandle<ShadowPlan> plan);
+
+/// Everything that the evaluator in shaders/shading/lighting.glsl reads.
+struct Lighting {
+    ValueHandle<LightTable> lights;
+    LightBuffers buffers;
+    ShadowMaps shadows;
+    /// VPLs that are evaluated while shading; none: no indirect light, or it was gathered before.
+    std::optional<VplLight> vpls{};
+    std::optional<TextureHandle> indirect{};  ///< irradiance gathered before: see GatheredVpls, IndirectLight
+    std::optional<LightLists> lists{};        ///< none: every surface evaluates every light
+    /// Most VPLs that a surface evaluates. If there are more, every k-th is evaluated and weighted by k.
+    std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();
+    Show show = Show::total;
+};
+
+/// Most entries of its light list that a surface evaluates in one dispatch or draw. An invocation shades up
+/// to four surfaces, so this keeps its loops within the limit described at `most_asked`.
+inline constexpr std::uint32_t most_visited = 8192;
+
+/// Names to define in shaders that include lighting.glsl.
+[[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
+
+/// For a pass whose shader includes lighting.glsl.
+void read_lighting(Pass& pass, const Lighting& lighting);
+
+/// Number of dispatches or draws that a shading pass needs, at least 1. Each adds the light of up to
+/// `most_visited` entries of the light lists; the first one also adds the indirect light.
+/// `begin_lighting_part` sets the uniforms of a part.
+[[nodiscard]] std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting);
+void begin_lighting_part(const gl::Program& program, std::uint32_t part);
+
+}  // namespace candela

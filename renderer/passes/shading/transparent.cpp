@@ -1,0 +1,96 @@
+#include "renderer/passes/shading/transparent.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/surfaces/draw_scene.hpp"
+
+namespace candela {
+namespace {
+
+struct SortedGroup {
+    const SceneLayout::Group* group;
+    float depth;  ///< metres in front of the viewer
+};
+
+std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePlacement& placement,
+                                       const CameraView& view) {
+    std::vector<SortedGroup> sorted;
+    for (const SceneLayout::Group& group : layout.groups_of(AlphaMode::blend)) {
+        const glm::mat4& world = placement.world[layout.drawables[group.first_draw].item];
+        const glm::vec4 centre = view.view_from_world * (world * glm::vec4(group.centre, 1.0F));
+        sorted.push_back({&group, -centre.z});
+    }
+    std::ranges::stable_sort(sorted, std::greater{}, &SortedGroup::depth);
+    return sorted;
+}
+
+/// The shader multiplies radiance by alpha. Its second output (dual-source blending) is the share of what is
+/// behind that the surface covers.
+void begin_blending(const gl::Functions& gl) {
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthMask(GL_FALSE);
+    gl.Enable(GL_CULL_FACE);
+    gl.Enable(GL_BLEND);
+    gl.BlendEquation(GL_FUNC_ADD);
+    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
+}
+
+/// Most lights of a scene with blended surfaces. These cannot be shaded in several draws, because each draw
+/// would cover what the draws before it have added.
+constexpr std::uint32_t most_lights = 16384;
+
+void check_lights(std::size_t lights) {
+    if (lights > most_lights) {
+        throw gl::GlError(
+            fmt::format("{} lights: where there are blended surfaces, {} are possible", lights, most_lights));
+    }
+}
+
+void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
+    if (group.double_sided) {
+        gpu.gl().CullFace(GL_FRONT);
+        draw_group(gpu, group);
+        gpu.gl().CullFace(GL_BACK);
+    }
+    draw_group(gpu, group);
+}
+
+}  // namespace
+
+TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                              const FrameView& view, const ShadedSurfaces& surfaces) {
+    return graph.add("transparent", [&](Pass& pass) {
+        read_surfaces(pass, scene);
+        read_lighting(pass, lighting);
+        pass.read(scene.placement);
+        pass.read(view.camera);
+        read_view(pass, view);
+        pass.read(surfaces.depth, Usage::depth_target);
+        std::vector<std::string> variant = lighting_variant(lighting);
+        variant.emplace_back("BLENDED");
+        const gl::Program& program =
+            gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant);
+        const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
+        pass.run([=, &gpu, &program](Execution& run) {
+            const std::vector<SortedGroup> sorted =
+                back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
+            if (sorted.empty()) {
+                return;
+            }
+            check_lights(run.value(lighting.lights).entries.size());
+            begin_blending(gpu.gl());
+            bind_meshes(gpu, run, scene);
+            program.set("lights_before", 0U);
+            program.set("lights_now", most_lights);
+            program.use();
+            for (const SortedGroup& next : sorted) {
+                draw_blended(gpu, *next.group);
+            }
+        });
+        return radiance;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,26 @@
+#include "renderer/passes/surfaces/depth_prepass.hpp"
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/surfaces/draw_scene.hpp"
+
+namespace candela {
+
+VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
+                                  glm::uvec2 size) {
+    return graph.add("depth-prepass", [&](Pass& pass) {
+        read_surfaces(pass, scene);
+        read_view(pass, view);
+        const SurfacePrograms programs =
+            surface_programs(gpu, "surfaces/depth_prepass.frag", {"WITH_NORMALS"});
+        const VisibleSurfaces out{
+            .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target),
+            .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target)};
+        pass.run([=, &gpu](Execution& run) {
+            begin_surfaces(gpu);
+            draw_surfaces(gpu, run, scene, programs);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

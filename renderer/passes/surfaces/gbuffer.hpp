@@ -1,0 +1,23 @@
+#pragma once
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/view/view.hpp"
+
+namespace candela {
+
+/// Material, normal and depth of the visible solid surfaces.
+struct Gbuffer {
+    TextureHandle albedo;  ///< rgba16f, linear
+    TextureHandle normal;  ///< rg32f, octahedral encoding, world space
+    TextureHandle depth;   ///< depth32f, reversed; 0 where there is no surface
+};
+
+/// Adds node `gbuffer` (raster): the opaque and masked surfaces, without holes of masks. Depends on meshes,
+/// materials and view. Textures of `size` pixels. The octahedral encoding of normals is that of Cigolle et
+/// al. (2014): shaders/maths.glsl.
+[[nodiscard]] Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
+                                  glm::uvec2 size);
+
+}  // namespace candela

@@ -1,0 +1,126 @@
+#include "renderer/passes/view/view.hpp"
+
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <candela/graph/execute.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include "renderer/passes/r2_sequence.hpp"
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+namespace {
+
+/// Projection with reversed depth. Without a far plane it is near / z; otherwise depth falls from 1 at the
+/// near plane to 0 at the far plane, by the usual rational function or, in orthographic projections,
+/// linearly.
+glm::mat4 projection(const Camera& camera, float aspect) {
+    const float n = camera.near_plane;
+    const float f = camera.far_plane;
+    glm::mat4 m(0.0F);
+    if (camera.projection == Camera::Projection::orthographic) {
+        m[0][0] = 1.0F / (camera.half_height * aspect);
+        m[1][1] = 1.0F / camera.half_height;
+        m[2][2] = 1.0F / (f - n);
+        m[3][2] = f / (f - n);
+        m[3][3] = 1.0F;
+        return m;
+    }
+    const float focal = 1.0F / std::tan(camera.vertical_fov * 0.5F);
+    const bool infinite = std::isinf(f);
+    m[0][0] = focal / aspect;
+    m[1][1] = focal;
+    m[2][2] = infinite ? 0.0F : n / (f - n);
+    m[2][3] = -1.0F;
+    m[3][2] = infinite ? n : n * f / (f - n);
+    return m;
+}
+
+/// The camera-to-world matrix without its scale.
+glm::mat4 rigid(const glm::mat4& world_from_camera) {
+    const glm::vec3 z = glm::normalize(glm::vec3(world_from_camera[2]));
+    const glm::vec3 x = glm::normalize(glm::cross(glm::vec3(world_from_camera[1]), z));
+    return {glm::vec4(x, 0.0F), glm::vec4(glm::cross(z, x), 0.0F), glm::vec4(z, 0.0F), world_from_camera[3]};
+}
+
+gpu::ViewConstants view_constants(const CameraView& view, glm::uvec2 size) {
+    const glm::mat4& clip = view.clip_from_view;
+    return {.clip_from_world = view.clip_from_world,
+            .world_from_clip = view.world_from_clip,
+            .view_from_world = view.view_from_world,
+            .target_size = glm::vec2(size),
+            .ray_scale = {1.0F / clip[0][0], 1.0F / clip[1][1]},
+            .ray_shift = view.orthographic ? glm::vec2(clip[3]) : -glm::vec2(clip[2]),
+            .depth_terms = {clip[2][2], clip[3][2]},
+            .orthographic = view.orthographic ? 1U : 0U};
+}
+
+}  // namespace
+
+CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request) {
+    const glm::vec2 size(request.size);
+    glm::mat4 jittered(1.0F);
+    jittered[3] = glm::vec4(-2.0F * request.jitter / size, 0.0F, 1.0F);
+    const glm::mat4 pose = rigid(world_from_camera);
+    // In double precision: for a camera far from the origin, the inverse in floats would lose digits that
+    // shading needs.
+    const glm::dmat4 view_from_world = glm::inverse(glm::dmat4(pose));
+    const glm::dmat4 clip_from_view = glm::dmat4(jittered) * glm::dmat4(projection(camera, size.x / size.y));
+    const glm::dmat4 clip_from_world = clip_from_view * view_from_world;
+    return {.clip_from_world = glm::mat4(clip_from_world),
+            .world_from_clip = glm::mat4(glm::inverse(clip_from_world)),
+            .view_from_world = glm::mat4(view_from_world),
+            .clip_from_view = glm::mat4(clip_from_view),
+            .eye = glm::vec3(pose[3]),
+            .orthographic = camera.projection == Camera::Projection::orthographic};
+}
+
+CameraView requested_view(const World& world, const ViewRequest& request) {
+    return make_view(world.get<Camera>(request.camera), world_matrix(world, request.camera), request);
+}
+
+void read_request(Pass& pass, ValueHandle<ViewRequest> request) {
+    pass.read(request);
+    pass.read<Camera>();
+    pass.read<Transform>();
+}
+
+glm::vec2 pixel_sample(std::uint32_t i) {
+    if (i == 0) {
+        return glm::vec2(0.0F);
+    }
+    const std::uint32_t pair = (i + 1) / 2;
+    const glm::dvec2 point = r2_point(pair, glm::dvec2(0.5)) - 0.5;
+    return glm::vec2(i % 2 == 1 ? point : -point);
+}
+
+ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request) {
+    return graph.add("view", [&](Pass& pass) {
+        read_request(pass, request);
+        const auto view = pass.write(graph.value<CameraView>("view"));
+        pass.run([=](Execution& run) { run.set(view, requested_view(run.world(), run.value(request))); });
+        return view;
+    });
+}
+
+FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                          glm::uvec2 size) {
+    return graph.add("view-upload", [&](Pass& pass) {
+        pass.read(camera);
+        pass.parameter(size);
+        const auto constants = pass.write(
+            graph.buffer<gpu::ViewConstants>("view constants", 1, Lifetime::persistent), Usage::copy);
+        pass.run([=, &gpu](Execution& run) {
+            upload_one(gpu, run, constants, view_constants(run.value(camera), size));
+        });
+        return FrameView{camera, constants};
+    });
+}
+
+void read_view(Pass& pass, const FrameView& view) {
+    pass.read(view.constants, {Usage::uniform, UNIFORMS_VIEW});
+}
+
+}  // namespace candela

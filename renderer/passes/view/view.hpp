@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+
+#include <candela/ecs/world.hpp>
+#include <candela/graph/frame_graph.hpp>
+#include <candela/scene/components.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/gpu_types.hpp"
+
+namespace candela {
+
+/// The view that the host asks for.
+struct ViewRequest {
+    Entity camera;           ///< an entity with a Camera
+    glm::uvec2 size{1};      ///< of the rendered picture, pixels
+    glm::vec2 jitter{0.0F};  ///< pixels by which samples move off the pixel centres, +x right, +y up
+    bool operator==(const ViewRequest&) const = default;
+};
+
+/// Matrices of a view. Clip space is that of OpenGL with reversed depth in [0, 1]: 1 at the near plane. View
+/// space has the eye at its origin and looks along -z; a depth in metres is -z in view space.
+struct CameraView {
+    glm::mat4 clip_from_world{1.0F};
+    glm::mat4 world_from_clip{1.0F};
+    glm::mat4 view_from_world{1.0F};
+    glm::mat4 clip_from_view{1.0F};
+    glm::vec3 eye{0.0F};  ///< world space, metres
+    bool orthographic = false;
+    bool operator==(const CameraView&) const = default;
+};
+
+/// The view of a camera with this local-to-world matrix, whose scale is ignored. If Camera::far_plane is
+/// infinite, the projection has no far plane.
+[[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera,
+                                   const ViewRequest& request);
+
+/// The view that the host asks for. Throws EntityError if `request.camera` is not alive or has no Camera, and
+/// SceneError if its parents form a cycle or were destroyed.
+[[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
+/// Declares the reads of a pass that calls requested_view.
+void read_request(Pass& pass, ValueHandle<ViewRequest> request);
+
+/// Position of sample i, as an offset from the pixel centre in pixels, in [-0.5, 0.5]². Sample 0 is the
+/// centre. Samples 2k - 1 and 2k are point k of the R2 sequence and its mirror image, so that a mean over
+/// samples does not shift the picture.
+[[nodiscard]] glm::vec2 pixel_sample(std::uint32_t i);
+
+/// Adds node `view` (CPU): the requested view. Depends on the request, Camera and Transform.
+[[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
+
+/// The view of a frame, for the CPU and for shaders.
+struct FrameView {
+    ValueHandle<CameraView> camera;
+    BufferHandle<gpu::ViewConstants> constants;
+};
+
+/// Adds node `view-upload` (CPU, then upload): the constants in shaders/view/view.glsl, for a picture of
+/// `size` pixels. Depends on `camera`.
+[[nodiscard]] FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                                        glm::uvec2 size);
+
+/// For a pass whose shader includes view.glsl.
+void read_view(Pass& pass, const FrameView& view);
+
+}  // namespace candela

@@ -1,0 +1,277 @@
+#include "renderer/passes/vpls/surfel_light.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <candela/graph/execute.hpp>
+
+namespace candela {
+namespace {
+
+/// Light of the real lights at the points of the cells, and summed over each cell.
+struct DirectLight {
+    BufferHandle<gpu::DirectPoint> points;
+    BufferHandle<gpu::CellLight> cells;
+};
+
+std::uint32_t groups(std::uint32_t count) {
+    return (count + SURFEL_GROUP - 1) / SURFEL_GROUP;
+}
+
+std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
+    return run.value(surfels.plan).vpl_count;
+}
+
+/// Identifies stored visibility: the set of surfels, the step of scene motion up to which it is current, the
+/// ray offset in metres, and the GL names of the buffers that hold it.
+struct KnownVisibility {
+    std::uint64_t set = 0;
+    std::uint64_t step = 0;
+    float ray_offset = 0.0F;
+    ObjectId form_factors = 0;
+    ObjectId hits = 0;
+    ObjectId seen = 0;
+    bool operator==(const KnownVisibility&) const = default;
+
+    [[nodiscard]] bool is_of(const KnownVisibility& other) const {
+        return set == other.set && ray_offset == other.ray_offset && form_factors == other.form_factors &&
+               hits == other.hits && seen == other.seen;
+    }
+};
+
+/// Sets `surfel_count` and the uniforms that follow from it: shaders/vpls/surfel.glsl.
+void set_count(const gl::Program& program, std::uint32_t count) {
+    const SurfelColumns columns = surfel_columns(count);
+    program.set("surfel_count", count);
+    program.set("columns", columns.count);
+    program.set("column_stride", columns.stride);
+}
+
+void dispatch_surfels(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(groups(count), 1, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void find_form_factors(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(groups(count), surfel_columns(count).count / 2, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void find_cover(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    constexpr std::uint32_t most_a_line = 32768;
+    set_count(program, count);
+    program.use();
+    gl.DispatchCompute(std::min(count, most_a_line), (count + most_a_line - 1) / most_a_line, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+/// Last round of scaling. Even, so that its results are in the first half of the rows.
+constexpr std::uint32_t last_round = 4;
+
+void scale_rows(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+    for (std::uint32_t round = 0; round <= last_round; ++round) {
+        program.set("round", round);
+        dispatch_surfels(gl, program, count);
+    }
+}
+
+void add_up(const gl::Functions& gl, const gl::Program& program, std::uint32_t count, std::uint32_t bounce) {
+    set_count(program, count);
+    program.set("bounce", bounce);
+    program.use();
+    gl.DispatchCompute(1, 1, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+struct BouncePrograms {
+    const gl::Program* first;
+    const gl::Program* further;
+    const gl::Program* account;
+};
+
+/// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
+/// is little, the remaining dispatches return at once.
+void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std::uint32_t count,
+                    std::uint32_t bounces) {
+    constexpr std::uint32_t bounces_an_account = 4;
+    add_up(gl, *programs.account, count, 1);
+    for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
+        const gl::Program& program = bounce == 2 ? *programs.first : *programs.further;
+        program.set("bounce", bounce);
+        dispatch_surfels(gl, program, count);
+        if (bounce % bounces_an_account == 0 || bounce == bounces) {
+            add_up(gl, *programs.account, count, bounce);
+        }
+    }
+}
+
+/// Most shadow rays of an invocation in one dispatch. Each ray loops over nodes of the BVH, and software
+/// drivers stop all loops of an invocation after 65,535 iterations in total.
+constexpr std::uint32_t most_shadow_rays = 64;
+
+void light_points(const gl::Functions& gl, const gl::Program& program, std::uint32_t points,
+                  std::uint32_t lights) {
+    program.set("point_count", points);
+    program.set("light_count", lights);
+    program.set("lights_now", most_shadow_rays);
+    program.use();
+    for (std::uint32_t lit = 0; lit == 0 || lit < lights; lit += most_shadow_rays) {
+        program.set("lights_before", lit);
+        gl.DispatchCompute(groups(points), 1, 1);
+        gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+}
+
+DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
+                             const SurfelVisibility& visibility, const SurfelLights& lights) {
+    return graph.add("surfel-light", [&](Pass& pass) {
+        pass.read(surfels.plan);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
+        pass.read(visibility.seen_points, {Usage::storage, BINDING_SEEN_POINTS});
+        pass.read(lights.table);
+        pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
+        read_tracing(pass, tracing);
+        const gl::Program& lighter = gpu.program({"vpls/surfel_light.comp"});
+        const gl::Program& adder = gpu.program({"vpls/surfel_cells.comp"});
+        const DirectLight out{
+            .points =
+                pass.write(graph.buffer<gpu::DirectPoint>("directly lit points", 1, Lifetime::persistent),
+                           {Usage::storage, BINDING_DIRECT_POINTS}),
+            .cells = pass.write(graph.buffer<gpu::CellLight>("directly lit cells", 1, Lifetime::persistent),
+                                {Usage::storage, BINDING_CELL_LIGHT})};
+        pass.run([=, &gpu, &lighter, &adder](Execution& run) {
+            const std::uint32_t count = count_of(run, surfels);
+            const std::uint32_t points = run.value(surfels.plan).point_count;
+            run.reserve(out.points, std::max(points, 1U));
+            run.reserve(out.cells, std::max(count, 1U));
+            if (count == 0) {
+                return;
+            }
+            lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
+            const auto light_count = static_cast<std::uint32_t>(run.value(lights.table).entries.size());
+            light_points(gpu.gl(), lighter, points, light_count);
+            dispatch_surfels(gpu.gl(), adder, count);
+        });
+        return out;
+    });
+}
+
+}  // namespace
+
+SurfelColumns surfel_columns(std::uint32_t surfels) {
+    const std::uint32_t stride = std::max((surfels + MOST_COLUMNS - 1) / MOST_COLUMNS, 1U);
+    const std::uint32_t count = (surfels + stride - 1) / stride;
+    return {.count = count + count % 2, .stride = stride};
+}
+
+SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                       const Surfels& surfels, ValueHandle<SceneMotion> motion) {
+    return graph.add("surfel-visibility", [&](Pass& pass) {
+        pass.read(surfels.plan);
+        pass.read(surfels.set);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
+        pass.read(motion);
+        read_tracing(pass, tracing);
+        pass.remembers();
+        const gl::Program& factors = gpu.program({"vpls/surfel_form_factors.comp"});
+        const gl::Program& cover = gpu.program({"vpls/surfel_cover.comp"});
+        const gl::Program& rows = gpu.program({"vpls/surfel_rows.comp"});
+        const gl::Program& seer = gpu.program({"vpls/surfel_points.comp"});
+        const SurfelVisibility out{
+            .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
+                                       {Usage::storage, BINDING_FORM_FACTORS}),
+            .rows = pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent),
+                               {Usage::storage, BINDING_SURFEL_ROWS}),
+            .seen_points = pass.write(graph.buffer<std::uint32_t>("seen points", 1, Lifetime::persistent),
+                                      {Usage::storage, BINDING_SEEN_POINTS})};
+        const auto hits = pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent),
+                                     {Usage::storage, BINDING_COVER});
+        const auto known = pass.write(graph.value<KnownVisibility>("known visibility"));
+        pass.run([=, &gpu, &factors, &cover, &rows, &seer](Execution& run) {
+            const std::uint32_t count = count_of(run, surfels);
+            run.reserve(out.form_factors,
+                        std::max<std::uint64_t>(std::uint64_t{count} * surfel_columns(count).count / 2, 1));
+            run.reserve(out.rows, std::max(2 * count, 1U));
+            const std::uint32_t points = run.value(surfels.plan).point_count;
+            run.reserve(hits, std::max(count * COVER_PARTS, 1U));
+            run.reserve(out.seen_points, std::max(points, 1U));
+            const KnownVisibility now{.set = run.value(surfels.set),
+                                      .step = run.value(motion).step,
+                                      .ray_offset = run.value(tracing.metrics).ray_offset(),
+                                      .form_factors = run.object(out.form_factors),
+                                      .hits = run.object(hits),
+                                      .seen = run.object(out.seen_points)};
+            const KnownVisibility* const before = run.find(known);
+            std::optional<std::vector<Box>> changed;
+            if (before != nullptr && before->is_of(now)) {
+                changed = changed_boxes(run.value(motion), before->step);
+            }
+            run.set(known, now);
+            if (count == 0) {
+                return;
+            }
+            for (const gl::Program* tracer : {&factors, &cover, &seer}) {
+                tracer->set("ray_offset", now.ray_offset);
+                set_changed_boxes(*tracer, changed, 4.0F * now.ray_offset);
+            }
+            find_form_factors(gpu.gl(), factors, count);
+            find_cover(gpu.gl(), cover, count);
+            scale_rows(gpu.gl(), rows, count);
+            seer.set("point_count", points);
+            seer.use();
+            gpu.gl().DispatchCompute(groups(points), 1, 1);
+        });
+        return out;
+    });
+}
+
+Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
+                      const SurfelVisibility& visibility, const SurfelLights& lights, std::uint32_t bounces) {
+    const DirectLight direct = add_direct_light(graph, gpu, tracing, surfels, visibility, lights);
+    return graph.add("surfel-bounce", [&](Pass& pass) {
+        pass.read(surfels.plan);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
+        pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
+        pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
+        pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
+        pass.parameter(bounces);
+        const BouncePrograms programs{.first = &gpu.program({"vpls/surfel_bounce.comp"}, {"FIRST"}),
+                                      .further = &gpu.program({"vpls/surfel_bounce.comp"}),
+                                      .account = &gpu.program({"vpls/surfel_account.comp"})};
+        const gl::Program& writer = gpu.program({"vpls/surfel_write.comp"});
+        [[maybe_unused]] const auto lit_cells =
+            pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
+        const auto bounced = pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent),
+                                        {Usage::storage, BINDING_BOUNCE});
+        const Vpls out{
+            .plan = surfels.plan,
+            .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent),
+                               {Usage::storage, BINDING_VPLS}),
+            .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent),
+                               {Usage::storage, BINDING_FLUX_ACCOUNT}),
+            .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
+                                 {Usage::storage, BINDING_LIT_POINTS})};
+        pass.run([=, &gpu, &writer](Execution& run) {
+            const std::uint32_t count = count_of(run, surfels);
+            run.reserve(bounced, std::max(2 * count, 1U));
+            run.reserve(out.vpls, std::max(count, 1U));
+            run.reserve(*out.points, std::max(run.value(surfels.plan).point_count, 1U));
+            if (count == 0) {
+                return;
+            }
+            gather_bounces(gpu.gl(), programs, count, bounces);
+            dispatch_surfels(gpu.gl(), writer, count);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/scene/scene_motion.hpp"
+#include "renderer/passes/vpls/surfels.hpp"
+#include "renderer/passes/vpls/vpl_trace.hpp"
+
+namespace candela {
+
+/// Visibility between surfels, and between a surfel and the points of its cell.
+struct SurfelVisibility {
+    /// Half floats, two per word, `surfel_columns` per surfel; 0 if hidden. Layout: shaders/vpls/surfel.glsl.
+    BufferHandle<std::uint32_t> form_factors;
+    /// By surfel: scale of its form factors, and the cosine-weighted share of its hemisphere in which no
+    /// reflecting surface is visible.
+    BufferHandle<glm::vec2> rows;
+    BufferHandle<std::uint32_t> seen_points;  ///< by point of a cell: 1 if its surfel sees it, else 0
+};
+
+/// How many surfels a surfel gathers from: at most MOST_COLUMNS. If there are more, every n-th represents n
+/// surfels.
+struct SurfelColumns {
+    std::uint32_t count = 0;   ///< columns per surfel; even
+    std::uint32_t stride = 1;  ///< n: at least 1
+};
+[[nodiscard]] SurfelColumns surfel_columns(std::uint32_t surfels);
+
+/// Adds node `surfel-visibility` (compute). It finds the form factors between surfels, with one ray for each
+/// pair of surfels that face each other; the form factor is that of a disc (shaders/vpls/disc.glsl). Factors
+/// are then scaled, so that those of a surfel add up to the share of its hemisphere in which rays hit
+/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/vpls/surfel_rows.comp). It also finds which points
+/// of its cell a surfel sees. If something moves, only rays that pass through the changed boxes are traced
+/// again. Depends on surfels, BVH and motion, and on its own last result.
+[[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                                     const Surfels& surfels, ValueHandle<SceneMotion> motion);
+
+/// The real lights, on the CPU and on the GPU.
+struct SurfelLights {
+    ValueHandle<LightTable> table;
+    BufferHandle<gpu::Light> buffer;
+};
+
+/// Adds two nodes. `surfel-light` (compute): light of the real lights at each point of the surfels' cells,
+/// with one shadow ray per point and light. `surfel-bounce` (compute): surfels gather the light that other
+/// surfels reflect, bounce by bounce (Jacobi iteration of the radiosity equation; Goral et al., "Modeling the
+/// Interaction of Light Between Diffuse Surfaces", 1984), up to `bounces` or until less than 0.1 % of the
+/// first reflected light is left; then they are written as VPLs. They depend on surfels, visibility, lights
+/// and BVH.
+[[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                    const Surfels& surfels, const SurfelVisibility& visibility,
+                                    const SurfelLights& lights, std::uint32_t bounces);
+
+}  // namespace candela

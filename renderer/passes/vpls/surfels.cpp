@@ -1,0 +1,442 @@
+#include "renderer/passes/vpls/surfels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <unordered_map>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/r2_sequence.hpp"
+#include "renderer/passes/scene/world_triangles.hpp"
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+namespace {
+
+/// One side of a triangle.
+struct Side {
+    const gpu::TraceTriangle* triangle;
+    glm::vec3 normal;  // unit
+    std::uint32_t item;
+};
+
+/// A point of a cell, with the item that it lies on.
+struct PlacedPoint : gpu::CellPoint {
+    std::uint32_t item = 0;
+};
+
+/// All sides that reflect light: both sides of double-sided triangles.
+struct Sides {
+    std::vector<Side> sides;
+    std::vector<double> area_before;  // by side: area of all sides before it, m²; then the total
+};
+
+Sides sides_of(const SurfelGround& ground) {
+    Sides all;
+    double area = 0.0;
+    for (std::size_t i = 0; i < ground.triangles.size(); ++i) {
+        const gpu::TraceTriangle& triangle = ground.triangles[i];
+        const glm::vec3 cross = glm::cross(triangle.edge_ab, triangle.edge_ac);
+        const float twice_area = glm::length(cross);
+        if (!(twice_area > 0.0F)) {
+            continue;
+        }
+        const glm::vec3 front = cross / twice_area;
+        for (int side = 0; side < (ground.double_sided[triangle.material] ? 2 : 1); ++side) {
+            all.sides.push_back({&triangle, side == 0 ? front : -front, ground.item_of[i]});
+            all.area_before.push_back(area);
+            area += 0.5 * static_cast<double>(twice_area);
+        }
+    }
+    all.area_before.push_back(area);
+    return all;
+}
+
+std::uint32_t hash(std::uint32_t x) {
+    x ^= x >> 16U;
+    x *= 0x85ebca6bU;
+    x ^= x >> 13U;
+    x *= 0xc2b2ae35U;
+    return x ^ (x >> 16U);
+}
+
+/// Barycentric weights of b and c of point `index` in a triangle: the R2 sequence, with the upper half of the
+/// unit square folded onto the lower.
+glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
+    constexpr double unit = 1.0 / 4294967296.0;
+    const glm::dvec2 start(hash(seed) * unit, hash(seed ^ 0x9e3779b9U) * unit);
+    glm::dvec2 point = r2_point(index, start);
+    if (point.x + point.y > 1.0) {
+        point = 1.0 - point;
+    }
+    return glm::vec2(point);
+}
+
+/// `count` points, distributed evenly by area.
+std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, std::uint32_t seed) {
+    std::vector<PlacedPoint> points;
+    const double share = all.area_before.back() / count;
+    const double start = hash(seed + 1) * (1.0 / 4294967296.0);
+    std::size_t side = 0;
+    std::uint32_t index = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double at = (i + start) * share;
+        while (side + 1 < all.sides.size() && at >= all.area_before[side + 1]) {
+            ++side;
+            index = 0;
+        }
+        const auto side_seed = static_cast<std::uint32_t>(side) * 0x85ebca6bU + seed;
+        const glm::vec2 b = point_in_triangle(index++, side_seed);
+        const gpu::TraceTriangle& t = *all.sides[side].triangle;
+        points.push_back({{.position = t.a + b.x * t.edge_ab + b.y * t.edge_ac,
+                           .material = t.material,
+                           .normal = all.sides[side].normal,
+                           .area = static_cast<float>(share),
+                           .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
+                           .surfel = 0,
+                           .pad0 = 0},
+                          all.sides[side].item});
+    }
+    return points;
+}
+
+/// A hash grid of surfels, for finding nearby ones.
+class SurfelGrid {
+ public:
+    explicit SurfelGrid(float cell) : cell_(cell) {}
+
+    void add(const PlacedPoint& surfel) {
+        cells_[key(coordinates(surfel.position), surfel.item)].push_back(
+            static_cast<std::uint32_t>(surfels_.size()));
+        surfels_.push_back(surfel);
+    }
+
+    [[nodiscard]] const std::vector<PlacedPoint>& surfels() const { return surfels_; }
+
+    /// Index of the nearest surfel on the surface of `point`, within about the size of a grid cell; -1: none.
+    /// The surfel must be on the same item, the cosine between the normals at least `least_cosine`, and the
+    /// distance of the point from the surfel's plane at most `off_plane` grid cells.
+    [[nodiscard]] int nearest_like(const PlacedPoint& point, float least_cosine, float off_plane) const {
+        const glm::ivec3 centre = coordinates(point.position);
+        float best = std::numeric_limits<float>::infinity();
+        int found = -1;
+        for (int i = 0; i < 27; ++i) {
+            const auto cell = cells_.find(key(centre + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1, point.item));
+            if (cell == cells_.end()) {
+                continue;
+            }
+            for (const std::uint32_t candidate : cell->second) {
+                const PlacedPoint& surfel = surfels_[candidate];
+                const glm::vec3 apart = point.position - surfel.position;
+                const float distance2 = glm::dot(apart, apart);
+                if (distance2 < best && surfel.item == point.item &&
+                    glm::dot(point.normal, surfel.normal) >= least_cosine &&
+                    std::abs(glm::dot(apart, surfel.normal)) <= off_plane * cell_) {
+                    best = distance2;
+                    found = static_cast<int>(candidate);
+                }
+            }
+        }
+        return found;
+    }
+
+ private:
+    [[nodiscard]] glm::ivec3 coordinates(glm::vec3 position) const {
+        return glm::ivec3(glm::floor(position / cell_));
+    }
+    /// Different cells may have the same key: callers check what they find.
+    static std::uint64_t key(glm::ivec3 at, std::uint32_t item) {
+        const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0xffffU; };
+        return part(at.x) | part(at.y) << 16U | part(at.z) << 32U | std::uint64_t{item} << 48U;
+    }
+
+    float cell_;
+    std::vector<PlacedPoint> surfels_;
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+};
+
+/// Assigns each point to a surfel. A point without a matching surfel becomes a surfel.
+std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<PlacedPoint>& points) {
+    std::vector<std::uint32_t> owners;
+    owners.reserve(points.size());
+    for (const PlacedPoint& point : points) {
+        int owner = grid.nearest_like(point, 0.9F, 0.1F);
+        if (owner < 0) {
+            owner = grid.nearest_like(point, 0.5F, 0.5F);
+        }
+        if (owner < 0) {
+            owner = static_cast<int>(grid.surfels().size());
+            grid.add(point);
+        }
+        owners.push_back(static_cast<std::uint32_t>(owner));
+    }
+    return owners;
+}
+
+/// The point of each cell that is nearest to its centroid: one step of Lloyd relaxation, which distributes
+/// the surfels more evenly (Lloyd, "Least squares quantization in PCM", 1982).
+std::vector<PlacedPoint> middles(const std::vector<PlacedPoint>& points,
+                                 const std::vector<std::uint32_t>& owners,
+                                 const std::vector<PlacedPoint>& surfels) {
+    std::vector<glm::vec4> sums(surfels.size(), glm::vec4(0.0F));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        sums[owners[i]] += glm::vec4(points[i].position, 1.0F);
+    }
+    std::vector<PlacedPoint> chosen = surfels;
+    std::vector<float> best(surfels.size(), std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const glm::vec4& sum = sums[owners[i]];
+        const glm::vec3 off = points[i].position - glm::vec3(sum) / sum.w;
+        if (glm::dot(off, off) < best[owners[i]]) {
+            best[owners[i]] = glm::dot(off, off);
+            chosen[owners[i]] = points[i];
+        }
+    }
+    return chosen;
+}
+
+SurfelGrid grid_of(const std::vector<PlacedPoint>& surfels, float cell) {
+    SurfelGrid grid(cell);
+    for (const PlacedPoint& surfel : surfels) {
+        grid.add(surfel);
+    }
+    return grid;
+}
+
+/// Sorts the points by cell. Surfels without points are left out.
+SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points,
+                  const std::vector<std::uint32_t>& owners) {
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return owners[i]; });
+    SurfelSet set;
+    std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
+    for (const std::uint32_t i : order) {
+        if (owners[i] != last) {
+            last = owners[i];
+            const PlacedPoint& surfel = grid.surfels()[last];
+            set.item_of.push_back(surfel.item);
+            set.surfels.push_back({.position = surfel.position,
+                                   .map = static_cast<std::uint32_t>(set.surfels.size()),
+                                   .normal = surfel.normal,
+                                   .radius2 = 0.0F,
+                                   .flux = glm::vec3(0.0F),
+                                   .first_point = static_cast<std::uint32_t>(set.points.size()),
+                                   .edges_up = glm::vec3(0.0F),
+                                   .point_count = 0,
+                                   .edges_down = glm::vec3(0.0F),
+                                   .area = 0.0F,
+                                   .map_origin = surfel.position,
+                                   .pad0 = 0.0F});
+        }
+        gpu::Vpl& surfel = set.surfels.back();
+        ++surfel.point_count;
+        surfel.area += points[i].area;
+        surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
+        set.points.push_back(points[i]);
+        set.points.back().surfel = static_cast<std::uint32_t>(set.surfels.size() - 1);
+    }
+    return set;
+}
+
+SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t seed) {
+    constexpr int rounds = 2;
+    const auto spacing = static_cast<float>(std::sqrt(all.area_before.back() / count));
+    const std::vector<PlacedPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
+    SurfelGrid grid = grid_of(spread_points(all, count, hash(seed ^ 0x5bd1e995U)), spacing);
+    std::vector<std::uint32_t> owners = assign(grid, points);
+    for (int round = 0; round < rounds; ++round) {
+        grid = grid_of(middles(points, owners, grid.surfels()), spacing);
+        owners = assign(grid, points);
+    }
+    return collect(grid, points, owners);
+}
+
+VplPlan plan_of(const SurfelSet& set) {
+    VplPlan plan;
+    plan.vpl_count = static_cast<std::uint32_t>(set.surfels.size());
+    plan.point_count = static_cast<std::uint32_t>(set.points.size());
+    return plan;
+}
+
+/// Everything that the placement of surfels depends on. Each item is in its own space, transformed only by
+/// its shape matrix: see shape_of.
+struct SurfelKey {
+    SceneGeometry geometry;
+    std::vector<glm::mat3> shapes;
+    std::uint32_t count = 0;
+    std::uint32_t seed = 0;
+    bool operator==(const SurfelKey&) const = default;
+};
+
+/// The last placement of the surfels, in the items' shape spaces. `number` changes with each placement.
+struct SpreadSurfels {
+    SurfelKey key;
+    std::shared_ptr<const SurfelSet> set;
+    std::uint64_t number = 0;
+    bool operator==(const SpreadSurfels&) const = default;
+};
+
+std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
+    std::vector<glm::mat3> shapes;
+    for (const glm::mat4& world : placement.world) {
+        shapes.push_back(shape_of(world));
+    }
+    return shapes;
+}
+
+SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
+    ScenePlacement placement;
+    for (const glm::mat3& shape : shapes) {
+        placement.world.emplace_back(shape);
+    }
+    const WorldTriangles triangles = place_triangles(layout, placement);
+    std::vector<std::uint32_t> order(triangles.triangles.size());
+    std::iota(order.begin(), order.end(), 0U);
+    SurfelGround ground;
+    ground.triangles = trace_triangles(layout, triangles, order);
+    for (const Origin& origin : triangles.origins) {
+        ground.item_of.push_back(layout.drawables[origin.drawable].item);
+    }
+    for (const auto& material : layout.materials) {
+        ground.double_sided.push_back(material->double_sided);
+    }
+    return ground;
+}
+
+SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
+                     const VplSettings& settings) {
+    SurfelKey key{layout.geometry, shapes_of(placement), settings.count, settings.seed};
+    if (last != nullptr && last->key == key) {
+        return *last;
+    }
+    auto set = std::make_shared<const SurfelSet>(
+        place_surfels(ground_of(layout, key.shapes), settings.count, settings.seed));
+    return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
+}
+
+/// Transform from an item's shape space to the world: a rotation, a translation, and the rounding error of
+/// the shape matrix.
+glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
+    return world * glm::mat4(glm::inverse(shape));
+}
+
+SurfelSet placed_in_world(const SpreadSurfels& spread, const ScenePlacement& placement) {
+    std::vector<glm::mat4> matrices;
+    std::vector<glm::mat3> normal_matrices;
+    for (std::size_t i = 0; i < placement.world.size(); ++i) {
+        matrices.push_back(world_from_shape(placement.world[i], spread.key.shapes[i]));
+        normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(matrices.back()))));
+    }
+    SurfelSet set = *spread.set;
+    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        gpu::Vpl& surfel = set.surfels[i];
+        const glm::mat4& matrix = matrices[set.item_of[i]];
+        const glm::mat3& normal_matrix = normal_matrices[set.item_of[i]];
+        surfel.position = surfel.map_origin = glm::vec3(matrix * glm::vec4(surfel.position, 1.0F));
+        surfel.normal = glm::normalize(normal_matrix * surfel.normal);
+        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+            gpu::CellPoint& point = set.points[p];
+            point.position = glm::vec3(matrix * glm::vec4(point.position, 1.0F));
+            point.normal = glm::normalize(normal_matrix * point.normal);
+        }
+    }
+    return set;
+}
+
+ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
+                                      std::optional<ValueHandle<Refinement>> refinement,
+                                      const VplSettings& settings) {
+    return graph.add("surfel-spread", [&](Pass& pass) {
+        pass.read(scene.layout);
+        pass.read(scene.placement);
+        if (refinement) {
+            pass.read(*refinement);
+        }
+        pass.parameter(settings.count);
+        pass.parameter(settings.seed);
+        pass.parameter(settings.bounces > 0);
+        pass.remembers();
+        const auto out = pass.write(graph.value<SpreadSurfels>("spread surfels"));
+        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
+            VplSettings of_set = settings;
+            of_set.seed += refinement ? run.value(*refinement).surfel_set : 0;
+            of_set.count = of_set.bounces > 0 ? of_set.count : 0;
+            run.set(out, spread(run.find(out), run.value(layout), run.value(placement), of_set));
+        });
+        return out;
+    });
+}
+
+}  // namespace
+
+glm::mat3 shape_of(const glm::mat4& world) {
+    const glm::dmat3 m(world);
+    const glm::dmat3 gram = glm::transpose(m) * m;
+    glm::dmat3 u(0.0);  // column-major: u[column][row]
+    u[0][0] = std::sqrt(gram[0][0]);
+    u[1][0] = gram[1][0] / u[0][0];
+    u[2][0] = gram[2][0] / u[0][0];
+    u[1][1] = std::sqrt(std::max(gram[1][1] - u[1][0] * u[1][0], 0.0));
+    u[2][1] = (gram[2][1] - u[1][0] * u[2][0]) / u[1][1];
+    u[2][2] = std::sqrt(std::max(gram[2][2] - u[2][0] * u[2][0] - u[2][1] * u[2][1], 0.0));
+    if (glm::determinant(m) < 0.0) {
+        u[0][0] = -u[0][0];
+        u[1][0] = -u[1][0];
+        u[2][0] = -u[2][0];
+    }
+    const double largest = std::max({std::abs(u[0][0]), u[1][1], u[2][2]});
+    const double step = std::exp2(std::floor(std::log2(largest) + 0.3) - 14.0);
+    const glm::dmat3 rounded(step * glm::round(u[0] / step), step * glm::round(u[1] / step),
+                             step * glm::round(u[2] / step));
+    // A flat item has no inverse; its matrix is used unchanged.
+    const bool is_flat = !(std::abs(glm::determinant(rounded)) > 1e-12 * largest * largest * largest);
+    return is_flat ? glm::mat3(world) : glm::mat3(rounded);
+}
+
+SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::uint32_t seed) {
+    const Sides all = sides_of(ground);
+    if (all.sides.empty() || count == 0) {
+        return {};
+    }
+    constexpr int attempts = 4;
+    std::uint32_t wanted = count;
+    SurfelSet set = spread_surfels(all, wanted, seed);
+    for (int i = 1; i < attempts && set.surfels.size() > count; ++i) {
+        wanted = static_cast<std::uint32_t>(std::uint64_t{wanted} * count / set.surfels.size());
+        set = spread_surfels(all, std::max(wanted, 1U), seed);
+    }
+    return set;
+}
+
+Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
+                    std::optional<ValueHandle<Refinement>> refinement, const VplSettings& settings) {
+    const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, settings);
+    return graph.add("surfels", [&](Pass& pass) {
+        pass.read(spread_surfels);
+        pass.read(scene.placement);
+        const Surfels out{
+            .plan = pass.write(graph.value<VplPlan>("surfel plan")),
+            .set = pass.write(graph.value<std::uint64_t>("surfel set")),
+            .surfels = pass.write(graph.buffer<gpu::Vpl>("surfels", 1, Lifetime::persistent), Usage::copy),
+            .points = pass.write(graph.buffer<gpu::CellPoint>("cell points", 1, Lifetime::persistent),
+                                 Usage::copy)};
+        pass.run([=, &gpu, placement = scene.placement](Execution& run) {
+            const SpreadSurfels& spread_now = run.value(spread_surfels);
+            const SurfelSet set = placed_in_world(spread_now, run.value(placement));
+            upload<gpu::Vpl>(gpu, run, out.surfels, set.surfels);
+            upload<gpu::CellPoint>(gpu, run, out.points, set.points);
+            run.set(out.plan, plan_of(set));
+            run.set(out.set, spread_now.number);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,91 @@
+#include "renderer/passes/vpls/vpl_constants.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <bit>
+#include <numbers>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/upload.hpp"
+
+namespace candela {
+namespace {
+
+// Least size of an atlas layer, in texels and in slots along a side. Layers then hold many small slots or a
+// few large ones: little of the last layer is wasted, and the layers are few enough for any driver.
+constexpr std::uint32_t least_side = 512;
+constexpr std::uint32_t least_tiles = 4;
+
+VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t maps,
+                        const SceneMetrics& metrics, const gl::Limits& limits) {
+    if (settings.method != VplVisibility::maps) {
+        return {};
+    }
+    VplAtlas atlas = plan_vpl_atlas(settings.map_resolution, std::max(maps, 1U), limits);
+    atlas.reach = metrics.scale() > 0.0F ? 4.0F * metrics.scale() : 1.0F;
+    return atlas;
+}
+
+gpu::VplConstants constants_of(std::uint32_t vpl_count, const SceneMetrics& metrics, const VplAtlas& atlas,
+                               float bound) {
+    return {.count = vpl_count,
+            .radius2 = vpl_radius2(bound, std::max(vpl_count, 1U), metrics.area),
+            .crease_slack = 16.0F * metrics.ray_offset(),
+            .ray_offset = metrics.ray_offset(),
+            .map_resolution = atlas.resolution,
+            .map_tiles = atlas.tiles,
+            .map_side = static_cast<float>(atlas.side),
+            .map_inverse_reach = 1.0F / atlas.reach};
+}
+
+}  // namespace
+
+float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
+    return 4.0F * area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
+}
+
+VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::Limits& limits) {
+    VplAtlas atlas{.resolution = resolution};
+    atlas.side = std::min(std::bit_ceil(std::max(least_side, least_tiles * resolution)), limits.texture_size);
+    atlas.tiles = atlas.side / resolution;
+    if (atlas.tiles == 0) {
+        throw gl::GlError(fmt::format("depth maps of VPLs of {} texels a side: the driver allows {}",
+                                      resolution, limits.texture_size));
+    }
+    const std::uint32_t of_layer = atlas.tiles * atlas.tiles;
+    atlas.layers = (maps + of_layer - 1) / of_layer;
+    if (atlas.layers > limits.texture_layers) {
+        throw gl::GlError(
+            fmt::format("depth maps of {} VPLs, {} texels a side, fill {} layers; the driver allows {}", maps,
+                        resolution, atlas.layers, limits.texture_layers));
+    }
+    return atlas;
+}
+
+VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneMetrics> metrics,
+                            ValueHandle<VplPlan> plan, const VplVisibilitySettings& settings, float bound) {
+    return graph.add("vpl-constants", [&](Pass& pass) {
+        pass.read(metrics);
+        pass.read(plan);
+        pass.parameter(settings);
+        pass.parameter(bound);
+        const VplCommon out{
+            .atlas = pass.write(graph.value<VplAtlas>("vpl atlas")),
+            .constants = pass.write(graph.buffer<gpu::VplConstants>("vpl constants", 1, Lifetime::persistent),
+                                    Usage::copy)};
+        pass.run([=, &gpu](Execution& run) {
+            const SceneMetrics& scene = run.value(metrics);
+            const std::uint32_t count = run.value(plan).vpl_count;
+            const VplAtlas atlas = atlas_of_scene(settings, count, scene, gpu.device().limits());
+            upload_one(gpu, run, out.constants, constants_of(count, scene, atlas, bound));
+            run.set(out.atlas, atlas);
+        });
+        return out;
+    });
+}
+
+void read_vpl_constants(Pass& pass, const VplCommon& common) {
+    pass.read(common.constants, {Usage::uniform, UNIFORMS_VPLS});
+}
+
+}  // namespace candela

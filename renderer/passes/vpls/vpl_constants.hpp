@@ -1,0 +1,53 @@
+#pragma once
+
+#include <candela/configuration.hpp>
+
+#include <cstdint>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/gpu_types.hpp"
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/vpls/vpl_paths.hpp"
+
+namespace candela {
+
+/// Layout of the depth maps of VPLs: square slots in the layers of a 2D array texture.
+struct VplAtlas {
+    std::uint32_t resolution = 1;  ///< texels along a side of a slot
+    std::uint32_t tiles = 1;       ///< slots along a side of a layer
+    std::uint32_t side = 1;        ///< texels along a side of a layer: a power of two or the driver's limit
+    std::uint32_t layers = 1;
+    /// Distance in metres at which depth is 0: at least the scene's diameter; rarely changes while objects
+    /// move.
+    float reach = 1.0F;
+    bool operator==(const VplAtlas&) const = default;
+};
+
+/// The atlas with the fewest layers for `maps` slots, within the limits of the driver. Throws gl::GlError if
+/// there is none.
+[[nodiscard]] VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::Limits& limits);
+
+/// Constants of all VPLs, for the CPU and for shaders that include vpl_constants.glsl.
+struct VplCommon {
+    ValueHandle<VplAtlas> atlas;
+    BufferHandle<gpu::VplConstants> constants;
+};
+
+/// Square of the distance R within which the light of a VPL hardly increases any more, in m²:
+/// shaders/indirect/vpl_light.glsl. N VPLs share the area A (m²) of the scene's surfaces, and R is the
+/// diameter of a disc of area A/N: R² = 4 A / (π N). This choice gave the least error in the Cornell box with
+/// visibility of VPLs (tests/study). The geometry term is at most 4/3 of 1/R². `bound` multiplies 1/R²; at
+/// infinity the VPL is a point. As N grows, R and the energy that the bound removes tend to 0.
+[[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
+
+/// Adds node `vpl-constants` (CPU, then upload): VplCommon. `bound`: see `vpl_radius2`. Depends on the
+/// scene's metrics and the plan.
+[[nodiscard]] VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu,
+                                          ValueHandle<SceneMetrics> metrics, ValueHandle<VplPlan> plan,
+                                          const VplVisibilitySettings& settings, float bound);
+
+/// For a pass whose shader includes vpl_constants.glsl.
+void read_vpl_constants(Pass& pass, const VplCommon& common);
+
+}  // namespace candela

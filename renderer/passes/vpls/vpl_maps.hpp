@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/scene/scene_motion.hpp"
+#include "renderer/passes/vpls/vpl_constants.hpp"
+#include "renderer/passes/vpls/vpl_trace.hpp"
+
+namespace candela {
+
+/// Input of add_vpl_maps.
+struct MappedVpls {
+    ValueHandle<VplPlan> plan;
+    BufferHandle<gpu::Vpl> vpls;  ///< only `map`, `map_origin` and `normal` are read
+    /// Only with surfels, which keep their maps where nothing moved: the motion of the scene, and
+    /// Surfels::set.
+    std::optional<ValueHandle<SceneMotion>> motion{};
+    std::optional<ValueHandle<std::uint64_t>> set{};
+};
+
+/// Adds node `vpl-maps` (raster; fragments trace rays): a depth map of the hemisphere above each VPL, in the
+/// hemi-octahedral mapping (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
+/// Vectors", 2014). Each texel traces a ray through the BVH. In contrast to rasterised meshes, large
+/// triangles are therefore exact in the curved mapping whatever their tessellation, and a map costs as many
+/// rays as it has texels, however large the scene is. One draw covers all maps. With surfels, only texels
+/// whose rays pass through changed boxes are traced again. Depends on the VPLs, the BVH and the constants;
+/// with surfels also on motion and on its own last result. Returns a 2D array of depth32f, reversed: 1 at the
+/// VPL, 0 at VplAtlas::reach and beyond (shaders/vpls/vpl_atlas.glsl).
+[[nodiscard]] TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                         const MappedVpls& vpls, const VplCommon& common);
+
+}  // namespace candela

@@ -1,0 +1,338 @@
+#include "renderer/renderer_state.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include <candela/graph/compile.hpp>
+#include <candela/graph/describe.hpp>
+#include "renderer/gl/host_state.hpp"
+#include "renderer/passes/output/tone_map.hpp"
+
+namespace candela {
+namespace {
+
+gl::ShaderLibrary shader_library(const std::filesystem::path& directory) {
+    return directory.empty() ? gl::ShaderLibrary(gl::embedded_shaders()) : gl::ShaderLibrary(directory);
+}
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Ends the timed frame even if a pass throws.
+class TimedFrame {
+ public:
+    TimedFrame(gl::Timer& timer, std::uint64_t index) : timer_(timer) { timer_.begin_frame(index); }
+    ~TimedFrame() { timer_.end_frame(); }
+    TimedFrame(const TimedFrame&) = delete;
+    TimedFrame& operator=(const TimedFrame&) = delete;
+
+ private:
+    gl::Timer& timer_;
+};
+
+FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index, double cpu_ms) {
+    FrameReport report{.index = index, .cpu_ms = cpu_ms, .gpu_ms = 0.0, .passes = {}};
+    for (const PassRecord& pass : passes) {
+        report.passes.push_back({std::string(pass.name), pass.ran, pass.cpu_ms, 0.0});
+    }
+    return report;
+}
+
+/// Standard error of the sum of independent terms, per channel.
+glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
+    if (terms.size() < 2) {
+        return glm::dvec3(0.0);
+    }
+    const auto n = static_cast<double>(terms.size());
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& term : terms) {
+        sum += term;
+    }
+    glm::dvec3 squares(0.0);
+    for (const glm::dvec3& term : terms) {
+        squares += (term - sum / n) * (term - sum / n);
+    }
+    return glm::sqrt(squares * n / (n - 1.0));
+}
+
+/// A path traces one ray per hit, and one more if it leaves the scene. A record with a normal is a hit.
+std::uint32_t count_rays(const std::vector<gpu::Path>& paths, const std::vector<gpu::Vpl>& vpls) {
+    std::uint32_t rays = 0;
+    for (const gpu::Path& path : paths) {
+        const auto first = vpls.begin() + path.first_vpl;
+        const auto hits =
+            static_cast<std::uint32_t>(std::count_if(first, first + path.vpl_count, [](const gpu::Vpl& vpl) {
+                return vpl.normal != glm::vec3(0.0F);
+            }));
+        rays += std::min(hits + 1, path.vpl_count);
+    }
+    return rays;
+}
+
+EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
+    EnergyAccount total;
+    std::vector<glm::dvec3> roulette;
+    for (const gpu::FluxAccount& account : accounts) {
+        total.emitted += account.emitted;
+        total.absorbed += account.absorbed;
+        total.escaped += account.escaped;
+        total.truncated += account.truncated;
+        total.roulette += account.roulette;
+        roulette.emplace_back(account.roulette);
+    }
+    total.roulette_error = standard_error(roulette);
+    return total;
+}
+
+/// Whether both give the same picture before tone mapping while nothing moves.
+bool same_radiance(Configuration a, const Configuration& b) {
+    a.tone_map = b.tone_map;
+    a.frame_budget_ms = b.frame_budget_ms;
+    return a == b;
+}
+
+}  // namespace
+
+Renderer::State::State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
+    : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
+    adopt(configuration_, size_, {});
+}
+
+std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
+    std::vector<std::string> faults = validate(configuration);
+    if (!faults.empty() || configuration == configuration_) {
+        return faults;
+    }
+    try {
+        adopt(configuration, size_, quality_);
+    } catch (const gl::GlError& error) {
+        faults.emplace_back(error.what());
+    }
+    return faults;
+}
+
+void Renderer::State::adopt(const Configuration& configuration, glm::uvec2 size, const Quality& quality) {
+    FrameGraph graph;
+    FrameHandles frame =
+        build_frame(graph, gpu_, configuration, {rendered_size(size, quality), size, quality.interleave});
+    runtime_.adopt(compile(std::move(graph)).take());
+    frame_ = frame;
+    if (size != size_ || quality != quality_ || !same_radiance(configuration, configuration_)) {
+        ++refinement_clock_.epoch;
+    }
+    configuration_ = configuration;
+    size_ = size;
+    quality_ = quality;
+    last_passes_.clear();
+}
+
+void Renderer::State::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
+    const std::uint32_t most = device().limits().texture_size;
+    if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
+        throw gl::GlError(
+            fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
+                        target.size.x, target.size.y, most));
+    }
+    const gl::HostState host_state(gpu_.gl());
+    const Quality quality = quality_now(world, {camera, target.size, jitter});
+    if (target.size != size_ || quality != quality_) {
+        adopt(configuration_, target.size, quality);
+    }
+    runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
+    runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
+    // The mean starts over after a frame that threw and for another world.
+    if (std::exchange(world_, nullptr) != &world) {
+        ++refinement_clock_.epoch;
+        refine_ = false;
+    }
+    set_refinement_clock();
+    if (frame_.epoch) {
+        runtime_.set(*frame_.epoch, epoch_);
+    }
+
+    const auto start = std::chrono::steady_clock::now();
+    const std::uint64_t index = next_frame_++;
+    {
+        const TimedFrame timed(backend_.timer(), index);
+        last_passes_ = runtime_.run(world, Timing::on).passes;
+    }
+    world_ = &world;
+    if (frame_.refinement) {
+        const std::uint32_t sets = runtime_.value(*frame_.refinement).set + 1;
+        constexpr std::uint32_t samples_of_direct_light = 64;
+        const std::uint32_t wanted = configuration_.refinement.frames;
+        refine_ = sets < (frame_.vpls ? wanted : std::min(wanted, samples_of_direct_light));
+    }
+    pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), this->quality()});
+    match_times(backend_.timer().collect());
+    if (runtime_.verifies()) {
+        runtime_.verify(world);
+    }
+}
+
+/// Frame budget in milliseconds; 0: no limit.
+double Renderer::State::budget_ms() const {
+    constexpr double on_hardware = 16.0;
+    constexpr double on_software = 100.0;
+    if (configuration_.frame_budget_ms) {
+        return static_cast<double>(*configuration_.frame_budget_ms);
+    }
+    return gpu_.device().is_software() ? on_software : on_hardware;
+}
+
+/// Full quality, unless there is a frame budget and something moved within the last quarter of a second.
+Quality Renderer::State::quality_now(const World& world, const ViewRequest& request) {
+    constexpr std::chrono::milliseconds settled(250);
+    const Clock::time_point now = Clock::now();
+    const bool moved = world_ != &world || world.revision() != last_revision_ || request != last_request_;
+    last_revision_ = world.revision();
+    last_request_ = request;
+    if (moved) {
+        last_move_ = now;
+    }
+    if (budget_ms() == 0.0 || now - last_move_ > settled) {
+        return {};
+    }
+    return moved ? quality_in_motion_ : quality_;
+}
+
+void Renderer::State::learn_cost(const PendingFrame& frame) {
+    const FrameCost cost = cost_of(frame.report);
+    if (budget_ms() > 0.0 && cost.pixels > 0.0) {
+        const std::uint32_t configured =
+            interleaving(configuration_.interleave, configuration_.vpls.count, size_);
+        quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms());
+    }
+}
+
+void Renderer::State::set_refinement_clock() {
+    refinement_clock_.round += std::exchange(refine_, false) ? 1 : 0;
+    if (frame_.refinement_clock) {
+        runtime_.set(*frame_.refinement_clock, refinement_clock_);
+    }
+}
+
+void Renderer::State::invalidate() {
+    runtime_.invalidate();
+    ++epoch_;
+    world_ = nullptr;
+}
+
+void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {
+    for (const gl::FrameTime& time : times) {
+        // A frame that threw has GPU times but no report.
+        if (pending_.empty() || pending_.front().report.index != time.frame) {
+            continue;
+        }
+        PendingFrame frame = std::move(pending_.front());
+        pending_.pop_front();
+        frame.report.gpu_ms = time.ms;
+        for (const gl::PassTime& pass : time.passes) {
+            frame.report.passes[pass.pass].gpu_ms = pass.ms;
+        }
+        learn_cost(frame);
+        arrived_.push_back(std::move(frame.report));
+        if (arrived_.size() > kept_frames) {
+            arrived_.pop_front();
+        }
+    }
+}
+
+std::vector<FrameReport> Renderer::State::take_frames(bool wait) {
+    match_times(wait ? backend_.timer().finish() : backend_.timer().collect());
+    std::vector<FrameReport> frames(std::make_move_iterator(arrived_.begin()),
+                                    std::make_move_iterator(arrived_.end()));
+    arrived_.clear();
+    return frames;
+}
+
+void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
+    const gl::HostState host_state(gpu_.gl());
+    gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
+    std::vector<glm::vec4> texels;
+    texels.reserve(radiance.size());
+    for (const glm::vec3& pixel : radiance) {
+        texels.emplace_back(pixel, 1.0F);
+    }
+    texture.upload(std::as_bytes(std::span(texels)));
+    texture.bind(UNIT_RADIANCE);
+    draw_tone_mapped(gpu_, tone_map_program(gpu_), target.framebuffer, target.size, configuration_.tone_map);
+}
+
+std::string Renderer::State::describe(GraphFormat format) const {
+    const CompiledGraph& graph = *runtime_.graph();
+    switch (format) {
+        case GraphFormat::dot:
+            return describe_dot(graph);
+        case GraphFormat::json:
+            return describe_json(graph);
+        case GraphFormat::text:
+            break;
+    }
+    return describe_text(graph);
+}
+
+VplReport Renderer::State::report_vpls(const Vpls& vpls) const {
+    const VplPlan& plan = runtime_.value(vpls.plan);
+    auto placed = backend_.buffer(runtime_.object(vpls.vpls)).download<gpu::Vpl>();
+    auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
+    placed.resize(plan.vpl_count);
+    accounts.resize(vpls.points ? std::min(plan.vpl_count, 1U) : plan.paths.size());
+    const auto alive =
+        std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
+    return {.requested = configuration_.vpls.count,
+            .alive = static_cast<std::uint32_t>(alive),
+            .paths = static_cast<std::uint32_t>(plan.paths.size()),
+            .rays = count_rays(plan.paths, placed),
+            .interleave = frame_.interleave,
+            .lacking_pixels = count_lacking(),
+            .flux = sum_up(accounts)};
+}
+
+std::uint32_t Renderer::State::count_lacking() const {
+    if (!frame_.indirect) {
+        return 0;
+    }
+    return backend_.buffer(runtime_.object(frame_.indirect->lacking)).download<std::uint32_t>().at(3);
+}
+
+LightReport Renderer::State::report_lights() const {
+    const ShadowPlan& shadows = runtime_.value(frame_.shadows);
+    LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
+                       .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
+                       .shadow_views = runtime_.value(frame_.drawn_shadows).newly_drawn,
+                       .without_shadow = shadows.lights_without};
+    if (!frame_.lists) {
+        return report;
+    }
+    const LightBins& bins = runtime_.value(frame_.lists->bins);
+    auto counts = backend_.buffer(runtime_.object(frame_.lists->count)).download<std::uint32_t>();
+    counts.resize(bins.grid.cells());
+    report.global = bins.global_count;
+    report.tile_max = bins.global_count + *std::ranges::max_element(counts);
+    report.tile_mean =
+        bins.global_count + std::accumulate(counts.begin(), counts.end(), 0.0) / bins.grid.cells();
+    return report;
+}
+
+Report Renderer::State::report() {
+    Report report{.gl_renderer = device().renderer(),
+                  .triangles = runtime_.value(frame_.metrics).triangles,
+                  .vpls = std::nullopt,
+                  .refined = frame_.refinement ? runtime_.value(*frame_.refinement).set + 1 : 0,
+                  .rendered_size = rendered_size(size_, quality_),
+                  .lights = report_lights(),
+                  .memory = runtime_.memory()};
+    if (frame_.vpls && configuration_.show != Show::direct) {
+        report.vpls = report_vpls(*frame_.vpls);
+    }
+    return report;
+}
+
+}  // namespace candela

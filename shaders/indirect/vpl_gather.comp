@@ -1,0 +1,45 @@
+// Interleaved gathering: each pixel sums the light of its class's share of the VPLs (vpl_shares.glsl). A work group
+// handles a block of pixels of one class, `interleave` pixels apart, so that all its invocations loop over the same
+// VPLs; its z index is the class.
+#include "bindings.glsl"
+#include "shading/pixel_block.glsl"
+#include "surfaces/visible_surface.glsl"
+#include "indirect/vpl_light.glsl"
+#include "indirect/vpl_shares.glsl"
+
+layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
+
+uniform uint asked_before;  // VPLs of each share, in the dispatches before this one, whose sum is in the image
+uniform uint asked_now;     // at most
+
+layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D gathered;
+
+void main() {
+    uvec2 offset = uvec2(gl_WorkGroupID.z % interleave, gl_WorkGroupID.z / interleave);
+    float depth[SURFACES];
+    Surface surfaces[SURFACES];
+    vec3 irradiance[SURFACES];
+    float nearest = 0.0;
+    for (int s = 0; s < SURFACES; ++s) {
+        ivec2 at = min(int(interleave) * block_pixel(s) + ivec2(offset), ivec2(view.target_size) - 1);
+        depth[s] = texelFetch(surface_depth, at, 0).r;
+        nearest = max(nearest, depth[s]);
+        surfaces[s] = visible_surface(at, depth[s], vec3(0.0));
+        irradiance[s] = vec3(0.0);
+    }
+    uint classes = interleave * interleave;
+    uint share = share_of_class(offset);
+    uint first = share * vpl_constants.count / classes + asked_before;
+    uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + asked_now) : first;
+    for (uint i = first; i < last; ++i) {
+        Vpl vpl = vpls[vpl_order[i]];
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
+    }
+    // Multiplied by the number of classes: the estimate for all VPLs. OpenGL discards stores outside the image.
+    for (int s = 0; s < SURFACES; ++s) {
+        ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);
+        vec4 sum = depth[s] > 0.0 ? vec4(float(classes) * irradiance[s], 1.0) : vec4(0.0);
+        if (asked_before > 0u) sum.rgb += imageLoad(gathered, at).rgb;
+        imageStore(gathered, at, sum);
+    }
+}

@@ -1,0 +1,96 @@
+// Reconstructs the irradiance from all VPLs out of the gathered estimates, each of which covers one class's share:
+// first along rows, then (COLUMNS) along columns of that result. Along a line the classes repeat every `interleave`
+// pixels. Each class counts once, interpolated linearly between its two nearest pixels, as far as they lie on the same
+// surface as the pixel. Alpha: the share of the classes that were found. See theory.md, "Interpolation between
+// classes". One invocation a pixel.
+#include "bindings.glsl"
+#include "surfaces/visible_surface.glsl"
+
+layout(local_size_x = RECONSTRUCT_GROUP) in;
+
+#ifdef COLUMNS
+const ivec2 along = ivec2(0, 1);
+#else
+const ivec2 along = ivec2(1, 0);
+#endif
+
+uniform uint interleave;
+
+layout(binding = UNIT_INDIRECT) uniform sampler2D gathered;
+layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D reconstructed;
+
+const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
+const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in widths of a pixel at that depth
+
+// Tangent plane of the surface at a pixel, in clip space. Its dot product with (x, y, z, 1) in normalised device
+// coordinates is the distance from the plane in pixel widths. See theory.md, "Same surface".
+vec4 tangent_plane(Surface surface) {
+    vec4 plane = vec4(surface.normal, -dot(surface.normal, surface.position)) * view.world_from_clip;
+    return plane * (0.5 * view.target_size.y / length(view.world_from_clip[1].xyz));
+}
+
+// Irradiance of the pixel, and the share of the classes that it was interpolated from.
+vec4 reconstruct(ivec2 at) {
+    float depth = texelFetch(surface_depth, at, 0).r;
+    Surface surface = visible_surface(at, depth, vec3(0.0));
+    vec4 plane = tangent_plane(surface);
+    float step_off = dot(plane.xy, 2.0 * vec2(along) / view.target_size);  // change of that distance per pixel
+    ivec2 before = at * along;
+    ivec2 behind = (ivec2(view.target_size) - 1 - at) * along;
+    int least = -(before.x + before.y);
+    int most = behind.x + behind.y;
+
+    vec4 sum = vec4(0.0);
+    int n = int(interleave);
+    for (int offset = 0; offset < n; ++offset) {
+        vec4 value = vec4(0.0);  // of the class `offset` pixels on; rgb is weighted by alpha
+        float fitting = 0.0;
+        for (int side = 0; side < 2; ++side) {
+            int d = side == 0 ? offset : offset - n;
+            float weight = float(n - abs(d));
+            if (d < least || d > most || weight == 0.0) continue;
+            ivec2 there = at + d * along;
+            float z = texelFetch(surface_depth, there, 0).r;
+            vec3 normal = octahedral_decode(texelFetch(surface_normal, there, 0).rg);
+            float off_plane = float(d) * step_off + plane.z * (z - depth);
+            if (abs(off_plane) > SAME_PLANE || dot(normal, surface.normal) < SAME_NORMAL) continue;
+            vec4 found = texelFetch(gathered, there, 0);
+            value += weight * vec4(found.rgb * found.a, found.a);
+            fitting += weight;
+        }
+        if (fitting > 0.0) sum += value / fitting;
+    }
+    return vec4(sum.rgb / max(sum.a, 1e-6), sum.a / float(n));
+}
+
+#ifdef COLUMNS
+
+// One bit a pixel, 32 a word.
+layout(std430, binding = BINDING_LACKING_MASK) writeonly restrict buffer Mask { uint lacking_mask[]; };
+
+const float ENOUGH = 0.6;  // share of the classes; with less, vpl_fill.comp gathers VPLs for the pixel
+
+shared uint group_mask[RECONSTRUCT_GROUP / 32];
+
+void note_lacking(bool lacks) {
+    uint word = gl_LocalInvocationID.x / 32u;
+    bool first = gl_LocalInvocationID.x % 32u == 0u;
+    if (first) group_mask[word] = 0u;
+    barrier();
+    if (lacks) atomicOr(group_mask[word], 1u << (gl_LocalInvocationID.x % 32u));
+    barrier();
+    uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+    if (first) lacking_mask[group * (RECONSTRUCT_GROUP / 32) + word] = group_mask[word];
+}
+
+#endif
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    bool is_surface = at.x < int(view.target_size.x) && texelFetch(surface_depth, at, 0).r > 0.0;
+    vec4 result = is_surface ? reconstruct(at) : vec4(0.0);
+    imageStore(reconstructed, at, result);  // OpenGL discards stores outside the image
+#ifdef COLUMNS
+    note_lacking(is_surface && result.a < ENOUGH);
+#endif
+}

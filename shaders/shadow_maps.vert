@@ -1,6 +1,0 @@
-// Vertex stage of the shadow maps of opaque surfaces.
-#include "mesh.glsl"
-
-uniform mat4 clip_from_world;
-
-void main() { gl_Position = clip_from_world * vec4(world_position(instances[vertex_instance]), 1.0); }

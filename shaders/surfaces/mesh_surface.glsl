@@ -1,0 +1,26 @@
+// Fragment side of mesh_surface.vert: the surface under the fragment.
+#include "bindings.glsl"
+#include "scene/materials.glsl"
+#include "surfaces/surface.glsl"
+#include "types.glsl"
+
+layout(binding = UNIT_BASE_COLOUR) uniform sampler2D base_colour;
+
+in vec3 normal;
+in vec2 uv;
+flat in uint material_index;
+
+// Base colour (linear) and alpha. With MASKED, discards the fragment in a hole of the material's alpha mask. Without it
+// there is no discard in the program, so the GPU can reject hidden fragments by an early depth test.
+vec4 fragment_colour() {
+    vec4 colour = materials[material_index].base_colour * texture(base_colour, uv);
+#ifdef MASKED
+    if (colour.a < materials[material_index].alpha_cutoff) discard;
+#endif
+    return colour;
+}
+
+PackedSurface fragment_surface(vec3 albedo) {
+    vec3 facing = gl_FrontFacing ? normal : -normal;
+    return pack_surface(albedo, normalize(facing));
+}

@@ -1,0 +1,22 @@
+#include "surfaces/mesh.glsl"
+
+#ifdef SHADOW_MAP
+uniform mat4 clip_from_world;  // of the light's view
+#else
+#include "view/view.glsl"
+mat4 clip_from_world = view.clip_from_world;
+#endif
+
+invariant gl_Position;  // depth pre-pass and later passes must compute identical depths
+
+out vec3 normal;
+out vec2 uv;
+flat out uint material_index;
+
+void main() {
+    Instance instance = instances[vertex_instance];
+    normal = world_normal(instance);
+    uv = vertex_uv;
+    material_index = instance.material;
+    gl_Position = clip_from_world * vec4(world_position(instance), 1.0);
+}

@@ -1,0 +1,18 @@
+// Surfels: points spread evenly over the surfaces, which gather light and reflect it. Each surfel represents a cell,
+// the part of the surface around it. A cell is sampled by its cell points (types.glsl, CellPoint).
+#include "bindings.glsl"
+#include "vpls/disc.glsl"
+#include "maths.glsl"
+#include "types.glsl"
+
+uniform uint surfel_count;
+uniform uint columns;  // even; surfels that each one gathers from, every column_stride-th of them
+uniform uint column_stride;
+
+// The surfel in a column of the form-factor matrix, for the row of surfel `row`. May be surfel_count or more: no
+// surfel.
+uint surfel_of(uint row, uint column) { return column * column_stride + row % column_stride; }
+
+// Index of the word that holds the form factors of columns 2 * pair and 2 * pair + 1 of a row, as two half floats. The
+// words of neighbouring rows are adjacent, since neighbouring invocations read them together.
+uint form_factors_at(uint row, uint pair) { return pair * surfel_count + row; }

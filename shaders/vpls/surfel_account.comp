@@ -1,0 +1,57 @@
+// Sums up over all cells where the flux of the lights went: absorbed, escaped, or left after the last bounce; and
+// decides whether another bounce is worth gathering. See theory.md, "Flux account of surfels". One work group in all;
+// an invocation adds up every SURFEL_GROUP-th cell.
+#include "vpls/surfel.glsl"
+
+layout(local_size_x = SURFEL_GROUP) in;
+
+// Scale, and 1 - covered share.
+layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
+layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
+layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 bounced[]; };  // radiosity, scale
+layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccount flux[]; };
+
+uniform uint bounce;  // number of the last bounce that was gathered; 1: none yet
+
+const float LITTLE = 1e-3;  // share of the directly reflected flux; gathering stops when no more than that is left
+
+shared vec3 emitted[SURFEL_GROUP];
+shared vec3 absorbed[SURFEL_GROUP];
+shared vec3 escaped[SURFEL_GROUP];
+shared vec3 truncated[SURFEL_GROUP];
+shared vec3 reflected[SURFEL_GROUP];
+
+// Flux that a cell reflects after the last bounce, which no surfel gathers any more.
+vec3 left_over(uint id, CellLight cell) {
+    if (bounce < 2u) return cell.direct;
+    return cell.area * bounced[((bounce + 1u) % 2u) * surfel_count + id].rgb;
+}
+
+void main() {
+    if (bounce > 1u && flux[0].spent != 0u) return;
+    uint lane = gl_LocalInvocationID.x;
+    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = reflected[lane] = vec3(0.0);
+    for (uint id = lane; id < surfel_count; id += SURFEL_GROUP) {
+        CellLight cell = cells[id];
+        vec3 left = left_over(id, cell);
+        vec3 indirect = cell.area * cell.indirect;
+        emitted[lane] += cell.arriving;
+        absorbed[lane] += cell.arriving - cell.direct + (1.0 - cell.albedo) * indirect;
+        escaped[lane] += rows[id].y * (cell.direct + cell.albedo * indirect - left);
+        truncated[lane] += left;
+        reflected[lane] += cell.direct;
+    }
+    barrier();
+    if (lane > 0u) return;
+    vec3 first = vec3(0.0);
+    FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    for (uint i = 0u; i < SURFEL_GROUP; ++i) {
+        account.emitted += emitted[i];
+        account.absorbed += absorbed[i];
+        account.escaped += escaped[i];
+        account.truncated += truncated[i];
+        first += reflected[i];
+    }
+    if (all(lessThanEqual(account.truncated, LITTLE * first))) account.spent = 1u;
+    flux[0] = account;
+}

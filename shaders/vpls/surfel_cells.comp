@@ -1,0 +1,47 @@
+// Sums up the points of a cell: its flux, mean albedo, area, and the disc that its directly reflected flux comes from.
+// One invocation a surfel.
+#include "vpls/surfel.glsl"
+
+layout(local_size_x = SURFEL_GROUP) in;
+
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
+layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
+layout(std430, binding = BINDING_CELL_LIGHT) writeonly restrict buffer Cells { CellLight cells[]; };
+
+void main() {
+    uint id = gl_GlobalInvocationID.x;
+    if (id >= surfel_count) return;
+    Vpl surfel = surfels[id];
+    vec3 arriving = vec3(0.0);
+    vec3 direct = vec3(0.0);
+    vec3 albedo = vec3(0.0);
+    float area = 0.0;
+    float weight = 0.0;
+    vec3 first = vec3(0.0);   // first and second moments of the flux's position relative to the surfel
+    float second = 0.0;
+    for (uint i = 0u; i < surfel.point_count; ++i) {
+        DirectPoint point = direct_points[surfel.first_point + i];
+        vec3 flux = point.albedo * point.arriving;
+        arriving += point.arriving;
+        direct += flux;
+        albedo += point.area * point.albedo;
+        area += point.area;
+        float w = dot(flux, vec3(1.0));
+        vec3 off = cell_points[surfel.first_point + i].position - surfel.position;
+        weight += w;
+        first += w * off;
+        second += w * dot(off, off);
+    }
+    CellLight cell = CellLight(surfel.position, surfel.radius2, arriving, 0.0, direct, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
+    if (area > 0.0) cell.albedo = albedo / area;
+    if (weight > 0.0) {
+        vec3 mean = first / weight;
+        cell.centre += mean;
+        // h² = 6 · variance + area / points: a square of side h has variance h² / 6, and each point represents an equal
+        // share of the cell. The disc has the square's area. See theory.md, "Width of a lit cell".
+        float side2 = 6.0 * max(second / weight - dot(mean, mean), 0.0) + surfel.area / float(surfel.point_count);
+        cell.radius2 = min(side2, surfel.area) / PI;
+    }
+    cells[id] = cell;
+}

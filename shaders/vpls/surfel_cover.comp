@@ -1,0 +1,42 @@
+// Finds which share of a surfel's hemisphere is covered by reflecting surfaces, with COVER_PARTS · COVER_RAYS
+// cosine-weighted rays. The form factors of the surfel's row should add up to it. One work group a surfel, COVER_RAYS
+// rays an invocation, which bounds its loops.
+#include "scene/bvh.glsl"
+#include "scene/changed_boxes.glsl"
+#include "sampling.glsl"
+#include "vpls/surfel.glsl"
+
+layout(local_size_x = COVER_PARTS) in;
+
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_COVER) writeonly restrict buffer Cover { uint cover[]; };
+
+uniform float ray_offset;  // metres above the surface, where rays start
+
+bool reflects(Hit hit, vec3 direction) {
+    if (hit.triangle == NO_TRIANGLE) return false;
+    TraceTriangle triangle = triangles[hit.triangle];
+    return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
+}
+
+vec3 ray_direction(Vpl surfel, uint id, uint i) {
+    return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, id));
+}
+
+void main() {
+    uint id = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+    if (id >= surfel_count) return;
+    Vpl surfel = surfels[id];
+    bool changed = false;
+    for (uint i = 0u; i < COVER_RAYS && !changed; ++i) {
+        changed = may_have_changed(surfel.position, ray_direction(surfel, id, i), 1.0 / 0.0);
+    }
+    if (!changed) return;
+    uint hits = 0u;
+    for (uint i = 0u; i < COVER_RAYS; ++i) {
+        vec3 direction = ray_direction(surfel, id, i);
+        Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
+        if (reflects(hit, direction)) ++hits;
+    }
+    cover[id * COVER_PARTS + gl_LocalInvocationID.x] = hits;
+}

@@ -1,0 +1,39 @@
+// Turns surfels into VPLs: each has the total flux that its cell reflects, and the position and width of the part of
+// the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
+#include "vpls/surfel.glsl"
+
+layout(local_size_x = SURFEL_GROUP) in;
+
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_VPLS) writeonly restrict buffer Vpls { Vpl vpls[]; };
+layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
+layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
+layout(std430, binding = BINDING_LIT_POINTS) writeonly restrict buffer LitPoints { LitPoint lit_points[]; };
+layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
+
+void main() {
+    uint id = gl_GlobalInvocationID.x;
+    if (id >= surfel_count) return;
+    Vpl vpl = surfels[id];
+    CellLight cell = cells[id];
+    for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {
+        CellPoint point = cell_points[i];
+        DirectPoint direct = direct_points[i];
+        vec3 flux = direct.albedo * (direct.arriving + direct.area * cell.indirect);
+        lit_points[i] = LitPoint(point.position, point.area, point.normal, 0.0, flux, 0.0);
+    }
+    vec3 spread = cell.area * cell.albedo * cell.indirect;
+    float direct_weight = dot(cell.direct, vec3(1.0));
+    float spread_weight = dot(spread, vec3(1.0));
+    if (direct_weight + spread_weight > 0.0) {
+        float share = direct_weight / (direct_weight + spread_weight);
+        vec3 apart = cell.centre - vpl.position;
+        vpl.position += share * apart;
+        // One disc in place of two, with the variance of both about their common mean. See theory.md, "Width of a lit
+        // cell".
+        float between = share * (1.0 - share) * dot(apart, apart) * 6.0 / PI;
+        vpl.radius2 = min(mix(vpl.radius2, cell.radius2, share) + between, vpl.radius2);
+    }
+    vpl.flux = cell.direct + spread;
+    vpls[id] = vpl;
+}
