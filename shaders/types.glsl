@@ -1,13 +1,20 @@
-// Structs shared with the CPU; their C++ counterparts are in renderer/gpu_types.hpp. Layout std430, those of uniform
-// blocks also std140. A test compares every offset and stride with what the driver reports.
+// Structs shared by the shaders and the CPU: renderer/gpu_types.hpp includes this file as C++. Layout std430, those of
+// uniform blocks also std140. A test compares every offset and stride with what the driver reports.
 // Flux is in lm or W, irradiance in lux or W/m², depending on the unit of the lights.
+
+// Values of members that C++ may leave out of an initialiser.
+#ifdef __cplusplus
+#define DEFAULT(value) = value
+#else
+#define DEFAULT(value)
+#endif
 
 struct Instance {
     vec4 world[3];  // rows of the local-to-world matrix
     uint material;
-    uint pad0;
-    uint pad1;
-    uint pad2;
+    uint pad0 DEFAULT(0u);
+    uint pad1 DEFAULT(0u);
+    uint pad2 DEFAULT(0u);
 };
 
 struct Material {
@@ -17,15 +24,19 @@ struct Material {
     uint texel_height;
     uint flags;           // MATERIAL_*
     float alpha_cutoff;   // alpha below it is a hole; 0: no holes
-    float pad0;
-    float pad1;
-    float pad2;
+    float pad0 DEFAULT(0.0);
+    float pad1 DEFAULT(0.0);
+    float pad2 DEFAULT(0.0);
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u
 #define MATERIAL_WRAP_U_SHIFT 1u
 #define MATERIAL_WRAP_V_SHIFT 3u
 #define MATERIAL_WRAP_MASK 3u
+
+#define LIGHT_POINT 0u
+#define LIGHT_SPOT 1u
+#define LIGHT_DIRECTIONAL 2u
 
 struct Light {
     vec3 position;   // metres; directional: centre of the footprint, a rectangle outside the scene that rays start on
@@ -42,14 +53,14 @@ struct Light {
 // What all lights have in common. A uniform block: shaders/lights/light_list.glsl.
 struct LightConstants {
     uint count;  // of lights
-    uint pad0;
-    uint pad1;
-    uint pad2;
+    uint pad0 DEFAULT(0u);
+    uint pad1 DEFAULT(0u);
+    uint pad2 DEFAULT(0u);
 };
 
-#define LIGHT_POINT 0u
-#define LIGHT_SPOT 1u
-#define LIGHT_DIRECTIONAL 2u
+#define SHADOW_CUBE 0u
+#define SHADOW_PERSPECTIVE 1u
+#define SHADOW_ORTHOGRAPHIC 2u
 
 struct Shadow {
     mat4 from_world;  // to clip space; unused by cubes
@@ -58,12 +69,8 @@ struct Shadow {
     float near_plane; // metres, of perspective maps
     uint layer;       // of the map array, or cube of the cube array
     uint kind;        // SHADOW_*
-    uint pad0;
+    uint pad0 DEFAULT(0u);
 };
-
-#define SHADOW_CUBE 0u
-#define SHADOW_PERSPECTIVE 1u
-#define SHADOW_ORTHOGRAPHIC 2u
 
 // The camera's view of the current frame. A uniform block: shaders/view/view.glsl.
 struct ViewConstants {
@@ -75,9 +82,9 @@ struct ViewConstants {
     vec2 ray_shift;
     vec2 depth_terms;    // a and b of window depth = a·z + b (orthographic), -a + b / depth (perspective)
     uint orthographic;   // 1: orthographic, 0: perspective
-    uint pad0;
-    uint pad1;
-    uint pad2;
+    uint pad0 DEFAULT(0u);
+    uint pad1 DEFAULT(0u);
+    uint pad2 DEFAULT(0u);
 };
 
 // The grid of cells that the view is divided into; see CellGrid in renderer/passes/lights/light_bins.hpp. A uniform block:
@@ -96,7 +103,7 @@ struct TileDepth {
     float nearest;   // metres; greater than `farthest` if there is no surface
     float farthest;
     uint mask;       // bits of those of the 32 slices between the two that have surfaces
-    uint pad0;
+    uint pad0 DEFAULT(0u);
 };
 
 // A VPL or a surfel. Members "of surfels" are unused in traced VPLs, and the reverse.
@@ -112,7 +119,7 @@ struct Vpl {
     vec3 edges_down;   // 1/m, along -x, -y, -z; of traced VPLs
     float area;        // m², of its cell; of surfels
     vec3 map_origin;   // metres, on the surface; its depth map is seen from ray_offset above it
-    float pad0;
+    float pad0 DEFAULT(0.0);
 };
 
 // A sample point of a surfel's cell; represents a part of the surface.
@@ -123,7 +130,7 @@ struct CellPoint {
     float area;     // m²
     vec2 uv;
     uint surfel;    // index of the surfel whose cell it belongs to
-    uint pad0;
+    uint pad0 DEFAULT(0u);
 };
 
 // Light that a cell point receives from the lights.
@@ -131,7 +138,7 @@ struct DirectPoint {
     vec3 arriving;  // flux
     float area;     // m²; 0: in a hole of a mask, or hidden from its surfel
     vec3 albedo;    // linear
-    float pad0;
+    float pad0 DEFAULT(0.0);
 };
 
 // A cell point with all the light that it reflects.
@@ -139,9 +146,9 @@ struct LitPoint {
     vec3 position;  // metres
     float area;     // m²
     vec3 normal;    // unit
-    float pad0;
+    float pad0 DEFAULT(0.0);
     vec3 flux;      // reflected, direct and indirect
-    float pad1;
+    float pad1 DEFAULT(0.0);
 };
 
 // Light of a surfel's cell as a whole, from the lights and from other surfels.
@@ -149,13 +156,13 @@ struct CellLight {
     vec3 centre;    // metres: mean position of the reflected flux of the lights
     float radius2;  // m², squared radius of the disc that this flux comes from
     vec3 arriving;  // flux of the lights
-    float pad2;
+    float pad2 DEFAULT(0.0);
     vec3 direct;    // the part of `arriving` that it reflects
-    float pad0;
+    float pad0 DEFAULT(0.0);
     vec3 albedo;    // mean over the area of its points
     float area;     // m², of its points that have an area
     vec3 indirect;  // irradiance from the other surfels, sum over all bounces
-    float pad1;
+    float pad1 DEFAULT(0.0);
 };
 
 // Constants that all VPLs share. A uniform block: shaders/vpls/vpl_constants.glsl.
@@ -170,12 +177,14 @@ struct VplConstants {
     float map_inverse_reach;  // 1/m, inverse of the distance at which map depth is 0
 };
 
+#ifndef __cplusplus  // C++ has it in engine/bvh/bvh.hpp
 struct BvhNode {
     vec3 lower;
     uint first;
     vec3 upper;
     uint count;
 };
+#endif
 
 struct TraceTriangle {
     vec3 a;
@@ -187,7 +196,8 @@ struct TraceTriangle {
     vec2 uv_a;
     vec2 uv_b;
     vec2 uv_c;
-    vec2 pad1;
+    float pad1 DEFAULT(0.0);
+    float pad2 DEFAULT(0.0);
 };
 
 struct Path {
@@ -204,9 +214,9 @@ struct VplRecord {
     vec3 position;    // metres; escaped: where the segment began
     uint state;       // VPL_*
     vec3 normal;      // unit; escaped: the segment's direction
-    float pad0;
+    float pad0 DEFAULT(0.0);
     vec3 throughput;  // product of the albedos so far, this bounce's included
-    float pad1;
+    float pad1 DEFAULT(0.0);
 };
 
 #define VPL_PLACED 0u
@@ -218,11 +228,11 @@ struct FluxAccount {
     vec3 emitted;  // of surfels: flux of the lights that arrives at the cells
     uint spent;  // of surfels: 1 if too little flux is left for another bounce
     vec3 absorbed;
-    float pad1;
+    float pad1 DEFAULT(0.0);
     vec3 escaped;
-    float pad2;
+    float pad2 DEFAULT(0.0);
     vec3 truncated;
-    float pad3;
+    float pad3 DEFAULT(0.0);
     vec3 roulette;  // lost where the path was ended early, minus what higher weights added where it went on
-    float pad4;
+    float pad4 DEFAULT(0.0);
 };

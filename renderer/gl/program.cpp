@@ -58,11 +58,30 @@ class Shader {
     GLuint name_;
 };
 
+/// Adds the names of the uniforms outside of blocks that a shader declares, whether or not a variant uses
+/// them: "uniform TYPE a, b[2];".
+void add_declared_uniforms(std::string_view text, std::set<std::string>& names) {
+    constexpr std::string_view keyword = "uniform ";
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    for (auto at = text.find(keyword); at != std::string_view::npos; at = text.find(keyword, at + 1)) {
+        std::string_view rest = text.substr(at + keyword.size());
+        rest = rest.substr(0, rest.find_first_of(";{"));
+        rest.remove_prefix(std::min(rest.find(' '), rest.size()));  // the type
+        while (rest.find_first_of(letters) != std::string_view::npos) {
+            rest.remove_prefix(rest.find_first_of(letters));
+            names.emplace(rest.substr(0, rest.find_first_not_of(letters)));
+            rest.remove_prefix(std::min(rest.find(','), rest.size()));
+        }
+    }
+}
+
 }  // namespace
 
-Program::Program(Device& device, std::string_view label, std::span<const GLuint> shaders)
-    : Object(device, ObjectKind::program, device.gl().CreateProgram(), label) {
+Program::Program(Device& device, std::string_view label, std::span<const GLuint> shaders,
+                 const std::set<std::string>& declared)
+    : Object(device, ObjectKind::program, device.gl().CreateProgram(), label), label_(label) {
     link(label, shaders);
+    for (const std::string& uniform : declared) locations_.emplace(uniform, -1);
     find_uniforms();
 }
 
@@ -90,7 +109,7 @@ void Program::find_uniforms() {
         const GLint location = gl().GetProgramResourceLocation(name(), GL_UNIFORM, uniform.c_str());
         if (location < 0) continue;  // a member of a uniform block
         if (uniform.ends_with("[0]")) uniform.resize(uniform.size() - 3);
-        locations_.emplace(std::move(uniform), location);
+        locations_[std::move(uniform)] = location;
     }
 }
 
@@ -100,7 +119,13 @@ void Program::use() const {
 
 GLint Program::location(std::string_view uniform) const {
     const auto found = locations_.find(uniform);
-    return found == locations_.end() ? -1 : found->second;
+    if (found == locations_.end()) throw ProgramError(fmt::format("{}: no uniform '{}'", label_, uniform));
+    return found->second;
+}
+
+bool Program::has(std::string_view uniform) const {
+    const auto found = locations_.find(uniform);
+    return found != locations_.end() && found->second >= 0;
 }
 
 void Program::set(std::string_view uniform, bool value) const {
@@ -161,9 +186,11 @@ Program compile(Device& device, const ShaderLibrary& library, const std::vector<
                 const std::vector<Define>& defines) {
     std::vector<std::unique_ptr<const Shader>> shaders;
     std::vector<GLuint> names;
+    std::set<std::string> uniforms;
     for (const std::string& stage : stages) {
         const GLenum kind = stage_of(stage);
         const ShaderSource source = assemble(library, stage, defines);
+        add_declared_uniforms(source.text, uniforms);
         shaders.push_back(std::make_unique<const Shader>(device.gl(), kind, source));
         names.push_back(shaders.back()->name());
         if (const auto log = shaders.back()->failure()) {
@@ -171,7 +198,7 @@ Program compile(Device& device, const ShaderLibrary& library, const std::vector<
                 fmt::format("shaders/{} does not compile:\n{}", stage, map_log(*log, source.files)));
         }
     }
-    return Program(device, fmt::format("{}", fmt::join(stages, " and ")), names);
+    return Program(device, fmt::format("{}", fmt::join(stages, " and ")), names, uniforms);
 }
 
 }  // namespace candela::gl

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,20 +19,22 @@
 
 namespace candela::gl {
 
-/// A linked program. Uniforms are set by name, whether or not the program is in use. Names without an active
-/// uniform are ignored, because drivers remove uniforms that a variant does not use. An array is set by its
-/// name without "[0]", starting with its first element.
+/// A linked program. Uniforms are set by name, whether or not the program is in use. An array is set by its
+/// name without "[0]", starting with its first element. Setting a uniform that no shader file declares throws
+/// ProgramError. One that is declared but not active is ignored, because drivers remove uniforms that a
+/// variant does not use.
 class Program : public Object {
  public:
     Program() = default;
-    /// Links compiled shaders; the caller keeps their ownership. Throws ProgramError with the linker's
-    /// messages.
-    Program(Device& device, std::string_view label, std::span<const GLuint> shaders);
+    /// Links compiled shaders; the caller keeps their ownership. `declared`: the uniforms that the shader
+    /// files declare. Throws ProgramError with the linker's messages.
+    Program(Device& device, std::string_view label, std::span<const GLuint> shaders,
+            const std::set<std::string>& declared);
 
     void use() const;
 
     /// Whether `uniform` is an active uniform outside of uniform blocks.
-    [[nodiscard]] bool has(std::string_view uniform) const { return locations_.contains(uniform); }
+    [[nodiscard]] bool has(std::string_view uniform) const;
 
     void set(std::string_view uniform, bool value) const;
     void set(std::string_view uniform, int value) const;
@@ -54,10 +57,11 @@ class Program : public Object {
  private:
     void link(std::string_view label, std::span<const GLuint> shaders) const;
     void find_uniforms();
-    /// -1, which OpenGL ignores, for names without an active uniform.
+    /// -1, which OpenGL ignores, for uniforms that are not active.
     [[nodiscard]] GLint location(std::string_view uniform) const;
 
-    std::map<std::string, GLint, std::less<>> locations_;
+    std::string label_;
+    std::map<std::string, GLint, std::less<>> locations_;  // -1: declared, but not active
 };
 
 /// Compiles and links shader files. The file extension gives the stage: .vert, .frag, .geom or .comp.

@@ -19,7 +19,7 @@ struct Member {
     std::size_t offset;
 };
 
-/// The layout of the C++ counterpart of a struct in shaders/types.glsl.
+/// The layout that C++ gives a struct of shaders/types.glsl.
 struct Layout {
     std::string name;
     std::size_t stride;
@@ -112,7 +112,7 @@ const std::vector<Layout>& layouts() {
          {MEMBER(TraceTriangle, a), MEMBER(TraceTriangle, material), MEMBER(TraceTriangle, edge_ab),
           MEMBER(TraceTriangle, id), MEMBER(TraceTriangle, edge_ac), MEMBER(TraceTriangle, masked),
           MEMBER(TraceTriangle, uv_a), MEMBER(TraceTriangle, uv_b), MEMBER(TraceTriangle, uv_c),
-          MEMBER(TraceTriangle, pad1)}},
+          MEMBER(TraceTriangle, pad1), MEMBER(TraceTriangle, pad2)}},
         {"Path",
          sizeof(gpu::Path),
          {MEMBER(Path, flux), MEMBER(Path, light), MEMBER(Path, index), MEMBER(Path, seed),

@@ -39,12 +39,20 @@ class Random {
     std::mt19937 engine_;
 };
 
+gpu::Light point_at(glm::vec3 position, float range) {
+    gpu::Light light{};
+    light.position = position;
+    light.kind = LIGHT_POINT;
+    light.range = range;
+    return light;
+}
+
 LightTable::Entry random_light(Random& random) {
-    gpu::Light light{.position = random.vector(10.0F), .range = std::pow(10.0F, random.number(-3.0F, 1.5F))};
+    gpu::Light light = point_at(random.vector(10.0F), std::pow(10.0F, random.number(-3.0F, 1.5F)));
     const int kind = random.integer(0, 9);
     if (kind >= 5) {
         const float outer = random.number(0.01F, 1.5707F);
-        light.kind = gpu::LightKind::spot;
+        light.kind = LIGHT_SPOT;
         light.direction = random.direction();
         light.cos_outer = std::cos(outer);
     } else if (kind == 0) {
@@ -78,7 +86,7 @@ CameraView random_view(Random& random, glm::uvec2 size) {
 glm::vec3 lit_point(Random& random, const gpu::Light& light) {
     const float reach = std::isinf(light.range) ? 20.0F : light.range;
     const float distance = reach * (random.integer(0, 1) == 0 ? 0.9999F : random.number(0.0F, 1.0F));
-    const float cosine = light.kind == gpu::LightKind::spot ? std::min(light.cos_outer + 1e-5F, 1.0F) : -1.0F;
+    const float cosine = light.kind == LIGHT_SPOT ? std::min(light.cos_outer + 1e-5F, 1.0F) : -1.0F;
     return light.position + distance * random.around(light.direction, cosine);
 }
 
@@ -185,7 +193,7 @@ TEST_SUITE("light bins") {
         const glm::uvec2 size(640, 480);
         const CameraView view =
             make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), {.camera = {}, .size = size});
-        const LightTable lights{{{.entity = {}, .light = {.position = {0.4F, 0.3F, -10.0F}, .range = 0.1F}}}};
+        const LightTable lights{{{.entity = {}, .light = point_at({0.4F, 0.3F, -10.0F}, 0.1F)}}};
         const LightBins tiles = bin_lights(lights, view, tile_grid(size, {}));
         // 0.2 m at a distance of 10 m are 9 of 480 pixels; with a margin of one pixel that is at most 2 × 2
         // tiles.
@@ -200,8 +208,8 @@ TEST_SUITE("light bins") {
     TEST_CASE("lights behind the eye are in no list") {
         const glm::uvec2 size(64, 64);
         const CameraView view = make_view({}, glm::mat4(1.0F), {.camera = {}, .size = size});
-        const LightTable lights{{{.entity = {}, .light = {.position = {0, 0, 1.0F}, .range = 0.99F}},
-                                 {.entity = {}, .light = {.position = {3.0F, 0, 9.0F}, .range = 5.0F}}}};
+        const LightTable lights{{{.entity = {}, .light = point_at({0, 0, 1.0F}, 0.99F)},
+                                 {.entity = {}, .light = point_at({3.0F, 0, 9.0F}, 5.0F)}}};
         CHECK(bin_lights(lights, view, tile_grid(size, {})).entries.empty());
         CHECK(bin_lights(lights, view, cluster_grid(size, {}, 0.1F, 10.0F)).entries.empty());
     }
@@ -214,8 +222,8 @@ TEST_SUITE("light bins") {
         Random random(3);
         LightTable lights;
         for (int i = 0; i < 1500; ++i) {
-            const gpu::Light light{.position = {random.number(-2, 2), random.number(-2, 2), -4.0F},
-                                   .range = random.number(0.1F, 1.5F)};
+            const gpu::Light light =
+                point_at({random.number(-2, 2), random.number(-2, 2), -4.0F}, random.number(0.1F, 1.5F));
             lights.entries.push_back({.entity = {}, .light = light});
         }
         const LightBins bins = bin_lights(lights, view, grid);

@@ -19,7 +19,7 @@ struct Reach {
 Reach reach_of(const gpu::Light& light, const CameraView& view) {
     glm::vec3 centre = light.position;
     float radius = light.range;
-    if (light.kind == gpu::LightKind::spot && light.cos_outer > std::sqrt(0.5F)) {
+    if (light.kind == LIGHT_SPOT && light.cos_outer > std::sqrt(0.5F)) {
         radius = light.range / (2.0F * light.cos_outer);
         centre += light.direction * radius;
     }

@@ -124,7 +124,9 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const
                              .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
         pass.run([=, &gpu, &program](Execution& run) {
             run.reserve(out.count, run.value(bins.bins).grid.cells());
-            program.set("has_depth", depths.has_value());
+            if (kind == LightList::tile) {
+                program.set("has_depth", depths.has_value());
+            }
             dispatch_culling(gpu.gl(), program, run.value(bins.bins));
         });
         return out;

@@ -29,13 +29,20 @@ glm::vec3 direction_of(const glm::mat4& world) {
     return length > 0.0F ? -axis / length : glm::vec3(0.0F, 0.0F, -1.0F);
 }
 
+constexpr int no_shadow = -1;  // add_light_upload sets the index
+
 LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm::mat4& world) {
     const glm::vec3 intensity = light.colour * light.intensity;
     return {.entity = entity,
             .light = {.position = position_of(world),
-                      .kind = gpu::LightKind::point,
+                      .kind = LIGHT_POINT,
+                      .direction = glm::vec3(0.0F),
                       .range = light.range,
-                      .intensity = intensity},
+                      .intensity = intensity,
+                      .shadow = no_shadow,
+                      .shape = glm::vec2(0.0F),
+                      .cos_inner = 0.0F,
+                      .cos_outer = 0.0F},
             .flux = intensity * (2.0F * hemisphere),
             .casts_shadow = light.casts_shadow};
 }
@@ -52,10 +59,11 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
     const glm::vec3 intensity = light.colour * light.intensity;
     return {.entity = entity,
             .light = {.position = position_of(world),
-                      .kind = gpu::LightKind::spot,
+                      .kind = LIGHT_SPOT,
                       .direction = direction_of(world),
                       .range = light.range,
                       .intensity = intensity,
+                      .shadow = no_shadow,
                       .shape = {1.0F / ramp, -cos_outer / ramp},
                       .cos_inner = cos_inner,
                       .cos_outer = cos_outer},
@@ -76,11 +84,14 @@ LightTable::Entry directional_entry(Entity entity, const DirectionalLight& light
     return {.entity = entity,
             // One percent of slack, so that the scene's foremost points do not lie in the footprint.
             .light = {.position = metrics.centre() - direction * (1.01F * half_extent(direction)),
-                      .kind = gpu::LightKind::directional,
+                      .kind = LIGHT_DIRECTIONAL,
                       .direction = direction,
                       .range = std::numeric_limits<float>::infinity(),
                       .intensity = illuminance,
-                      .shape = shape},
+                      .shadow = no_shadow,
+                      .shape = shape,
+                      .cos_inner = 0.0F,
+                      .cos_outer = 0.0F},
             .flux = illuminance * (4.0F * shape.x * shape.y),
             .casts_shadow = light.casts_shadow};
 }

@@ -63,15 +63,16 @@ const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
                                           {{0, 0, -1}, {0, -1, 0}}}};
 
 bool needs_cube(const gpu::Light& light) {
-    return light.kind == gpu::LightKind::point ||
-           (light.kind == gpu::LightKind::spot && light.cos_outer < std::cos(widest_map));
+    return light.kind == LIGHT_POINT || (light.kind == LIGHT_SPOT && light.cos_outer < std::cos(widest_map));
 }
 
 void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::uint32_t resolution) {
-    plan.shadows.push_back({.texel = 2.0F / static_cast<float>(resolution),
+    plan.shadows.push_back({.from_world = glm::mat4(1.0F),
+                            .axis = glm::vec3(0.0F),
+                            .texel = 2.0F / static_cast<float>(resolution),
                             .near_plane = near_plane,
                             .layer = plan.cubes,
-                            .kind = gpu::ShadowKind::cube});
+                            .kind = SHADOW_CUBE});
     const glm::mat4 projection = reversed_perspective(1.0F, near_plane);
     for (std::uint32_t face = 0; face < cube_faces; ++face) {
         const glm::mat4 view = look_along(light.position, faces[face].direction, faces[face].up);
@@ -86,10 +87,15 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metr
     const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
     const glm::mat4 view =
         look_along(light.position, light.direction, basis_around(light.direction).bitangent);
-    gpu::Shadow shadow{.axis = light.direction, .near_plane = near_plane, .layer = plan.maps};
-    if (light.kind == gpu::LightKind::spot) {
+    gpu::Shadow shadow{.from_world = glm::mat4(1.0F),
+                       .axis = light.direction,
+                       .texel = 0.0F,
+                       .near_plane = near_plane,
+                       .layer = plan.maps,
+                       .kind = SHADOW_PERSPECTIVE};
+    if (light.kind == LIGHT_SPOT) {
         const float tangent = margin * std::tan(std::acos(light.cos_outer));
-        shadow.kind = gpu::ShadowKind::perspective;
+        shadow.kind = SHADOW_PERSPECTIVE;
         shadow.texel = 2.0F * tangent / texels;
         shadow.from_world = reversed_perspective(tangent, near_plane) * view;
     } else {
@@ -97,7 +103,7 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metr
         // The light is in front of the scene; the map reaches as far behind its centre.
         const float depth = std::max(2.0F * glm::length(metrics.centre() - light.position), near_plane);
         // look_along's x axis is cross(direction, up) = ± tangent; its extent is that of the tangent.
-        shadow.kind = gpu::ShadowKind::orthographic;
+        shadow.kind = SHADOW_ORTHOGRAPHIC;
         shadow.texel = 2.0F * std::max(half.x, half.y) / texels;
         shadow.from_world = reversed_orthographic(half, depth) * view;
     }

@@ -66,10 +66,10 @@ std::uint32_t pack(const glm::u8vec4& texel) {
 }
 
 std::uint32_t material_flags(const Material& material) {
-    std::uint32_t flags = material.double_sided ? gpu::double_sided : 0U;
+    std::uint32_t flags = material.double_sided ? MATERIAL_DOUBLE_SIDED : 0U;
     if (const Image* image = material.base_colour_texture.get()) {
-        flags |= static_cast<std::uint32_t>(image->wrap_u) << gpu::wrap_u_shift;
-        flags |= static_cast<std::uint32_t>(image->wrap_v) << gpu::wrap_v_shift;
+        flags |= static_cast<std::uint32_t>(image->wrap_u) << MATERIAL_WRAP_U_SHIFT;
+        flags |= static_cast<std::uint32_t>(image->wrap_v) << MATERIAL_WRAP_V_SHIFT;
     }
     return flags;
 }

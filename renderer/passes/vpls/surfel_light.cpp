@@ -218,9 +218,10 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
                 return;
             }
             for (const gl::Program* tracer : {&factors, &cover, &seer}) {
-                tracer->set("ray_offset", now.ray_offset);
                 set_changed_boxes(*tracer, changed, 4.0F * now.ray_offset);
             }
+            factors.set("ray_offset", now.ray_offset);
+            cover.set("ray_offset", now.ray_offset);
             find_form_factors(gpu.gl(), factors, count);
             find_cover(gpu.gl(), cover, count);
             scale_rows(gpu.gl(), rows, count);

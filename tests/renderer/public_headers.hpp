@@ -1,0 +1,15 @@
+#pragma once
+
+// All public headers.
+
+#include <candela/configuration.hpp>
+#include <candela/ecs/world.hpp>
+#include <candela/gl_error.hpp>
+#include <candela/graph/compile.hpp>
+#include <candela/graph/describe.hpp>
+#include <candela/graph/execute.hpp>
+#include <candela/headless_context.hpp>
+#include <candela/renderer.hpp>
+#include <candela/scene/components.hpp>
+#include <candela/scene/gltf.hpp>
+#include <candela/scene/hierarchy.hpp>

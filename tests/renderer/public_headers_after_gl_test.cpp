@@ -1,0 +1,14 @@
+// clang-format off
+#include "tests/renderer/gl_headers_of_hosts.hpp"
+#include "tests/renderer/public_headers.hpp"
+// clang-format on
+
+#include <doctest/doctest.h>
+
+TEST_SUITE("public headers") {
+    TEST_CASE("a host's GL types and those of the API go together") {
+        const GLuint framebuffer = 3;
+        const candela::Target target{.framebuffer = framebuffer, .size = {4, 2}};
+        CHECK(target.framebuffer == framebuffer);
+    }
+}
