@@ -1,6 +1,7 @@
 // Culls the light list of a cell in place: lights that reach the cell are kept, in their order. One invocation a cell.
 #include "bindings.glsl"
 #include "lights/light_cells.glsl"
+#include "lights/lights.glsl"
 #include "types.glsl"
 #include "view/view.glsl"
 
@@ -81,9 +82,10 @@ bool reaches(Light light, Cell cell) {
     Bounds box = box_between(cell, nearest, farthest);
     vec3 gap = max(abs(centre - box.centre) - box.half_extent * 1.0001, 0.0);
     if (dot(gap, gap) > radius * radius) return false;
-    if (light.kind != LIGHT_SPOT) return true;
+    float cos_cone = bounding_cone(light);
+    if (cos_cone <= -1.0) return true;
     vec3 axis = mat3(view.view_from_world) * light.direction;
-    return !outside_cone(box, centre, axis, light.cos_outer - 1e-4);
+    return !outside_cone(box, centre, axis, cos_cone);
 }
 
 uniform uint culled_before;  // entries of each list, in the dispatches before this one

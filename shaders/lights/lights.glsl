@@ -1,31 +1,32 @@
-// Light that a punctual light sends to a point. Used by shading, by the tracing of VPLs and by surfels.
-#include "maths.glsl"
-#include "types.glsl"
+// The kinds of lights, for shading, for the tracing of VPLs, for surfels and for culling.
+#include "lights/directional_light.glsl"
+#include "lights/point_light.glsl"
+#include "lights/spot_light.glsl"
 
-// KHR_lights_punctual: 1 near the light, 0 from `range` on.
-float range_window(float distance, float range) {
-    float x = distance / range;
-    return clamp(1.0 - x * x * x * x, 0.0, 1.0);
-}
-
-// KHR_lights_punctual: 1 inside the inner cone, 0 outside the outer one.
-float cone_falloff(Light light, float cos_angle) {
-    float x = clamp(cos_angle * light.shape.x + light.shape.y, 0.0, 1.0);
-    return x * x;
-}
-
-struct Incident {
-    vec3 direction;   // unit, towards the light
-    vec3 irradiance;  // on a surface that faces the light, unoccluded; lux or W/m²
-};
-
+// Light that a light sends to a point.
 Incident incident_light(Light light, vec3 position) {
-    if (light.kind == LIGHT_DIRECTIONAL) return Incident(-light.direction, light.intensity);
-    vec3 to_light = light.position - position;
-    float distance2 = max(dot(to_light, to_light), 1e-12);
-    float distance = sqrt(distance2);
-    vec3 direction = to_light / distance;
-    vec3 irradiance = light.intensity * (range_window(distance, light.range) / distance2);
-    if (light.kind == LIGHT_SPOT) irradiance *= cone_falloff(light, -dot(direction, light.direction));
-    return Incident(direction, irradiance);
+    if (light.kind == LIGHT_DIRECTIONAL) return incident_from_directional(light);
+    Incident incident = incident_from_point(light, position);
+    if (light.kind == LIGHT_SPOT) incident.irradiance *= cone_falloff(light, incident.direction);
+    return incident;
 }
+
+// The ray for `u` in [0, 1)². Each ray of a light carries the same flux.
+Emission sample_emission(Light light, vec2 u) {
+    if (light.kind == LIGHT_DIRECTIONAL) return emission_of_directional(light, u);
+    if (light.kind == LIGHT_SPOT) return emission_of_spot(light, u);
+    return emission_of_point(light, u);
+}
+
+// Distance to the light, metres.
+float distance_to(Light light, vec3 position) {
+    return light.kind == LIGHT_DIRECTIONAL ? 1.0 / 0.0 : length(light.position - position);
+}
+
+// Share of the light that its range lets through to a point.
+float share_in_range(Light light, vec3 position) {
+    return light.kind == LIGHT_DIRECTIONAL ? 1.0 : range_window(distance(light.position, position), light.range);
+}
+
+// Cosine of the half angle of a cone around the light's direction that contains its light; -1: everywhere.
+float bounding_cone(Light light) { return light.kind == LIGHT_SPOT ? cone_of_spot(light) : -1.0; }

@@ -20,8 +20,7 @@ uniform uint lights_now;     // at most
 uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
 
 bool is_hidden(Light light, vec3 origin, vec3 direction) {
-    float distance = light.kind == LIGHT_DIRECTIONAL ? 1.0 / 0.0 : length(light.position - origin) - ray_offset;
-    return any_hit(origin, direction, 0.0, distance);
+    return any_hit(origin, direction, 0.0, distance_to(light, origin) - ray_offset);
 }
 
 vec3 irradiance_from(Light light, CellPoint point) {

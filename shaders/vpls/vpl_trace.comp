@@ -2,7 +2,7 @@
 // path. The hierarchy holds no blended surfaces: light passes through them unchanged.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
-#include "lights/emission.glsl"
+#include "lights/lights.glsl"
 #include "types.glsl"
 
 layout(local_size_x = 32) in;
@@ -35,9 +35,8 @@ VplRecord follow(Ray ray, vec3 throughput) {
 
 // First segment of a path, from the light; `u` in [0, 1)².
 Ray first_segment(Light light, vec2 u) {
-    Ray ray;
-    sample_emission(light, u, ray.origin, ray.direction);
-    return ray;
+    Emission emission = sample_emission(light, u);
+    return Ray(emission.origin, emission.direction);
 }
 
 // Segment of path `index` that starts at its VPL of bounce `bounce`.

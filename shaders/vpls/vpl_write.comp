@@ -18,8 +18,7 @@ uniform uint max_bounces;
 
 // Share of the flux that a light's range lets through to the path's first VPL; the rest counts as escaped.
 float first_window(Light light, VplRecord first) {
-    if (light.kind == LIGHT_DIRECTIONAL || first.state == VPL_ESCAPED) return 1.0;
-    return range_window(distance(light.position, first.position), light.range);
+    return first.state == VPL_ESCAPED ? 1.0 : share_in_range(light, first.position);
 }
 
 // vpl_edges.comp fills in the edges.

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
+#include "renderer/passes/lights/light_kind.hpp"
+
 namespace candela {
 namespace {
 
@@ -14,15 +16,8 @@ struct Reach {
     float radius;
 };
 
-/// For narrow spots (less than 45 degrees), the bounding sphere of the cone with its spherical cap: it is
-/// smaller than the sphere of radius `range` around the light.
 Reach reach_of(const gpu::Light& light, const CameraView& view) {
-    glm::vec3 centre = light.position;
-    float radius = light.range;
-    if (light.kind == LIGHT_SPOT && light.cos_outer > std::sqrt(0.5F)) {
-        radius = light.range / (2.0F * light.cos_outer);
-        centre += light.direction * radius;
-    }
+    const auto [centre, radius] = light_kinds[light.kind]->bounds(light);
     const glm::vec3 in_view(view.view_from_world * glm::vec4(centre, 1.0F));
     // Enlarged by a bound on the rounding error of the centre.
     return {in_view, radius * 1.0001F + 1e-6F * (glm::length(in_view) + glm::length(view.eye))};

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/passes/lights/light_kind.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
@@ -20,8 +21,6 @@ constexpr std::uint32_t cube_faces = 6;
 constexpr std::uint32_t most_layers = 2048;  // of an array texture, on every driver (OpenGL 4.5, table 23.53)
 constexpr float slope_offset = 1.0F;         // texels: shaders/lights/shadow.glsl relies on it
 constexpr std::uint64_t bytes_per_depth = 4;
-// Widest half angle of a spot light with a flat map. Beyond it, most texels would cover the rim of the cone.
-constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
 // Near plane of perspective maps, relative to the scene's radius. Nearer geometry is clamped to it, not
 // clipped.
 constexpr float relative_near_plane = 1e-3F;
@@ -62,10 +61,6 @@ const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
                                           {{0, 0, 1}, {0, -1, 0}},
                                           {{0, 0, -1}, {0, -1, 0}}}};
 
-bool needs_cube(const gpu::Light& light) {
-    return light.kind == LIGHT_POINT || (light.kind == LIGHT_SPOT && light.cos_outer < std::cos(widest_map));
-}
-
 void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::uint32_t resolution) {
     plan.shadows.push_back({.from_world = glm::mat4(1.0F),
                             .axis = glm::vec3(0.0F),
@@ -81,7 +76,7 @@ void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::
     ++plan.cubes;
 }
 
-void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metrics, float near_plane,
+void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float near_plane,
              std::uint32_t resolution) {
     const auto texels = static_cast<float>(resolution);
     const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
@@ -92,20 +87,16 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const SceneMetrics& metr
                        .texel = 0.0F,
                        .near_plane = near_plane,
                        .layer = plan.maps,
-                       .kind = SHADOW_PERSPECTIVE};
-    if (light.kind == LIGHT_SPOT) {
-        const float tangent = margin * std::tan(std::acos(light.cos_outer));
-        shadow.kind = SHADOW_PERSPECTIVE;
+                       .kind = shape.kind};
+    if (shape.kind == SHADOW_PERSPECTIVE) {
+        const float tangent = margin * shape.tangent;
         shadow.texel = 2.0F * tangent / texels;
         shadow.from_world = reversed_perspective(tangent, near_plane) * view;
     } else {
-        const glm::vec2 half = glm::max(light.shape * margin, glm::vec2(near_plane));
-        // The light is in front of the scene; the map reaches as far behind its centre.
-        const float depth = std::max(2.0F * glm::length(metrics.centre() - light.position), near_plane);
         // look_along's x axis is cross(direction, up) = ± tangent; its extent is that of the tangent.
-        shadow.kind = SHADOW_ORTHOGRAPHIC;
+        const glm::vec2 half = glm::max(shape.half_extent * margin, glm::vec2(near_plane));
         shadow.texel = 2.0F * std::max(half.x, half.y) / texels;
-        shadow.from_world = reversed_orthographic(half, depth) * view;
+        shadow.from_world = reversed_orthographic(half, std::max(shape.depth, near_plane)) * view;
     }
     plan.views.push_back({shadow.from_world, false, plan.maps});
     plan.shadows.push_back(shadow);
@@ -225,7 +216,8 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
         if (!entry.casts_shadow || !settings.enabled) {
             continue;
         }
-        const bool cube = needs_cube(entry.light);
+        const ShadowShape shape = light_kinds[entry.light.kind]->shadow(entry.light, metrics);
+        const bool cube = shape.kind == SHADOW_CUBE;
         const std::uint64_t cost =
             cube ? bytes(settings.cube_resolution, cube_faces) : bytes(settings.map_resolution, 1);
         const bool no_layer = cube ? (plan.cubes + 1) * cube_faces > most_layers : plan.maps == most_layers;
@@ -238,7 +230,7 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
         if (cube) {
             add_cube(plan, entry.light, near_plane, settings.cube_resolution);
         } else {
-            add_map(plan, entry.light, metrics, near_plane, settings.map_resolution);
+            add_map(plan, entry.light, shape, near_plane, settings.map_resolution);
         }
     }
     return plan;

@@ -1,0 +1,62 @@
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include "renderer/passes/lights/light_kind.hpp"
+
+// Directional lights; shaders/lights/directional_light.glsl is the other half.
+
+namespace candela {
+namespace {
+
+/// The footprint is the bounding rectangle of the scene's box as seen by the light, placed in front of the
+/// scene.
+LightTable::Entry directional_entry(Entity entity, const DirectionalLight& light, const glm::mat4& world,
+                                    const SceneMetrics& metrics) {
+    const glm::vec3 direction = direction_of(world);
+    const auto [tangent, bitangent] = basis_around(direction);
+    const glm::vec3 half = (metrics.upper - metrics.lower) * 0.5F;
+    const auto half_extent = [&](glm::vec3 axis) { return glm::dot(glm::abs(axis), half); };
+    const glm::vec2 shape(half_extent(tangent), half_extent(bitangent));
+    const glm::vec3 illuminance = light.colour * light.illuminance;
+    return {.entity = entity,
+            // One percent of slack, so that the scene's foremost points do not lie in the footprint.
+            .light = {.position = metrics.centre() - direction * (1.01F * half_extent(direction)),
+                      .kind = LIGHT_DIRECTIONAL,
+                      .direction = direction,
+                      .range = std::numeric_limits<float>::infinity(),
+                      .intensity = illuminance,
+                      .shadow = no_shadow,
+                      .shape = shape,
+                      .cos_inner = 0.0F,
+                      .cos_outer = 0.0F},
+            .flux = illuminance * (4.0F * shape.x * shape.y),
+            .casts_shadow = light.casts_shadow};
+}
+
+void gather(const World& world, const SceneMetrics& metrics, std::vector<LightTable::Entry>& entries) {
+    gather_lights<DirectionalLight>(
+        world, entries, [&](Entity entity, const DirectionalLight& light, const glm::mat4& matrix) {
+            return directional_entry(entity, light, matrix, metrics);
+        });
+}
+
+/// The light is in front of the scene; the map reaches as far behind its centre.
+ShadowShape shadow(const gpu::Light& light, const SceneMetrics& metrics) {
+    return {.kind = SHADOW_ORTHOGRAPHIC,
+            .half_extent = light.shape,
+            .depth = 2.0F * glm::length(metrics.centre() - light.position)};
+}
+
+}  // namespace
+
+const LightKind directional_light{.read = [](Pass& pass) { pass.read<DirectionalLight>(); },
+                                  .gather = gather,
+                                  .bounds =
+                                      [](const gpu::Light& light) {
+                                          return LightBounds{light.position, light.range};
+                                      },
+                                  .shadow = shadow};
+
+}  // namespace candela

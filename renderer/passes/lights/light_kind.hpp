@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <numbers>
+#include <vector>
+
+#include <candela/ecs/world.hpp>
+#include <candela/graph/frame_graph.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include "renderer/passes/lights/lights.hpp"
+
+namespace candela {
+
+/// A sphere in world space, metres. The radius may be infinite.
+struct LightBounds {
+    glm::vec3 centre;
+    float radius;
+};
+
+/// The map that a light's shadows need: a cube, or a flat map along the light's direction.
+struct ShadowShape {
+    std::uint32_t kind = SHADOW_CUBE;
+    float tangent = 0.0F;         ///< perspective: of the half angle
+    glm::vec2 half_extent{0.0F};  ///< orthographic: metres
+    float depth = 0.0F;           ///< orthographic: metres from the light to the end of the scene
+};
+
+/// All that the CPU needs to know of a kind of light. Each kind is one C++ file, which defines one of these,
+/// and one shader file: shaders/lights/point_light.glsl and its siblings.
+struct LightKind {
+    /// Declares the read of the kind's component.
+    void (*read)(Pass& pass);
+    /// Appends the lights of this kind that are in the world.
+    void (*gather)(const World& world, const SceneMetrics& metrics, std::vector<LightTable::Entry>& entries);
+    /// Contains everything that the light may reach.
+    LightBounds (*bounds)(const gpu::Light& light);
+    ShadowShape (*shadow)(const gpu::Light& light, const SceneMetrics& metrics);
+};
+
+extern const LightKind point_light;
+extern const LightKind spot_light;
+extern const LightKind directional_light;
+
+/// By gpu::Light::kind.
+inline constexpr std::array<const LightKind*, 3> light_kinds{&point_light, &spot_light, &directional_light};
+
+inline constexpr int no_shadow = -1;  ///< until add_light_upload sets the index
+inline constexpr float hemisphere = 2.0F * std::numbers::pi_v<float>;  ///< steradians
+
+/// The direction in which a light with this local-to-world matrix shines: its local -Z axis.
+[[nodiscard]] glm::vec3 direction_of(const glm::mat4& world);
+
+/// Appends an entry for each light component of type C: `make(entity, light, world_matrix)`.
+template <class C, class Make>
+void gather_lights(const World& world, std::vector<LightTable::Entry>& entries, Make make) {
+    for (const auto& [entity, light] : world.view<C>()) {
+        entries.push_back(make(entity, light, world_matrix(world, entity)));
+    }
+}
+
+}  // namespace candela

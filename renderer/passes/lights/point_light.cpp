@@ -1,0 +1,44 @@
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include "renderer/passes/lights/light_kind.hpp"
+
+// Point lights; shaders/lights/point_light.glsl is the other half.
+
+namespace candela {
+namespace {
+
+LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm::mat4& world) {
+    const glm::vec3 intensity = light.colour * light.intensity;
+    return {.entity = entity,
+            .light = {.position = glm::vec3(world[3]),
+                      .kind = LIGHT_POINT,
+                      .direction = glm::vec3(0.0F),
+                      .range = light.range,
+                      .intensity = intensity,
+                      .shadow = no_shadow,
+                      .shape = glm::vec2(0.0F),
+                      .cos_inner = 0.0F,
+                      .cos_outer = 0.0F},
+            .flux = intensity * (2.0F * hemisphere),
+            .casts_shadow = light.casts_shadow};
+}
+
+void gather(const World& world, const SceneMetrics& /*metrics*/, std::vector<LightTable::Entry>& entries) {
+    gather_lights<PointLight>(world, entries, point_entry);
+}
+
+}  // namespace
+
+const LightKind point_light{
+    .read = [](Pass& pass) { pass.read<PointLight>(); },
+    .gather = gather,
+    .bounds =
+        [](const gpu::Light& light) {
+            return LightBounds{light.position, light.range};
+        },
+    .shadow = [](const gpu::Light& /*light*/, const SceneMetrics& /*metrics*/) { return ShadowShape{}; }};
+
+}  // namespace candela

@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include "renderer/passes/lights/light_kind.hpp"
+
+// Spot lights; shaders/lights/spot_light.glsl is the other half.
+
+namespace candela {
+namespace {
+
+// Widest half angle with a flat map. Beyond it, most texels would cover the rim of the cone.
+constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
+
+/// The intensity is constant inside the inner cone. From there to the outer cone it falls with the square of
+/// a linear ramp in the cosine (KHR_lights_punctual). Its integral over the sphere is
+/// 2π ((1 - cᵢ) + (cᵢ - cₒ) / 3), with the cosines cᵢ and cₒ of the inner and outer cone.
+LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::mat4& world) {
+    const float cos_outer = std::cos(light.outer_cone);
+    // The ramp is at least a thousandth of the cone, which avoids a division by zero as the extension
+    // suggests.
+    const float ramp = std::max(std::cos(light.inner_cone) - cos_outer, 1e-3F * (1.0F - cos_outer));
+    const float cos_inner = cos_outer + ramp;
+    const glm::vec3 intensity = light.colour * light.intensity;
+    return {.entity = entity,
+            .light = {.position = glm::vec3(world[3]),
+                      .kind = LIGHT_SPOT,
+                      .direction = direction_of(world),
+                      .range = light.range,
+                      .intensity = intensity,
+                      .shadow = no_shadow,
+                      .shape = {1.0F / ramp, -cos_outer / ramp},
+                      .cos_inner = cos_inner,
+                      .cos_outer = cos_outer},
+            .flux = intensity * (hemisphere * ((1.0F - cos_inner) + ramp / 3.0F)),
+            .casts_shadow = light.casts_shadow};
+}
+
+void gather(const World& world, const SceneMetrics& /*metrics*/, std::vector<LightTable::Entry>& entries) {
+    gather_lights<SpotLight>(world, entries, spot_entry);
+}
+
+/// For narrow cones (less than 45 degrees), the bounding sphere of the cone with its spherical cap: it is
+/// smaller than the sphere of radius `range` around the light.
+LightBounds bounds(const gpu::Light& light) {
+    if (light.cos_outer <= std::sqrt(0.5F)) {
+        return {light.position, light.range};
+    }
+    const float radius = light.range / (2.0F * light.cos_outer);
+    return {light.position + light.direction * radius, radius};
+}
+
+ShadowShape shadow(const gpu::Light& light, const SceneMetrics& /*metrics*/) {
+    if (light.cos_outer < std::cos(widest_map)) {
+        return {};
+    }
+    return {.kind = SHADOW_PERSPECTIVE, .tangent = std::tan(std::acos(light.cos_outer))};
+}
+
+}  // namespace
+
+const LightKind spot_light{
+    .read = [](Pass& pass) { pass.read<SpotLight>(); }, .gather = gather, .bounds = bounds, .shadow = shadow};
+
+}  // namespace candela

@@ -1,0 +1,26 @@
+// Spot lights: point lights within a cone. The CPU's half is renderer/passes/lights/spot_light.cpp.
+#include "lights/incident.glsl"
+#include "sampling.glsl"
+
+// KHR_lights_punctual: 1 inside the inner cone, 0 outside the outer one. `direction`: unit, towards the light.
+float cone_falloff(Light light, vec3 direction) {
+    float x = clamp(-dot(direction, light.direction) * light.shape.x + light.shape.y, 0.0, 1.0);
+    return x * x;
+}
+
+// Cosine of the angle to the axis, distributed like the intensity, for `u` in [0, 1): the inverse of the cumulative flux
+// of the inner cone and then of the quadratic falloff. See theory.md, "Directions".
+float sample_spot_cosine(Light light, float u) {
+    float inner = 1.0 - light.cos_inner;
+    float falloff = (light.cos_inner - light.cos_outer) / 3.0;
+    float x = u * (inner + falloff);
+    if (x < inner) return 1.0 - x;
+    return light.cos_outer + (light.cos_inner - light.cos_outer) * pow(max(1.0 - (x - inner) / falloff, 0.0), 1.0 / 3.0);
+}
+
+Emission emission_of_spot(Light light, vec2 u) {
+    return Emission(light.position, direction_at(light.direction, sample_spot_cosine(light, u.x), u.y));
+}
+
+// Cosine of the half angle of a cone that contains the light, widened by more than the rounding of directions.
+float cone_of_spot(Light light) { return light.cos_outer - 1e-4; }
