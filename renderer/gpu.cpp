@@ -29,6 +29,25 @@ gl::Texture make_white(gl::Device& device) {
 
 }  // namespace
 
+void require_limits(const gl::Limits& limits) {
+    struct Need {
+        std::string_view what;
+        std::uint32_t offered;
+        std::uint32_t needed;
+    };
+    const std::array<Need, 4> needs{
+        {{"storage blocks a shader", limits.storage_blocks, MOST_STORAGE_BLOCKS},
+         {"binding points of storage blocks", limits.storage_bindings, BINDING_LAST + 1},
+         {"binding points of uniform blocks", limits.uniform_bindings, UNIFORMS_LAST + 1},
+         {"texture units", limits.texture_units, UNIT_LAST + 1}}};
+    for (const Need& need : needs) {
+        if (need.offered < need.needed) {
+            throw gl::GlError(fmt::format("the driver offers {} {}; Candela needs {}", need.offered,
+                                          need.what, need.needed));
+        }
+    }
+}
+
 Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
     : device_(get_proc),
       shaders_(std::move(shaders)),
@@ -36,6 +55,7 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
       no_vertices_(device_, "no vertices"),
       white_(make_white(device_)),
       layer_target_(device_, "layer target") {
+    require_limits(device_.limits());
     layer_target_.draw_buffers(0);
 }
 

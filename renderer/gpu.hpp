@@ -13,10 +13,14 @@
 
 namespace candela {
 
+/// Throws gl::GlError that names the first limit that is too low for the renderer's shaders.
+void require_limits(const gl::Limits& limits);
+
 /// The GL device of one renderer, with the objects that its passes share. Passes keep references to it; it
 /// must outlive them.
 class Gpu {
  public:
+    /// Throws gl::GlError if the context does not offer what the renderer needs.
     Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders);
 
     [[nodiscard]] gl::Device& device() { return device_; }

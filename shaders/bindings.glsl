@@ -37,6 +37,8 @@
 #define BINDING_LACKING_MASK BINDING_LIST_COUNT
 #define BINDING_LACKING BINDING_LIST_ENTRIES
 
+#define MOST_STORAGE_BLOCKS 11  // of a shader: blended surfaces, with light lists, surfels and rays
+
 #define UNIFORMS_VIEW 0
 #define UNIFORMS_CELLS 1
 #define UNIFORMS_VPLS 2

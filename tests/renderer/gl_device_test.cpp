@@ -6,6 +6,7 @@
 #include <string>
 
 #include "renderer/gl/objects.hpp"
+#include "renderer/gpu.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
 using namespace candela;
@@ -96,6 +97,18 @@ TEST_SUITE("gl device") {
         };
         CHECK(message_of(lacking) == "the OpenGL driver offers no function glDispatchCompute");
         CHECK_THROWS_AS(static_cast<void>(gl::load_functions(lacking)), gl::GlError);
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "a limit that is too low is named") {
+        CHECK_NOTHROW(require_limits(device.limits()));
+        gl::Limits limits = device.limits();
+        limits.storage_blocks = 8;
+        CHECK_THROWS_WITH_AS(require_limits(limits),
+                             "the driver offers 8 storage blocks a shader; Candela needs 11", gl::GlError);
+        limits = device.limits();
+        limits.texture_units = 4;
+        CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 10",
+                             gl::GlError);
     }
 
     TEST_CASE("a driver that is too old, or no context, is refused by name") {

@@ -4,12 +4,16 @@
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
@@ -22,6 +26,8 @@ std::set<std::pair<GLenum, std::string>> sources;  // passed to the driver
 
 PFNGLCREATESHADERPROC create_shader = nullptr;
 PFNGLSHADERSOURCEPROC shader_source = nullptr;
+PFNGLLINKPROGRAMPROC link_program = nullptr;
+std::vector<GLuint> programs;  // linked by the driver
 
 GLuint note_stage(GLenum stage) {
     const GLuint shader = create_shader(stage);
@@ -36,7 +42,27 @@ void note_source(GLuint shader, GLsizei count, const GLchar* const* texts, const
     shader_source(shader, count, texts, lengths);
 }
 
-/// The driver's functions; those that take shaders record their arguments.
+void note_program(GLuint program) {
+    link_program(program);
+    programs.push_back(program);
+}
+
+/// Storage blocks that the fragment or the compute shader of a program reads or writes, the larger number.
+std::uint32_t storage_blocks_of(const gl::Functions& gl, GLuint program) {
+    GLint blocks = 0;
+    gl.GetProgramInterfaceiv(program, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
+    std::uint32_t fragment = 0, compute = 0;
+    for (GLuint i = 0; i < static_cast<GLuint>(blocks); ++i) {
+        const std::array<GLenum, 2> by{GL_REFERENCED_BY_FRAGMENT_SHADER, GL_REFERENCED_BY_COMPUTE_SHADER};
+        std::array<GLint, 2> is{};
+        gl.GetProgramResourceiv(program, GL_SHADER_STORAGE_BLOCK, i, 2, by.data(), 2, nullptr, is.data());
+        fragment += is[0] == GL_TRUE ? 1 : 0;
+        compute += is[1] == GL_TRUE ? 1 : 0;
+    }
+    return std::max(fragment, compute);
+}
+
+/// The driver's functions; those that take shaders or link programs record their arguments.
 gl::GetProc noting(const gl::GetProc& get_proc) {
     return [get_proc](const char* name) -> void (*)() {
         void (*const found)() = get_proc(name);
@@ -47,6 +73,10 @@ gl::GetProc noting(const gl::GetProc& get_proc) {
         if (std::string(name) == "glShaderSource") {
             shader_source = reinterpret_cast<PFNGLSHADERSOURCEPROC>(found);
             return reinterpret_cast<void (*)()>(&note_source);
+        }
+        if (std::string(name) == "glLinkProgram") {
+            link_program = reinterpret_cast<PFNGLLINKPROGRAMPROC>(found);
+            return reinterpret_cast<void (*)()>(&note_program);
         }
         return found;
     };
@@ -73,19 +103,31 @@ TEST_SUITE("second compiler") {
         TestedRenderer renderer(noting(context->get_proc()));
         Configuration configuration;
         configuration.refinement.enabled = true;
-        for (const ShadingPath path : all_shading_paths) {
-            for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
-                for (const Interleave interleave : {Interleave::one, Interleave::eight}) {
-                    configuration.path = path;
-                    configuration.visibility.method = method;
-                    configuration.interleave = interleave;
-                    // 16 are so few that the shading passes gather them themselves.
-                    configuration.vpls.count = interleave == Interleave::one ? 16 : 256;
-                    REQUIRE(renderer.configure(configuration).empty());
+        const auto configure_each = [&](VplPlacement placement, Show show) {
+            configuration.vpls.placement = placement;
+            configuration.show = show;
+            for (const ShadingPath path : all_shading_paths) {
+                for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
+                    for (const Interleave interleave : {Interleave::one, Interleave::eight}) {
+                        configuration.path = path;
+                        configuration.visibility.method = method;
+                        configuration.interleave = interleave;
+                        // 16 are so few that the shading passes gather them themselves.
+                        configuration.vpls.count = interleave == Interleave::one ? 16 : 256;
+                        REQUIRE(renderer.configure(configuration).empty());
+                    }
                 }
             }
-        }
+        };
+        configure_each(VplPlacement::surfels, Show::total);
+        configure_each(VplPlacement::paths, Show::total);
+        configure_each(VplPlacement::surfels, Show::indirect);
         CHECK(sources.size() > 40);
+
+        // A driver that offers fewer storage blocks than the largest program needs is refused at once.
+        std::uint32_t most = 0;
+        for (const GLuint program : programs) most = std::max(most, storage_blocks_of(device.gl(), program));
+        CHECK(most == MOST_STORAGE_BLOCKS);
 
         const sandbox::TemporaryFolder folder;
         std::string command = CANDELA_GLSLANG;
