@@ -36,7 +36,7 @@ void require_limits(const gl::Limits& limits) {
         std::uint32_t needed;
     };
     const std::array<Need, 4> needs{
-        {{"storage blocks a shader", limits.storage_blocks, MOST_STORAGE_BLOCKS},
+        {{"storage blocks a program", limits.storage_blocks, MOST_STORAGE_BLOCKS},
          {"binding points of storage blocks", limits.storage_bindings, BINDING_LAST + 1},
          {"binding points of uniform blocks", limits.uniform_bindings, UNIFORMS_LAST + 1},
          {"texture units", limits.texture_units, UNIT_LAST + 1}}};

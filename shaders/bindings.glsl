@@ -37,7 +37,7 @@
 #define BINDING_LACKING_MASK BINDING_LIST_COUNT
 #define BINDING_LACKING BINDING_LIST_ENTRIES
 
-#define MOST_STORAGE_BLOCKS 11  // of a shader: blended surfaces, with light lists, surfels and rays
+#define MOST_STORAGE_BLOCKS 12  // of a program: blended surfaces, with light lists, surfels and rays
 
 #define UNIFORMS_VIEW 0
 #define UNIFORMS_CELLS 1

@@ -60,8 +60,9 @@ Limits get_limits(const Functions& gl, bool anisotropic) {
     gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage_block);
     limits.storage_block_bytes = static_cast<std::uint64_t>(storage_block);
     limits.uniform_block_bytes = get_unsigned(gl, GL_MAX_UNIFORM_BLOCK_SIZE);
-    limits.storage_blocks = std::min(get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
-                                     get_unsigned(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS));
+    limits.storage_blocks = std::min({get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
+                                      get_unsigned(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS),
+                                      get_unsigned(gl, GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS)});
     limits.storage_bindings = get_unsigned(gl, GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
     limits.uniform_bindings = get_unsigned(gl, GL_MAX_UNIFORM_BUFFER_BINDINGS);
     limits.texture_units = get_unsigned(gl, GL_MAX_TEXTURE_IMAGE_UNITS);

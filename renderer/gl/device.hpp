@@ -35,7 +35,7 @@ struct Limits {
     std::uint32_t colour_attachments = 0;        ///< of one framebuffer
     std::uint64_t storage_block_bytes = 0;       ///< of one shader storage block
     std::uint32_t uniform_block_bytes = 0;       ///< of one uniform block
-    std::uint32_t storage_blocks = 0;            ///< of a compute or a fragment shader, the lesser
+    std::uint32_t storage_blocks = 0;            ///< of a program: the least of what its stages allow
     std::uint32_t storage_bindings = 0;          ///< binding points of storage blocks
     std::uint32_t uniform_bindings = 0;          ///< binding points of uniform blocks
     std::uint32_t texture_units = 0;             ///< of a shader stage

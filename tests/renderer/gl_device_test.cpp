@@ -104,7 +104,7 @@ TEST_SUITE("gl device") {
         gl::Limits limits = device.limits();
         limits.storage_blocks = 8;
         CHECK_THROWS_WITH_AS(require_limits(limits),
-                             "the driver offers 8 storage blocks a shader; Candela needs 11", gl::GlError);
+                             "the driver offers 8 storage blocks a program; Candela needs 12", gl::GlError);
         limits = device.limits();
         limits.texture_units = 4;
         CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 10",

@@ -184,8 +184,8 @@ void main() {
         program.set("v4s", std::array{glm::vec4(0), glm::vec4(0, 16, 0, 0)});
         program.set("m4s", std::array{glm::mat4(1), glm::translate(glm::mat4(1), glm::vec3(0, 17, 0))});
         program.set("unused", 1.0F);
-        CHECK_THROWS_WITH_AS(program.set("no_such_uniform", 1.0F),
-                             "sum.comp: no uniform 'no_such_uniform'", ProgramError);
+        CHECK_THROWS_WITH_AS(program.set("no_such_uniform", 1.0F), "sum.comp: no uniform 'no_such_uniform'",
+                             ProgramError);
         CHECK(program.has("fs"));
         CHECK_FALSE(program.has("unused"));
         CHECK_FALSE(program.has("results"));

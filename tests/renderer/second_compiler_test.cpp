@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -47,19 +46,11 @@ void note_program(GLuint program) {
     programs.push_back(program);
 }
 
-/// Storage blocks that the fragment or the compute shader of a program reads or writes, the larger number.
+/// Storage blocks of all stages of a program.
 std::uint32_t storage_blocks_of(const gl::Functions& gl, GLuint program) {
     GLint blocks = 0;
     gl.GetProgramInterfaceiv(program, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &blocks);
-    std::uint32_t fragment = 0, compute = 0;
-    for (GLuint i = 0; i < static_cast<GLuint>(blocks); ++i) {
-        const std::array<GLenum, 2> by{GL_REFERENCED_BY_FRAGMENT_SHADER, GL_REFERENCED_BY_COMPUTE_SHADER};
-        std::array<GLint, 2> is{};
-        gl.GetProgramResourceiv(program, GL_SHADER_STORAGE_BLOCK, i, 2, by.data(), 2, nullptr, is.data());
-        fragment += is[0] == GL_TRUE ? 1 : 0;
-        compute += is[1] == GL_TRUE ? 1 : 0;
-    }
-    return std::max(fragment, compute);
+    return static_cast<std::uint32_t>(blocks);
 }
 
 /// The driver's functions; those that take shaders or link programs record their arguments.
