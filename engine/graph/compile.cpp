@@ -15,33 +15,16 @@ namespace candela {
 namespace detail {
 namespace {
 
-/// Checks that pass names are unique, and resolves the names given to `after`.
-std::vector<Edge> resolve_passes(const Declaration& declared, std::vector<Fault>& faults) {
+/// Checks that pass names are unique.
+void check_passes(const Declaration& declared, std::vector<Fault>& faults) {
     IndexTable table(declared.pass_count());
-    const auto named = [&](std::string_view name) {
-        return [&declared, name](std::uint32_t pass) { return declared.passes[pass].name == name; };
-    };
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
         const std::string_view name = declared.passes[pass].name;
-        if (table.find_or_insert(hash_of(name), pass, named(name)) != none) {
+        const auto same = [&](std::uint32_t other) { return declared.passes[other].name == name; };
+        if (table.find_or_insert(hash_of(name), pass, same) != none) {
             faults.push_back({FaultCode::duplicate_pass, fmt::format("two passes are called '{}'", name)});
         }
     }
-
-    std::vector<Edge> afters;
-    for (std::uint32_t pass = 0; !declared.afters.empty() && pass < declared.pass_count(); ++pass) {
-        for (const std::string_view name : declared.afters_of(pass)) {
-            const std::uint32_t before = table.find_index(hash_of(name), named(name));
-            if (before != none) {
-                afters.push_back({before, pass, none});
-            } else {
-                faults.push_back(
-                    {FaultCode::unknown_pass, fmt::format("pass '{}' says after '{}', which is not a pass",
-                                                          declared.passes[pass].name, name)});
-            }
-        }
-    }
-    return afters;
 }
 
 /// Checks that the names of persistent and imported resources are unique, and that every resource with a
@@ -168,13 +151,13 @@ CompileResult compile(FrameGraph&& graph, CompileOptions options) {
     std::vector<Fault> faults = std::move(declared.faults);
     detail::Plan plan;
 
-    const std::vector<detail::Edge> afters = detail::resolve_passes(declared, faults);
+    detail::check_passes(declared, faults);
     detail::check_resources(declared, faults);
     detail::number_versions(declared, plan);
-    plan.order = detail::order_passes(declared, plan, afters, options.shuffle_seed, faults);
     if (!faults.empty()) {
         return {std::nullopt, std::move(faults)};
     }
+    plan.order = detail::order_passes(declared, plan, options.shuffle_seed);
 
     const std::vector<std::uint8_t> needed = detail::needed_passes(declared, plan);
     std::erase_if(plan.order, [&](std::uint32_t pass) { return !needed[pass]; });

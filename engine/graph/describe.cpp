@@ -101,9 +101,6 @@ std::string pass_text(const CompiledGraph& graph, std::uint32_t position) {
     if (barrier != Barrier::none) {
         line("barrier", to_string(barrier));
     }
-    for (const std::string_view before : graph.declared().afters_of(pass)) {
-        line("after", before);
-    }
     for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
         line("world", read.name);
     }
@@ -146,7 +143,6 @@ nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t posit
     nlohmann::ordered_json json{{"name", node.name},
                                 {"side_effect", node.side_effect},
                                 {"barrier", to_string(graph.plan().barrier[position])},
-                                {"after", graph.declared().afters_of(pass)},
                                 {"world", nlohmann::ordered_json::array()},
                                 {"reads", nlohmann::ordered_json::array()},
                                 {"writes", nlohmann::ordered_json::array()}};

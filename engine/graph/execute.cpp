@@ -110,28 +110,24 @@ void GraphRuntime::notice_world(const World& world) {
         return;
     }
     world_ = &world;
-    for (detail::Revision& revision : state_.revisions) {
-        revision.tick = std::numeric_limits<Tick>::max();
+    for (detail::Step& step : state_.steps) {
+        for (detail::Revision& revision : step.revisions) {
+            revision.tick = std::numeric_limits<Tick>::max();
+        }
     }
 }
 
 bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
-    const detail::Step& next = *(&step + 1);
     if (!step.has_run || step.side_effect) {
         return true;
     }
-    for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
-        if (state_.versions[state_.inputs[at]].stamp != state_.input_stamps[at]) {
-            return true;
-        }
-    }
-    for (std::uint32_t at = step.first_revision; at < next.first_revision; ++at) {
-        const detail::Revision& revision = state_.revisions[at];
-        if (revision.of(world) != revision.tick) {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::any_of(step.inputs,
+                               [this](const detail::Input& input) {
+                                   return state_.versions[input.version].stamp != input.stamp;
+                               }) ||
+           std::ranges::any_of(step.revisions, [&](const detail::Revision& revision) {
+               return revision.of(world) != revision.tick;
+           });
 }
 
 /// Marks which passes may have to run, from position `from` on. The passes before it are finished: those that
@@ -152,13 +148,12 @@ void GraphRuntime::mark(const World& world, std::uint32_t from) {
 void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
     for (std::uint32_t position = from; position < state_.step_count(); ++position) {
         const detail::Step& step = state_.steps[position];
-        const detail::Step& next = state_.steps[position + 1];
         std::uint8_t need = step.writes_import ? certain : nothing;
         if (dirty(step, world)) {
             need = may_change | certain;
         } else {
-            for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
-                if ((state_.need[state_.versions[state_.inputs[at]].producer] & may_change) != 0) {
+            for (const detail::Input& input : step.inputs) {
+                if ((state_.need[state_.versions[input.version].producer] & may_change) != 0) {
                     need |= may_change;
                 }
             }
@@ -178,13 +173,12 @@ bool GraphRuntime::mark_missing(std::uint32_t from) {
             continue;
         }
         const detail::Step& step = state_.steps[position];
-        const detail::Step& next = state_.steps[position + 1];
-        for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
-            const detail::Version& version = state_.versions[state_.inputs[at]];
+        for (const detail::Input& input : step.inputs) {
+            const detail::Version& version = state_.versions[input.version];
             state_.need[version.producer] |= version.present ? nothing : certain;
         }
-        for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
-            const std::uint32_t held = state_.holds[state_.outputs[at].slot];
+        for (const detail::Output& output : step.outputs) {
+            const std::uint32_t held = state_.holds[output.slot];
             if (held == none) {
                 continue;
             }
@@ -218,17 +212,13 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
 }
 
 bool GraphRuntime::has_results(const detail::Step& step) const {
-    const auto outputs =
-        std::span(state_.outputs).subspan(step.first_output, (&step + 1)->first_output - step.first_output);
     return std::ranges::all_of(
-        outputs, [&](const detail::Output& output) { return state_.versions[output.version].present; });
+        step.outputs, [&](const detail::Output& output) { return state_.versions[output.version].present; });
 }
 
 /// Whether all outputs of the step, which has just run, count as changed for their readers.
 bool GraphRuntime::renewed_results(const detail::Step& step) const {
-    const auto outputs =
-        std::span(state_.outputs).subspan(step.first_output, (&step + 1)->first_output - step.first_output);
-    return std::ranges::all_of(outputs, [&](const detail::Output& output) {
+    return std::ranges::all_of(step.outputs, [&](const detail::Output& output) {
         return state_.versions[output.version].stamp == clock_;
     });
 }
@@ -236,9 +226,7 @@ bool GraphRuntime::renewed_results(const detail::Step& step) const {
 /// Marks the outputs as not present while the pass runs, so that an exception cannot leave an incomplete
 /// result that counts as valid.
 void GraphRuntime::begin_outputs(const detail::Step& step) {
-    const detail::Step& next = *(&step + 1);
-    for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
-        const detail::Output& output = state_.outputs[at];
+    for (const detail::Output& output : step.outputs) {
         if (output.turns_over && !repeating_) {
             turn_over(output.slot);
         }
@@ -267,15 +255,13 @@ void GraphRuntime::turn_over(std::uint32_t slot) {
 
 void GraphRuntime::begin_pass(std::uint32_t position) {
     const detail::Step& step = state_.steps[position];
-    const std::uint32_t end = state_.steps[position + 1].first_target;
-    if (step.first_target == end) {
+    if (step.targets.empty()) {
         return backend_.begin_pass(step.name, position, nullptr);
     }
 
     PassTargets targets;
     colours_.clear();
-    for (std::uint32_t at = step.first_target; at < end; ++at) {
-        const detail::Target& target = state_.targets[at];
+    for (const detail::Target& target : step.targets) {
         const detail::Slot& slot = state_.slots[target.slot];
         targets.size = slot.texture.size;
         if (target.depth) {
@@ -289,18 +275,16 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
 }
 
 void GraphRuntime::bind_resources(std::uint32_t position) {
-    const std::uint32_t end = state_.steps[position + 1].first_bound;
-    for (std::uint32_t at = state_.steps[position].first_bound; at < end; ++at) {
-        bind(state_.bound[at]);
+    for (const detail::Bound& bound : state_.steps[position].bound) {
+        bind(bound);
     }
 }
 
 /// After the running pass has replaced the object of one of its resources.
 void GraphRuntime::rebind(std::uint32_t position, std::uint32_t resource) {
-    const std::uint32_t end = state_.steps[position + 1].first_bound;
-    for (std::uint32_t at = state_.steps[position].first_bound; at < end; ++at) {
-        if (state_.bound[at].resource == resource) {
-            bind(state_.bound[at]);
+    for (const detail::Bound& bound : state_.steps[position].bound) {
+        if (bound.resource == resource) {
+            bind(bound);
         }
     }
 }
@@ -317,16 +301,14 @@ void GraphRuntime::bind(const detail::Bound& bound) {
 /// Records a completed run. The outputs keep their stamps if the pass ran only to restore a result, with
 /// unchanged inputs; a value keeps its stamp also if it was set to an equal value.
 void GraphRuntime::keep_record(detail::Step& step, const World& world, bool changed) {
-    const detail::Step& next = *(&step + 1);
-    for (std::uint32_t at = step.first_input; at < next.first_input; ++at) {
-        state_.input_stamps[at] = state_.versions[state_.inputs[at]].stamp;
+    for (detail::Input& input : step.inputs) {
+        input.stamp = state_.versions[input.version].stamp;
     }
-    for (std::uint32_t at = step.first_revision; at < next.first_revision; ++at) {
-        state_.revisions[at].tick = state_.revisions[at].of(world);
+    for (detail::Revision& revision : step.revisions) {
+        revision.tick = revision.of(world);
     }
     ++clock_;
-    for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
-        const detail::Output& output = state_.outputs[at];
+    for (const detail::Output& output : step.outputs) {
         detail::Version& version = state_.versions[output.version];
         release(output.slot);
         state_.holds[output.slot] = output.version;
@@ -437,9 +419,9 @@ bool Execution::changed(ResourceHandle read) const {
     const detail::State& state = runtime_.state_;
     const std::uint32_t version = runtime_.graph_->plan().version(read.resource, read.version);
     const detail::Step& step = state.steps[position_];
-    for (std::uint32_t at = step.first_input; at < (&step + 1)->first_input; ++at) {
-        if (state.inputs[at] == version) {
-            return anew_ || state.versions[version].stamp != state.input_stamps[at];
+    for (const detail::Input& input : step.inputs) {
+        if (input.version == version) {
+            return anew_ || state.versions[version].stamp != input.stamp;
         }
     }
     throw GraphError(fmt::format("pass '{}' asks whether {} '{}' has changed without having declared it",

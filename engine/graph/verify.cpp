@@ -54,13 +54,9 @@ void GraphRuntime::verify(const World& world) {
 /// Records the contents of the step's outputs. If the inputs have not changed, compares them with those of
 /// its previous run and throws GraphError at a difference.
 void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
-    const detail::Step& next = *(&step + 1);
-    const auto drifted = [&](std::uint32_t version) { return state_.contents[version].drifted; };
-    const bool excused = changed || step.remembers ||
-                         std::any_of(state_.inputs.begin() + step.first_input,
-                                     state_.inputs.begin() + next.first_input, drifted);
-    for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
-        const detail::Output& output = state_.outputs[at];
+    const auto drifted = [&](const detail::Input& input) { return state_.contents[input.version].drifted; };
+    const bool excused = changed || step.remembers || std::ranges::any_of(step.inputs, drifted);
+    for (const detail::Output& output : step.outputs) {
         const detail::Slot& slot = state_.slots[output.slot];
         const bool stamped = state_.versions[output.version].stamp == clock_;
         detail::Content& known = state_.contents[output.version];

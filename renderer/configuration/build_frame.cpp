@@ -46,6 +46,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     frame.shadows = shadows.plan;
     frame.drawn_shadows = shadows.drawn;
     const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
+    const SceneLights scene_lights{frame.lights, buffers.lights};
     ValueHandle<CameraView> camera = add_view(graph, frame.request);
     if (configuration.refinement.enabled) {
         frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
@@ -60,8 +61,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         const ValueHandle<SceneMotion> motion = add_scene_motion(graph, scene, *frame.epoch);
         const Surfels surfels = add_surfels(graph, gpu, scene, frame.refinement, configuration.vpls);
         const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels, motion);
-        frame.vpls = add_surfel_light(graph, gpu, tracing, surfels, visibility,
-                                      {frame.lights, buffers.lights}, configuration.vpls.bounces);
+        frame.vpls =
+            add_surfel_light(graph, gpu, tracing, visibility, scene_lights, configuration.vpls.bounces);
         mapped = MappedVpls{surfels.plan, surfels.surfels, motion, surfels.set};
     } else if (configuration.indirect) {
         const ValueHandle<VplPlan> plan =
@@ -100,20 +101,20 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     std::optional<VisibleSurfaces> visible;
     std::optional<Gbuffer> gbuffer;
     if (path.surfaces == SurfaceStage::gbuffer) {
-        gbuffer = add_gbuffer(graph, gpu, seen, view, size);
+        gbuffer = add_gbuffer(graph, gpu, seen, view);
         visible = {gbuffer->depth, gbuffer->normal};
     } else if (path.surfaces == SurfaceStage::forward_after_prepass || gathers) {
-        visible = add_depth_prepass(graph, gpu, seen, view, size);
+        visible = add_depth_prepass(graph, gpu, seen, view);
     }
     const bool bounds_lists = path.surfaces != SurfaceStage::forward;
 
     if (path.lights == LightList::tile) {
         const LightGrid grid = add_tile_grid(graph, gpu, size, configuration.lists);
-        frame.lists = add_light_tiles(graph, gpu, frame.lights, buffers.lights, view, grid,
+        frame.lists = add_light_tiles(graph, gpu, {scene_lights, view, grid},
                                       bounds_lists ? depth_of(visible) : std::nullopt);
     } else if (path.lights == LightList::cluster) {
         const LightGrid grid = add_cluster_grid(graph, gpu, camera, frame.metrics, size, configuration.lists);
-        frame.lists = add_light_clusters(graph, gpu, frame.lights, buffers.lights, view, grid);
+        frame.lists = add_light_clusters(graph, gpu, {scene_lights, view, grid});
     }
 
     Lighting lighting{.lights = frame.lights,
@@ -130,25 +131,23 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         of_blended.most_vpls = most_vpls_of_blended;
     }
     if (path.lights == LightList::tile && bounds_lists) {
-        of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lights, buffers.lights, view,
-                                                   frame.lists->grid, scene.layout);
+        of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lists->inputs, scene.layout);
     }
 
     if (gathers) {
         const GatheredVpls gathered =
-            add_vpl_gather(graph, gpu, *visible, *vpl_light, view, frame.interleave, size);
+            add_vpl_gather(graph, gpu, *visible, *vpl_light, view, frame.interleave);
         lighting.indirect = gathered.irradiance;
         if (frame.interleave > 1) {
-            frame.indirect =
-                add_vpl_reconstruct(graph, gpu, *visible, gathered, *vpl_light, view, frame.interleave, size);
+            frame.indirect = add_vpl_reconstruct(graph, gpu, *visible, gathered, *vpl_light, view);
             lighting.indirect = frame.indirect->irradiance;
         }
         lighting.vpls.reset();
     }
 
     const ShadedSurfaces solid =
-        gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view, size), gbuffer->depth}
-                : add_forward(graph, gpu, seen, lighting, view, depth_of(visible), size);
+        gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view), gbuffer->depth}
+                : add_forward(graph, gpu, seen, lighting, view, depth_of(visible));
     TextureHandle radiance = add_transparent(graph, gpu, seen, of_blended, view, solid);
     if (frame.refinement) {
         radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, size);

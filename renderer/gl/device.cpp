@@ -55,24 +55,12 @@ Limits get_limits(const Functions& gl, bool anisotropic) {
     Limits limits;
     limits.texture_size = get_unsigned(gl, GL_MAX_TEXTURE_SIZE);
     limits.texture_layers = get_unsigned(gl, GL_MAX_ARRAY_TEXTURE_LAYERS);
-    limits.colour_attachments = get_unsigned(gl, GL_MAX_COLOR_ATTACHMENTS);
-    GLint64 storage_block = 0;
-    gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage_block);
-    limits.storage_block_bytes = static_cast<std::uint64_t>(storage_block);
-    limits.uniform_block_bytes = get_unsigned(gl, GL_MAX_UNIFORM_BLOCK_SIZE);
     limits.storage_blocks = std::min({get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS)});
     limits.storage_bindings = get_unsigned(gl, GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
     limits.uniform_bindings = get_unsigned(gl, GL_MAX_UNIFORM_BUFFER_BINDINGS);
     limits.texture_units = get_unsigned(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
-    limits.storage_alignment = get_unsigned(gl, GL_SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT);
-    limits.uniform_alignment = get_unsigned(gl, GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT);
-    for (GLuint axis = 0; axis < limits.work_groups.size(); ++axis) {
-        GLint count = 0;
-        gl.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis, &count);
-        limits.work_groups[axis] = static_cast<std::uint32_t>(count);
-    }
     if (anisotropic) gl.GetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &limits.anisotropy);
     return limits;
 }

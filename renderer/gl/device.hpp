@@ -30,19 +30,13 @@ struct ObjectCounts {
 
 /// The driver's limits.
 struct Limits {
-    std::uint32_t texture_size = 0;              ///< texels along an edge of a 2D texture
-    std::uint32_t texture_layers = 0;            ///< layers of an array texture
-    std::uint32_t colour_attachments = 0;        ///< of one framebuffer
-    std::uint64_t storage_block_bytes = 0;       ///< of one shader storage block
-    std::uint32_t uniform_block_bytes = 0;       ///< of one uniform block
-    std::uint32_t storage_blocks = 0;            ///< of a program: the least of what its stages allow
-    std::uint32_t storage_bindings = 0;          ///< binding points of storage blocks
-    std::uint32_t uniform_bindings = 0;          ///< binding points of uniform blocks
-    std::uint32_t texture_units = 0;             ///< of a shader stage
-    std::uint32_t storage_alignment = 1;         ///< bytes, of the offset of a shader storage range
-    std::uint32_t uniform_alignment = 1;         ///< bytes, of the offset of a uniform buffer range
-    std::array<std::uint32_t, 3> work_groups{};  ///< most work groups of one dispatch in x, y, z
-    float anisotropy = 1.0F;                     ///< largest degree; 1: no anisotropic filtering
+    std::uint32_t texture_size = 0;      ///< texels along an edge of a 2D texture
+    std::uint32_t texture_layers = 0;    ///< layers of an array texture
+    std::uint32_t storage_blocks = 0;    ///< of a program: the least of what its stages allow
+    std::uint32_t storage_bindings = 0;  ///< binding points of storage blocks
+    std::uint32_t uniform_bindings = 0;  ///< binding points of uniform blocks
+    std::uint32_t texture_units = 0;     ///< of a shader stage
+    float anisotropy = 1.0F;             ///< largest degree; 1: no anisotropic filtering
 };
 
 /// One GL context: its functions, limits and debug log, and counts of the objects made for it. Holds no

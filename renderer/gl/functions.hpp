@@ -38,7 +38,6 @@
     X(GetStringi, GETSTRINGI) \
     X(GetIntegerv, GETINTEGERV) \
     X(GetIntegeri_v, GETINTEGERI_V) \
-    X(GetInteger64v, GETINTEGER64V) \
     X(GetFloatv, GETFLOATV) \
     X(GetBooleanv, GETBOOLEANV) \
     X(GetPointerv, GETPOINTERV) \

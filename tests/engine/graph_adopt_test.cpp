@@ -82,7 +82,7 @@ Declared declare(const Configuration& configuration) {
         pass.read(handles.exposure);
         (void)pass.write(handles.target, Usage::colour_target);
         if (configuration.faulty) {
-            pass.after("nobody");
+            pass.read(graph.value<int>("never set"));
         }
     });
     return declared;

@@ -79,7 +79,7 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
 TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and none that no pair needs" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.backward_afters = false});
+        const Graph graph = random_graph::make({});
         const bool shuffled = *rc::gen::arbitrary<bool>();
         const CompiledGraph compiled =
             random_graph::compile(graph,

@@ -64,7 +64,7 @@ std::set<std::size_t> made_anew(const Graph& graph, const std::vector<std::uint3
 TEST_CASE("graph: running what is dirty gives what the declaration means, in any legal order" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false, .backward_afters = false});
+        const Graph graph = random_graph::make({.passes = 20, .histories = false});
         Host host{0, std::vector<Content>(graph.resources.size(), 1)};
         Machine straight(graph, {});
         Machine shuffled(graph, {.shuffle_seed = *rc::gen::arbitrary<std::uint64_t>()});
@@ -83,7 +83,7 @@ TEST_CASE("graph: running what is dirty gives what the declaration means, in any
 TEST_CASE("graph: frames that remember the last give what the declaration means, in any legal order" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .backward_afters = false});
+        const Graph graph = random_graph::make({.passes = 20});
         Host host{0, std::vector<Content>(graph.resources.size(), 1)};
         Machine straight(graph, {});
         Machine shuffled(graph, {.shuffle_seed = *rc::gen::arbitrary<std::uint64_t>()});
@@ -116,7 +116,7 @@ TEST_CASE(
     doctest::test_suite("random")) {
     // In a small graph most passes run in every frame, which would test nothing.
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 60, .histories = false, .backward_afters = false});
+        const Graph graph = random_graph::make({.passes = 60, .histories = false});
         const Host host{0, std::vector<Content>(graph.resources.size(), 1)};
         Machine machine(graph, {});
         machine.provide(host);

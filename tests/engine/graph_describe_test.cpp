@@ -173,7 +173,6 @@ TEST_CASE("graph description: systems, values and planned barriers") {
     });
     graph.add("count", [&](Pass& pass) {
         pass.read(vpls, Usage::storage);
-        pass.after("light");
         pass.side_effect();
     });
     add_show(graph, lit, import_target(graph));
@@ -193,7 +192,6 @@ passes
       read vpls v1 (storage)
       write lit v1 (storage)
   3 count (side effect)
-      after light
       read vpls v1 (storage)
   4 show
       barrier texture fetch
@@ -204,25 +202,6 @@ resources
   vpls: buffer of 256 x 4 bytes, transient [1..3], object 0
   lit: texture 64x32 rgba16f, transient [2..4], object 1
   target: texture 64x32 rgba8, imported [4..4], object 2
-)");
-}
-
-TEST_CASE("graph description: after turns the order of declaration") {
-    FrameGraph graph;
-    graph.add("first", [&](Pass& pass) {
-        pass.side_effect();
-        pass.after("third");
-    });
-    for (const std::string_view name : {"second", "third"}) {
-        graph.add(name, [&](Pass& pass) { pass.side_effect(); });
-    }
-    CHECK(text_of(graph) == R"(
-passes
-  0 second (side effect)
-  1 third (side effect)
-  2 first (side effect)
-      after third
-resources
 )");
 }
 

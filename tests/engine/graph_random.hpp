@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -38,7 +37,6 @@ struct Access {
 
 struct Pass {
     std::vector<Access> accesses{};
-    std::set<std::size_t> after{};
     bool side_effect = false;
     bool reads_world = false;
 };
@@ -79,7 +77,6 @@ inline Usage write_usage(ResourceKind kind) {
 struct Options {
     std::size_t passes = 16;
     bool histories = true;
-    bool backward_afters = true;
 };
 
 inline void add_access(Graph& graph, Pass& pass, const Options& options) {
@@ -126,7 +123,7 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
     pass.accesses.push_back(access);
 }
 
-/// Handles only flow forward; `after` may also point backward, and thus close cycles.
+/// Handles only flow forward.
 inline Graph make(const Options& options) {
     Graph graph;
     const std::size_t count = choose(options.passes);
@@ -138,12 +135,6 @@ inline Graph make(const Options& options) {
         }
         pass.side_effect = one_in(5);
         pass.reads_world = one_in(4);
-        if (one_in(5)) {
-            pass.after.insert(choose(options.backward_afters && one_in(3) ? count : index + 1));
-        }
-        if (!options.backward_afters) {
-            pass.after.erase(index);
-        }
         graph.passes.push_back(pass);
     }
     return graph;
@@ -223,9 +214,6 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
         frame.add(pass_name(index), [&](candela::Pass& declared) {
             for (const Access& access : pass.accesses) {
                 declare(declared, graph.resources[access.resource], access, handles);
-            }
-            for (const std::size_t before : pass.after) {
-                declared.after(pass_name(before));
             }
             if (pass.side_effect) {
                 declared.side_effect();

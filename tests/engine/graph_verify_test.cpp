@@ -350,7 +350,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph verify: off, it reads nothing back, and a
 TEST_CASE("graph verify: random graphs give the same under verification, and none is found at fault" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false, .backward_afters = false});
+        const Graph graph = random_graph::make({.passes = 20, .histories = false});
         Host host{0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
         Machine machine(graph, {.shuffle_seed = *rc::gen::arbitrary<std::uint64_t>()});
         machine.runtime().set_verification(true);
@@ -369,7 +369,7 @@ TEST_CASE("graph verify: random graphs give the same under verification, and non
 TEST_CASE("graph verify: random graphs with memories are not found at fault" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .backward_afters = false});
+        const Graph graph = random_graph::make({.passes = 20});
         Host host{0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
         Machine machine(graph, {});
         machine.runtime().set_verification(true);
@@ -448,7 +448,7 @@ TEST_CASE("graph verify: of two passes the one with an undeclared input is named
 TEST_CASE("graph verify: of random graphs the pass with an undeclared input is named" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
-        const Graph graph = random_graph::make({.passes = 20, .histories = false, .backward_afters = false});
+        const Graph graph = random_graph::make({.passes = 20, .histories = false});
         const auto order = Machine(graph, {}).runtime().graph()->plan().order;
         if (order.empty()) return;
         const std::size_t culprit = order[random_graph::choose(order.size())];

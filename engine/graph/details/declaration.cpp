@@ -126,13 +126,11 @@ void Declaration::begin_pass(std::string_view name) {
     pass.first_access = size_of(accesses);
     pass.first_component = size_of(components);
     pass.first_parameter = size_of(parameters);
-    pass.first_after = size_of(afters);
     passes.push_back(pass);
 }
 
 void Declaration::end_pass() {
     declaring_ = false;
-    check_late_writes();
     check_attachments();
 }
 
@@ -211,7 +209,9 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Bind
                   name, to_string(kind), resource.name));
     }
     if (handle.version < resource.versions) {
-        late_writes_.push_back({handle.resource, handle.version, resource.writer});
+        fault(FaultCode::two_writers, fmt::format("passes '{}' and '{}' both write version {} of {} '{}'",
+                                                  writer_of(handle.resource, handle.version + 1), name,
+                                                  handle.version + 1, to_string(kind), resource.name));
     }
     resource.writer = pass;
     accesses.push_back({handle.resource, ++resource.versions, binding.usage, true, binding.point});
@@ -245,25 +245,6 @@ void Declaration::check_binding(const Resource& resource, Binding binding, bool 
               fmt::format("pass '{}' {} texture '{}' as {}, but its format is {}", passes.back().name, verb,
                           resource.name, to_string(usage), to_string(format)));
     }
-}
-
-void Declaration::check_late_writes() {
-    const auto afters_here = afters_of(pass_count() - 1);
-    for (const LateWrite& late : late_writes_) {
-        if (late.writer == pass_count() - 1) {
-            continue;
-        }
-        const std::string_view writer = passes[late.writer].name;
-        if (std::find(afters_here.begin(), afters_here.end(), writer) != afters_here.end()) {
-            continue;
-        }
-        const Resource& resource = resources[late.resource];
-        fault(FaultCode::two_writers,
-              fmt::format("passes '{}' and '{}' both write version {} of {} '{}' without an order",
-                          writer_of(late.resource, late.version + 1), passes.back().name, late.version + 1,
-                          to_string(resource.kind), resource.name));
-    }
-    late_writes_.clear();
 }
 
 void Declaration::check_attachments() {

@@ -9,19 +9,15 @@
 
 namespace candela::detail {
 
-/// One pass must run before another, because of a resource or because of `Pass::after` (`resource` is none).
+/// One pass must run before another, because of a resource.
 struct Edge {
     std::uint32_t before;
     std::uint32_t after;
-    std::uint32_t resource;
 };
 
-/// All passes in a valid order: the order of declaration as far as `afters` allow, or a random order if there
-/// is a seed. Passes of a cycle, and passes that depend on them, are missing; the cycles found are added to
-/// `faults`.
+/// All passes in the order of declaration, in which handles lead only from earlier to later passes; with a
+/// seed in a random valid order.
 [[nodiscard]] std::vector<std::uint32_t> order_passes(const Declaration& declared, const Plan& plan,
-                                                      const std::vector<Edge>& afters,
-                                                      std::optional<std::uint64_t> shuffle_seed,
-                                                      std::vector<Fault>& faults);
+                                                      std::optional<std::uint64_t> shuffle_seed);
 
 }  // namespace candela::detail

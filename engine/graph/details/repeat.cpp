@@ -33,8 +33,7 @@ class Repetition {
  private:
     /// Protects the outputs of an excluded pass: they must not be overwritten.
     void settle(const Step& step) {
-        for (std::uint32_t at = step.first_output; at < (&step + 1)->first_output; ++at) {
-            const Output& output = state_.outputs[at];
+        for (const Output& output : step.outputs) {
             settled_[output.slot] = 1;
             overwritten_[output.version - 1] = 1;
         }
@@ -54,24 +53,16 @@ class Repetition {
     }
 
     [[nodiscard]] bool has_inputs(const Step& step) const {
-        for (std::uint32_t at = step.first_input; at < (&step + 1)->first_input; ++at) {
-            const std::uint32_t input = state_.inputs[at];
-            const Version& version = state_.versions[input];
+        return std::ranges::all_of(step.inputs, [this](const Input& input) {
+            const Version& version = state_.versions[input.version];
             const bool made_again = version.producer < again_.size() && again_[version.producer];
-            if (overwritten_[input] || !(made_again || version.present)) {
-                return false;
-            }
-        }
-        return true;
+            return !overwritten_[input.version] && (made_again || version.present);
+        });
     }
 
     [[nodiscard]] bool may_write(const Step& step) const {
-        for (std::uint32_t at = step.first_output; at < (&step + 1)->first_output; ++at) {
-            if (settled_[state_.outputs[at].slot]) {
-                return false;
-            }
-        }
-        return true;
+        return std::ranges::none_of(step.outputs,
+                                    [this](const Output& output) { return settled_[output.slot]; });
     }
 
     const State& state_;

@@ -28,30 +28,17 @@ class StateMaker {
         for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
             add_step(position);
         }
-        Step end;
-        close_lists(end);
-        state_.steps.push_back(end);
-        state_.input_stamps.resize(state_.inputs.size());
         add_slots();
-        state_.need.resize(state_.steps.size());
+        state_.need.resize(state_.steps.size() + 1);
         state_.turned.resize(plan_.owner.size());
         return std::move(state_);
     }
 
  private:
-    void close_lists(Step& step) const {
-        step.first_input = size_of(state_.inputs);
-        step.first_output = size_of(state_.outputs);
-        step.first_revision = size_of(state_.revisions);
-        step.first_target = size_of(state_.targets);
-        step.first_bound = size_of(state_.bound);
-    }
-
     void add_step(std::uint32_t position) {
         const std::uint32_t pass = plan_.order[position];
         const PassNode& node = declared_.passes[pass];
         Step step;
-        close_lists(step);
         step.invoke = node.invoke;
         step.function = node.function;
         step.name = node.name;
@@ -61,54 +48,54 @@ class StateMaker {
         for (const Access& access : declared_.accesses_of(pass)) {
             const Resource& resource = declared_.resources[access.resource];
             if (access.write) {
-                add_output(access, position);
+                add_output(step, access, position);
                 step.writes_import |= resource.lifetime == Lifetime::imported;
             }
             step.remembers |= resource.history_of != none;
-            add_input(access, pass);
-            add_target(access);
-            add_bound(access);
+            add_input(step, access, pass);
+            add_target(step, access);
+            add_bound(step, access);
         }
         for (const ComponentRead& read : declared_.components_of(pass)) {
-            state_.revisions.push_back({read.revision});
+            step.revisions.push_back({read.revision});
         }
-        state_.steps.push_back(step);
+        state_.steps.push_back(std::move(step));
     }
 
-    void add_output(const Access& access, std::uint32_t position) {
+    void add_output(Step& step, const Access& access, std::uint32_t position) {
         const Resource& resource = declared_.resources[access.resource];
         const std::uint32_t version = plan_.version(access.resource, access.version);
         const bool turns_over = resource.history != none && access.version == 1;
         state_.versions[version].producer = position;
         state_.versions[version].present = false;
-        state_.outputs.push_back(
+        step.outputs.push_back(
             {version, plan_.object[access.resource], resource.kind == ResourceKind::value, turns_over});
     }
 
-    void add_input(const Access& access, std::uint32_t pass) {
+    void add_input(Step& step, const Access& access, std::uint32_t pass) const {
         const bool past = declared_.resources[access.resource].history_of != none;
         if (past || (access.write && access.version == 1)) {
             return;
         }
         const std::uint32_t version = plan_.version(access.resource, access.version - (access.write ? 1 : 0));
         if (plan_.writer[version] != pass) {
-            state_.inputs.push_back(version);
+            step.inputs.push_back({version});
         }
     }
 
-    void add_target(const Access& access) {
+    void add_target(Step& step, const Access& access) const {
         if (declared_.resources[access.resource].kind != ResourceKind::texture) {
             return;
         }
         const bool depth = access.usage == Usage::depth_target;
         if (depth || access.usage == Usage::colour_target) {
-            state_.targets.push_back({plan_.object[access.resource], depth});
+            step.targets.push_back({plan_.object[access.resource], depth});
         }
     }
 
-    void add_bound(const Access& access) {
+    static void add_bound(Step& step, const Access& access) {
         if (access.point != Binding::unbound || access.usage == Usage::indirect) {
-            state_.bound.push_back({access.resource, {access.usage, access.point}});
+            step.bound.push_back({access.resource, {access.usage, access.point}});
         }
     }
 
@@ -311,15 +298,12 @@ class Heir {
         Step& step = state_.steps[index];
         const Step& old_step = old_.steps[old];
         step.has_run = old_step.has_run;
-        const Step& next = state_.steps[index + 1];
-        std::copy_n(old_.input_stamps.begin() + old_step.first_input, next.first_input - step.first_input,
-                    state_.input_stamps.begin() + step.first_input);
-        std::copy_n(old_.revisions.begin() + old_step.first_revision,
-                    next.first_revision - step.first_revision,
-                    state_.revisions.begin() + step.first_revision);
-        for (std::uint32_t at = step.first_output; at < next.first_output; ++at) {
-            pair_versions(state_.outputs[at].version,
-                          old_.outputs[old_step.first_output + at - step.first_output].version);
+        for (std::size_t at = 0; at < step.inputs.size(); ++at) {
+            step.inputs[at].stamp = old_step.inputs[at].stamp;
+        }
+        step.revisions = old_step.revisions;
+        for (std::size_t at = 0; at < step.outputs.size(); ++at) {
+            pair_versions(step.outputs[at].version, old_step.outputs[at].version);
         }
     }
 

@@ -109,8 +109,7 @@ std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
 }
 
 GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                            const VplLight& light, const FrameView& view, std::uint32_t interleave,
-                            glm::uvec2 size) {
+                            const VplLight& light, const FrameView& view, std::uint32_t interleave) {
     const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.plan);
     return graph.add("vpl-gather", [&](Pass& pass) {
         pass.read(surfaces.normal, {Usage::sampled, UNIT_NORMAL});
@@ -121,12 +120,13 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& 
         pass.parameter(interleave);
         const gl::Program& program = gpu.program({"indirect/vpl_gather.comp"}, vpl_light_variant(light));
         const GatheredVpls out{
-            .irradiance = pass.write(graph.texture("gathered irradiance", {size, Format::rgba32f}),
+            .irradiance = pass.write(graph.texture("gathered irradiance", {view.size, Format::rgba32f}),
                                      {Usage::storage, IMAGE_INDIRECT}),
-            .order = order};
+            .order = order,
+            .interleave = interleave};
         pass.run([=, &gpu, &program](Execution& run) {
             program.set("interleave", interleave);
-            dispatch_gather(gpu.gl(), program, size, interleave, run.value(light.vpls.plan).vpl_count,
+            dispatch_gather(gpu.gl(), program, view.size, interleave, run.value(light.vpls.plan).vpl_count,
                             most_asked(light));
         });
         return out;

@@ -29,14 +29,15 @@ struct GatheredVpls {
     /// class; in lux or W/m², by the unit of the lights. Alpha is 1 where there is a surface, else 0.
     TextureHandle irradiance;
     BufferHandle<std::uint32_t> order;  ///< result of `deal_vpls`
+    std::uint32_t interleave = 1;       ///< n
 };
 
 /// Adds nodes `vpl-deal` (CPU, then upload: deal_vpls) and `vpl-gather` (compute): each pixel sums the light
 /// of the VPLs in the share of its class (Wald et al., "Interactive Global Illumination using Fast Ray
 /// Tracing", 2002; Segovia et al., "Non-interleaved Deferred Shading of Interleaved Sample Patterns", 2006).
-/// Depends on the VPLs, the visible surfaces and the view. `interleave`: n. `size`: of the picture in pixels.
+/// Depends on the VPLs, the visible surfaces and the view. `interleave`: n.
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                                           const VplLight& light, const FrameView& view,
-                                          std::uint32_t interleave, glm::uvec2 size);
+                                          std::uint32_t interleave);
 
 }  // namespace candela

@@ -123,12 +123,12 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
 }  // namespace
 
 IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                                  const GatheredVpls& gathered, const VplLight& light, const FrameView& view,
-                                  std::uint32_t interleave, glm::uvec2 size) {
-    const Pixels pixels{surfaces, view, interleave, size};
+                                  const GatheredVpls& gathered, const VplLight& light,
+                                  const FrameView& view) {
+    const Pixels pixels{surfaces, view, gathered.interleave, view.size};
     const TextureHandle rows = add_rows(graph, gpu, pixels, gathered.irradiance);
     const Columns columns = add_columns(graph, gpu, pixels, rows);
-    IndirectLight found{columns.irradiance, add_list(graph, gpu, columns, size)};
+    IndirectLight found{columns.irradiance, add_list(graph, gpu, columns, view.size)};
     found.irradiance = add_fill(graph, gpu, pixels, found, gathered.order, light);
     return found;
 }

@@ -23,7 +23,6 @@ struct IndirectLight {
 /// gathered light, the VPLs and the view.
 [[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                                                 const GatheredVpls& gathered, const VplLight& light,
-                                                const FrameView& view, std::uint32_t interleave,
-                                                glm::uvec2 size);
+                                                const FrameView& view);
 
 }  // namespace candela

@@ -35,7 +35,8 @@ LightTable::Entry directional_entry(Entity entity, const DirectionalLight& light
             .casts_shadow = light.casts_shadow};
 }
 
-void gather(const World& world, const SceneMetrics& metrics, std::vector<LightTable::Entry>& entries) {
+void gather_directional_lights(const World& world, const SceneMetrics& metrics,
+                               std::vector<LightTable::Entry>& entries) {
     gather_lights<DirectionalLight>(
         world, entries, [&](Entity entity, const DirectionalLight& light, const glm::mat4& matrix) {
             return directional_entry(entity, light, matrix, metrics);
@@ -43,7 +44,7 @@ void gather(const World& world, const SceneMetrics& metrics, std::vector<LightTa
 }
 
 /// The light is in front of the scene; the map reaches as far behind its centre.
-ShadowShape shadow(const gpu::Light& light, const SceneMetrics& metrics) {
+ShadowShape shadow_of_directional(const gpu::Light& light, const SceneMetrics& metrics) {
     return {.kind = SHADOW_ORTHOGRAPHIC,
             .half_extent = light.shape,
             .depth = 2.0F * glm::length(metrics.centre() - light.position)};
@@ -52,11 +53,11 @@ ShadowShape shadow(const gpu::Light& light, const SceneMetrics& metrics) {
 }  // namespace
 
 const LightKind directional_light{.read = [](Pass& pass) { pass.read<DirectionalLight>(); },
-                                  .gather = gather,
+                                  .gather = gather_directional_lights,
                                   .bounds =
                                       [](const gpu::Light& light) {
                                           return LightBounds{light.position, light.range};
                                       },
-                                  .shadow = shadow};
+                                  .shadow = shadow_of_directional};
 
 }  // namespace candela

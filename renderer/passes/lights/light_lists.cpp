@@ -45,13 +45,12 @@ void read_light_grid(Pass& pass, const LightGrid& grid) {
 /// Adds node `NAME-bins` (CPU): sorts the lights into cells and uploads them. `declare(Pass&)` declares the
 /// inputs of `is_wanted(Execution&)`; if that returns false, the lists stay empty.
 template <class Declare, class IsWanted>
-BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
-                          ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
-                          ValueHandle<CellGrid> cells, Declare declare, IsWanted is_wanted) {
+BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name, const ListInputs& inputs,
+                          Declare declare, IsWanted is_wanted) {
     return graph.add(fmt::format("{}-bins", name), [&](Pass& pass) {
-        pass.read(lights);
-        pass.read(camera);
-        pass.read(cells);
+        pass.read(inputs.lights.table);
+        pass.read(inputs.view.camera);
+        pass.read(inputs.grid.cells);
         declare(pass);
         const auto buffer = [&](std::string_view what) {
             return pass.write(
@@ -63,8 +62,8 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
                              .entries = buffer("entries")};
         pass.run([=, &gpu](Execution& run) {
             const LightTable nothing;
-            const LightTable& table = is_wanted(run) ? run.value(lights) : nothing;
-            LightBins bins = bin_lights(table, run.value(camera), run.value(cells));
+            const LightTable& table = is_wanted(run) ? run.value(inputs.lights.table) : nothing;
+            LightBins bins = bin_lights(table, run.value(inputs.view.camera), run.value(inputs.grid.cells));
             upload<std::uint32_t>(gpu, run, out.first, bins.first);
             upload<std::uint32_t>(gpu, run, out.entries, bins.entries);
             run.set(out.bins, std::move(bins));
@@ -74,10 +73,9 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
 }
 
 BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view name,
-                          ValueHandle<LightTable> lights, ValueHandle<CameraView> camera,
-                          ValueHandle<CellGrid> cells) {
+                          const ListInputs& inputs) {
     return add_light_bins(
-        graph, gpu, name, lights, camera, cells, [](Pass&) {}, [](Execution&) { return true; });
+        graph, gpu, name, inputs, [](Pass&) {}, [](Execution&) { return true; });
 }
 
 /// Culls in as many dispatches as needed to bound the loop of each invocation: see `most_asked`.
@@ -98,36 +96,42 @@ void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const
     }
 }
 
+/// What is culled: bins, and for tiles perhaps the depths that bound them.
+struct Candidates {
+    BinBuffers bins;
+    std::optional<BufferHandle<gpu::TileDepth>> depths{};
+};
+
 /// Adds node `NAME` (compute): culls the bins in place. Each cell keeps, in order, the lights that reach it.
-LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, const std::string& shader,
-                       LightList kind, const BinBuffers& bins, BufferHandle<gpu::Light> lights,
-                       const FrameView& view, const LightGrid& grid,
-                       std::optional<BufferHandle<gpu::TileDepth>> depths) {
+LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, LightList kind,
+                       const ListInputs& inputs, const Candidates& candidates) {
     return graph.add(name, [&](Pass& pass) {
+        const auto& [bins, depths] = candidates;
         pass.read(bins.bins);
-        read_view(pass, view);
-        read_light_grid(pass, grid);
-        pass.read(lights, {Usage::storage, BINDING_LIGHTS});
+        read_view(pass, inputs.view);
+        read_light_grid(pass, inputs.grid);
+        pass.read(inputs.lights.buffer, {Usage::storage, BINDING_LIGHTS});
         pass.read(bins.first, {Usage::storage, BINDING_LIST_FIRST});
         if (depths) {
             pass.read(*depths, {Usage::storage, BINDING_TILE_DEPTHS});
         }
-        const gl::Program& program = gpu.program({shader});
+        const gl::Program& program =
+            gpu.program({kind == LightList::tile ? "lights/light_tiles.comp" : "lights/light_clusters.comp"});
         const LightLists out{.kind = kind,
-                             .grid = grid,
-                             .view = view,
+                             .inputs = inputs,
                              .bins = bins.bins,
                              .first = bins.first,
                              .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1,
                                                                              Lifetime::persistent),
                                                  {Usage::storage, BINDING_LIST_COUNT}),
                              .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
-        pass.run([=, &gpu, &program](Execution& run) {
-            run.reserve(out.count, run.value(bins.bins).grid.cells());
+        pass.run([=, &gpu, &program, bounded = depths.has_value()](Execution& run) {
+            const LightBins& binned = run.value(out.bins);
+            run.reserve(out.count, binned.grid.cells());
             if (kind == LightList::tile) {
-                program.set("has_depth", depths.has_value());
+                program.set("has_depth", bounded);
             }
-            dispatch_culling(gpu.gl(), program, run.value(bins.bins));
+            dispatch_culling(gpu.gl(), program, binned);
         });
         return out;
     });
@@ -186,40 +190,31 @@ LightGrid add_cluster_grid(FrameGraph& graph, const Gpu& gpu, ValueHandle<Camera
         make_grid);
 }
 
-LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                           BufferHandle<gpu::Light> light_buffer, const FrameView& view,
-                           const LightGrid& grid, std::optional<TextureHandle> depth) {
-    const BinBuffers bins = add_light_bins(graph, gpu, "light-tiles", lights, view.camera, grid.cells);
-    std::optional<BufferHandle<gpu::TileDepth>> depths;
+LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs,
+                           std::optional<TextureHandle> depth) {
+    Candidates candidates{add_light_bins(graph, gpu, "light-tiles", inputs)};
     if (depth) {
-        depths = add_tile_depths(graph, gpu, *depth, view, grid);
+        candidates.depths = add_tile_depths(graph, gpu, *depth, inputs.view, inputs.grid);
     }
-    return add_culling(graph, gpu, "light-tiles", "lights/light_tiles.comp", LightList::tile, bins,
-                       light_buffer, view, grid, depths);
+    return add_culling(graph, gpu, "light-tiles", LightList::tile, inputs, candidates);
 }
 
-LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                                   BufferHandle<gpu::Light> light_buffer, const FrameView& view,
-                                   const LightGrid& grid, ValueHandle<SceneLayout> layout) {
+LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs,
+                                   ValueHandle<SceneLayout> layout) {
     const BinBuffers bins = add_light_bins(
-        graph, gpu, "blended-light-tiles", lights, view.camera, grid.cells,
-        [&](Pass& pass) { pass.read(layout); },
+        graph, gpu, "blended-light-tiles", inputs, [&](Pass& pass) { pass.read(layout); },
         [=](Execution& run) { return !run.value(layout).groups_of(AlphaMode::blend).empty(); });
-    return add_culling(graph, gpu, "blended-light-tiles", "lights/light_tiles.comp", LightList::tile, bins,
-                       light_buffer, view, grid, std::nullopt);
+    return add_culling(graph, gpu, "blended-light-tiles", LightList::tile, inputs, {bins});
 }
 
-LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                              BufferHandle<gpu::Light> light_buffer, const FrameView& view,
-                              const LightGrid& grid) {
-    const BinBuffers bins = add_light_bins(graph, gpu, "light-clusters", lights, view.camera, grid.cells);
-    return add_culling(graph, gpu, "light-clusters", "lights/light_clusters.comp", LightList::cluster, bins,
-                       light_buffer, view, grid, std::nullopt);
+LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs) {
+    const BinBuffers bins = add_light_bins(graph, gpu, "light-clusters", inputs);
+    return add_culling(graph, gpu, "light-clusters", LightList::cluster, inputs, {bins});
 }
 
 void read_light_lists(Pass& pass, const LightLists& lists) {
-    read_view(pass, lists.view);
-    read_light_grid(pass, lists.grid);
+    read_view(pass, lists.inputs.view);
+    read_light_grid(pass, lists.inputs.grid);
     pass.read(lists.first, {Usage::storage, BINDING_LIST_FIRST});
     pass.read(lists.count, {Usage::storage, BINDING_LIST_COUNT});
     pass.read(lists.entries, {Usage::storage, BINDING_LIST_ENTRIES});

@@ -23,11 +23,17 @@ struct LightGrid {
                                          ValueHandle<SceneMetrics> metrics, glm::uvec2 size,
                                          const ListSettings& settings);
 
-/// Light lists by cell, culled by exact tests.
+/// What light lists are made of.
+struct ListInputs {
+    SceneLights lights;
+    FrameView view;
+    LightGrid grid;
+};
+
+/// Light lists by cell.
 struct LightLists {
     LightList kind = LightList::tile;
-    LightGrid grid;
-    FrameView view;
+    ListInputs inputs;
     ValueHandle<LightBins> bins;
     BufferHandle<std::uint32_t> first;  ///< by cell: where its list begins
     BufferHandle<std::uint32_t> count;  ///< by cell: its length
@@ -40,22 +46,18 @@ struct LightLists {
 /// finds the nearest and the farthest surface of each tile and a mask of the 32 depth slices between them
 /// that contain surfaces, and lists are culled by both (Harada et al., "A 2.5D Culling for Forward+", 2012).
 /// They depend on lights, view, grid and depth.
-[[nodiscard]] LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                                         BufferHandle<gpu::Light> light_buffer, const FrameView& view,
-                                         const LightGrid& grid, std::optional<TextureHandle> depth);
+[[nodiscard]] LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs,
+                                         std::optional<TextureHandle> depth);
 
 /// Adds nodes `blended-light-tiles-bins` (CPU) and `blended-light-tiles` (compute): light lists of tiles
 /// without depth bounds, for blended surfaces, which lie in front of the surfaces that bound the other lists.
 /// They depend on lights, view, grid and layout. The lists are empty while the scene has no blended surfaces.
-[[nodiscard]] LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                                                 BufferHandle<gpu::Light> light_buffer, const FrameView& view,
-                                                 const LightGrid& grid, ValueHandle<SceneLayout> layout);
+[[nodiscard]] LightLists add_blended_light_tiles(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs,
+                                                 ValueHandle<SceneLayout> layout);
 
 /// Adds nodes `light-clusters-bins` (CPU) and `light-clusters` (compute): light lists of clusters (Olsson et
 /// al., "Clustered Deferred and Forward Shading", 2012). They depend on lights, view and grid.
-[[nodiscard]] LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, ValueHandle<LightTable> lights,
-                                            BufferHandle<gpu::Light> light_buffer, const FrameView& view,
-                                            const LightGrid& grid);
+[[nodiscard]] LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs);
 
 /// For a pass whose shader includes light_list.glsl with LIGHT_LIST_CELLS.
 void read_light_lists(Pass& pass, const LightLists& lists);

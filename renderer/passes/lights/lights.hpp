@@ -24,6 +24,12 @@ struct LightTable {
     bool operator==(const LightTable&) const = default;
 };
 
+/// The lights for the CPU and for shaders, in the same order.
+struct SceneLights {
+    ValueHandle<LightTable> table;
+    BufferHandle<gpu::Light> buffer;
+};
+
 /// Adds node `lights` (CPU): gathers the light components: point lights, then spot lights, then directional
 /// lights. Lights that emit nothing are left out. Depends on the light components, Transform and the scene's
 /// metrics.

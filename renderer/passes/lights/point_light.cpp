@@ -26,7 +26,8 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
             .casts_shadow = light.casts_shadow};
 }
 
-void gather(const World& world, const SceneMetrics& /*metrics*/, std::vector<LightTable::Entry>& entries) {
+void gather_point_lights(const World& world, const SceneMetrics& /*metrics*/,
+                         std::vector<LightTable::Entry>& entries) {
     gather_lights<PointLight>(world, entries, point_entry);
 }
 
@@ -34,7 +35,7 @@ void gather(const World& world, const SceneMetrics& /*metrics*/, std::vector<Lig
 
 const LightKind point_light{
     .read = [](Pass& pass) { pass.read<PointLight>(); },
-    .gather = gather,
+    .gather = gather_point_lights,
     .bounds =
         [](const gpu::Light& light) {
             return LightBounds{light.position, light.range};

@@ -171,13 +171,21 @@ std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, c
     return due;
 }
 
-void draw_views(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMaps& out,
-                const ShadowSettings& settings, const ShadowPrograms& programs,
-                const std::vector<ShadowPlan::View>& due) {
+/// What the node is made of.
+struct ShadowNode {
+    SceneData scene;
+    ShadowMaps out;
+    ShadowSettings settings;
+    ShadowPrograms programs;
+};
+
+void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vector<ShadowPlan::View>& due) {
+    const auto& out = node.out;
+    const ShadowSettings& settings = node.settings;
     run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
 
     const gl::Functions& gl = gpu.gl();
-    bind_meshes(gpu, run, scene);
+    bind_meshes(gpu, run, node.scene);
     gl.Enable(GL_DEPTH_TEST);
     gl.Enable(GL_DEPTH_CLAMP);
     gl.Enable(GL_POLYGON_OFFSET_FILL);
@@ -192,7 +200,7 @@ void draw_views(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowMa
         gl.Viewport(0, 0, resolution, resolution);
         const float far_depth = 0.0F;
         gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
-        draw_view(gpu, run, scene, programs, view.clip_from_world);
+        draw_view(gpu, run, node.scene, node.programs, view.clip_from_world);
     }
     gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     target.attach_depth(0);
@@ -266,7 +274,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
             .drawn = pass.write(graph.value<DrawnShadows>("drawn shadows"))};
         pass.run([=, &gpu](Execution& run) {
             const auto due = due_views(run, run.changed(surfaces), out, settings);
-            draw_views(gpu, run, scene, out, settings, programs, due);
+            draw_views(gpu, run, {scene, out, settings, programs}, due);
         });
         return out;
     });

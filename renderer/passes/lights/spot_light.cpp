@@ -37,13 +37,14 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
             .casts_shadow = light.casts_shadow};
 }
 
-void gather(const World& world, const SceneMetrics& /*metrics*/, std::vector<LightTable::Entry>& entries) {
+void gather_spot_lights(const World& world, const SceneMetrics& /*metrics*/,
+                        std::vector<LightTable::Entry>& entries) {
     gather_lights<SpotLight>(world, entries, spot_entry);
 }
 
 /// For narrow cones (less than 45 degrees), the bounding sphere of the cone with its spherical cap: it is
 /// smaller than the sphere of radius `range` around the light.
-LightBounds bounds(const gpu::Light& light) {
+LightBounds bounds_of_spot(const gpu::Light& light) {
     if (light.cos_outer <= std::sqrt(0.5F)) {
         return {light.position, light.range};
     }
@@ -51,7 +52,7 @@ LightBounds bounds(const gpu::Light& light) {
     return {light.position + light.direction * radius, radius};
 }
 
-ShadowShape shadow(const gpu::Light& light, const SceneMetrics& /*metrics*/) {
+ShadowShape shadow_of_spot(const gpu::Light& light, const SceneMetrics& /*metrics*/) {
     if (light.cos_outer < std::cos(widest_map)) {
         return {};
     }
@@ -60,7 +61,9 @@ ShadowShape shadow(const gpu::Light& light, const SceneMetrics& /*metrics*/) {
 
 }  // namespace
 
-const LightKind spot_light{
-    .read = [](Pass& pass) { pass.read<SpotLight>(); }, .gather = gather, .bounds = bounds, .shadow = shadow};
+const LightKind spot_light{.read = [](Pass& pass) { pass.read<SpotLight>(); },
+                           .gather = gather_spot_lights,
+                           .bounds = bounds_of_spot,
+                           .shadow = shadow_of_spot};
 
 }  // namespace candela

@@ -13,7 +13,7 @@ std::uint32_t blocks(std::uint32_t pixels) {
 }  // namespace
 
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
-                           const FrameView& view, glm::uvec2 size) {
+                           const FrameView& view) {
     return graph.add("deferred", [&](Pass& pass) {
         pass.read(gbuffer.albedo, {Usage::sampled, UNIT_ALBEDO});
         pass.read(gbuffer.normal, {Usage::sampled, UNIT_NORMAL});
@@ -21,8 +21,8 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
         read_lighting(pass, lighting);
         read_view(pass, view);
         const gl::Program& program = gpu.program({"shading/deferred.comp"}, lighting_variant(lighting));
-        const auto radiance =
-            pass.write(graph.texture("radiance", {size, Format::rgba32f}), {Usage::storage, IMAGE_RADIANCE});
+        const auto radiance = pass.write(graph.texture("radiance", {view.size, Format::rgba32f}),
+                                         {Usage::storage, IMAGE_RADIANCE});
         pass.run([=, &gpu, &program](Execution& run) {
             const gl::Functions& gl = gpu.gl();
             program.use();
@@ -31,7 +31,7 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
                     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
                 }
                 begin_lighting_part(program, part);
-                gl.DispatchCompute(blocks(size.x), blocks(size.y), 1);
+                gl.DispatchCompute(blocks(view.size.x), blocks(view.size.y), 1);
             }
         });
         return radiance;

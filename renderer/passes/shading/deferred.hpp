@@ -11,8 +11,8 @@ namespace candela {
 /// Adds node `deferred` (compute): shades the G-buffer with the evaluator in shaders/shading/lighting.glsl,
 /// by all lights or by the light list of each pixel's cell. Takes several dispatches if lists are longer than
 /// `most_visited`. Depends on the G-buffer, the lighting and the view. Returns reflected radiance, rgba32f,
-/// `size` pixels, alpha 1 where there is a surface.
+/// `view.size` pixels, alpha 1 where there is a surface.
 [[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer,
-                                         const Lighting& lighting, const FrameView& view, glm::uvec2 size);
+                                         const Lighting& lighting, const FrameView& view);
 
 }  // namespace candela

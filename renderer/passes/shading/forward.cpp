@@ -6,8 +6,7 @@
 namespace candela {
 
 ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                           const FrameView& view, std::optional<TextureHandle> prepass_depth,
-                           glm::uvec2 size) {
+                           const FrameView& view, std::optional<TextureHandle> prepass_depth) {
     return graph.add("forward", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_lighting(pass, lighting);
@@ -15,12 +14,14 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         const SurfacePrograms programs =
             surface_programs(gpu, "shading/forward.frag", lighting_variant(lighting));
         ShadedSurfaces out;
-        out.radiance = pass.write(graph.texture("radiance", {size, Format::rgba32f}), Usage::colour_target);
+        out.radiance =
+            pass.write(graph.texture("radiance", {view.size, Format::rgba32f}), Usage::colour_target);
         if (prepass_depth) {
             pass.read(*prepass_depth, Usage::depth_target);
             out.depth = *prepass_depth;
         } else {
-            out.depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target);
+            out.depth =
+                pass.write(graph.texture("depth", {view.size, Format::depth32f}), Usage::depth_target);
         }
         pass.run([=, &gpu, after_prepass = prepass_depth.has_value()](Execution& run) {
             if (after_prepass) {

@@ -5,16 +5,15 @@
 
 namespace candela {
 
-Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
-                    glm::uvec2 size) {
+Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view) {
     return graph.add("gbuffer", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "surfaces/gbuffer.frag");
         const Gbuffer out{
-            .albedo = pass.write(graph.texture("albedo", {size, Format::rgba16f}), Usage::colour_target),
-            .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target),
-            .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target)};
+            .albedo = pass.write(graph.texture("albedo", {view.size, Format::rgba16f}), Usage::colour_target),
+            .normal = pass.write(graph.texture("normal", {view.size, Format::rg32f}), Usage::colour_target),
+            .depth = pass.write(graph.texture("depth", {view.size, Format::depth32f}), Usage::depth_target)};
         pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
             draw_surfaces(gpu, run, scene, programs);

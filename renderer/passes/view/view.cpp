@@ -115,7 +115,7 @@ FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraV
         pass.run([=, &gpu](Execution& run) {
             upload_one(gpu, run, constants, view_constants(run.value(camera), size));
         });
-        return FrameView{camera, constants};
+        return FrameView{camera, constants, size};
     });
 }
 

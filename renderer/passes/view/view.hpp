@@ -55,6 +55,7 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 struct FrameView {
     ValueHandle<CameraView> camera;
     BufferHandle<gpu::ViewConstants> constants;
+    glm::uvec2 size{1};  ///< of the rendered picture, pixels
 };
 
 /// Adds node `view-upload` (CPU, then upload): the constants in shaders/view/view.glsl, for a picture of

@@ -127,8 +127,9 @@ void light_points(const gl::Functions& gl, const gl::Program& program, std::uint
     }
 }
 
-DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
-                             const SurfelVisibility& visibility, const SurfelLights& lights) {
+DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                             const SurfelVisibility& visibility, const SceneLights& lights) {
+    const Surfels& surfels = visibility.surfels;
     return graph.add("surfel-light", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
@@ -185,6 +186,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         const gl::Program& rows = gpu.program({"vpls/surfel_rows.comp"});
         const gl::Program& seer = gpu.program({"vpls/surfel_points.comp"});
         const SurfelVisibility out{
+            .surfels = surfels,
             .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
                                        {Usage::storage, BINDING_FORM_FACTORS}),
             .rows = pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent),
@@ -233,9 +235,10 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
     });
 }
 
-Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const Surfels& surfels,
-                      const SurfelVisibility& visibility, const SurfelLights& lights, std::uint32_t bounces) {
-    const DirectLight direct = add_direct_light(graph, gpu, tracing, surfels, visibility, lights);
+Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const SurfelVisibility& visibility,
+                      const SceneLights& lights, std::uint32_t bounces) {
+    const Surfels& surfels = visibility.surfels;
+    const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, lights);
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});

@@ -12,6 +12,7 @@ namespace candela {
 
 /// Visibility between surfels, and between a surfel and the points of its cell.
 struct SurfelVisibility {
+    Surfels surfels;
     /// Half floats, two per word, `surfel_columns` per surfel; 0 if hidden. Layout: shaders/vpls/surfel.glsl.
     BufferHandle<std::uint32_t> form_factors;
     /// By surfel: scale of its form factors, and the cosine-weighted share of its hemisphere in which no
@@ -37,12 +38,6 @@ struct SurfelColumns {
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                                      const Surfels& surfels, ValueHandle<SceneMotion> motion);
 
-/// The real lights, on the CPU and on the GPU.
-struct SurfelLights {
-    ValueHandle<LightTable> table;
-    BufferHandle<gpu::Light> buffer;
-};
-
 /// Adds two nodes. `surfel-light` (compute): light of the real lights at each point of the surfels' cells,
 /// with one shadow ray per point and light. `surfel-bounce` (compute): surfels gather the light that other
 /// surfels reflect, bounce by bounce (Jacobi iteration of the radiosity equation; Goral et al., "Modeling the
@@ -50,7 +45,7 @@ struct SurfelLights {
 /// first reflected light is left; then they are written as VPLs. They depend on surfels, visibility, lights
 /// and BVH.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                    const Surfels& surfels, const SurfelVisibility& visibility,
-                                    const SurfelLights& lights, std::uint32_t bounces);
+                                    const SurfelVisibility& visibility, const SceneLights& lights,
+                                    std::uint32_t bounces);
 
 }  // namespace candela

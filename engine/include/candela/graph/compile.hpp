@@ -61,7 +61,7 @@ class CompiledGraph {
 
 struct CompileOptions {
     /// With a seed, the passes run in a random valid order, the same for the same seed (for tests). Without
-    /// one they run in the order of declaration, except where `Pass::after` requires otherwise.
+    /// one they run in the order of declaration.
     std::optional<std::uint64_t> shuffle_seed = std::nullopt;
 };
 
@@ -77,7 +77,7 @@ struct CompileResult {
 
 /// Validates, orders and culls the passes, then plans lifetimes, shared objects and barriers. Consumes the
 /// graph. Reports misuse in the result and does not throw for it; makes no GPU calls. Takes time linear in
-/// passes and accesses, or O(n log n) where `after` requires another order than that of declaration.
+/// passes and accesses.
 ///
 /// A pass is kept if it has side effects, if it writes an imported resource, or if a kept pass reads its
 /// result, modifies it in place or reads its history. All other passes are culled.

@@ -9,16 +9,14 @@ namespace candela {
 enum class FaultCode : std::uint8_t {
     foreign_handle,       ///< a null handle, or one of another graph or of another kind
     stale_handle,         ///< a read of a version that another pass has already overwritten
-    two_writers,          ///< two passes write one version, and `after` does not order them
+    two_writers,          ///< two passes write one version
     unwritten_read,       ///< a read before any write, or a history of what no pass writes
     wrong_usage,          ///< an access that the resource's kind, format or lifetime does not allow
     feedback,             ///< a pass declares a read of the version that it overwrites
     attachment_mismatch,  ///< attachments of different sizes, or two depth targets
     duplicate_pass,       ///< two passes with the same name
     duplicate_resource,   ///< two persistent or imported resources with the same kind and name
-    unknown_pass,         ///< `after` with a name that no pass has
-    nested_pass,          ///< a pass added while another pass is being declared
-    cycle                 ///< passes that depend on each other in a cycle
+    nested_pass           ///< a pass added while another pass is being declared
 };
 
 /// One reason why a graph does not compile. `message` is one line that names the passes and resources.

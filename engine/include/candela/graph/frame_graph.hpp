@@ -23,11 +23,10 @@ struct CompileResult;
 /// during the call of `FrameGraph::add`.
 ///
 /// A handle names one version of a resource. Each write returns the handle of the next version, and passes
-/// declared after the write must use that handle. A write to version 0 does not depend on earlier content:
-/// the pass must fill the resource. A write to version 1 or later modifies the content in place: the pass
-/// depends on that content and does not declare a read of it. Two passes may not write the same version: a
-/// pass that writes a handle which another pass has already overwritten must also call `after` with the name
-/// of the pass that wrote the newest version; it then modifies that newest version.
+/// declared after the write must use that handle, so that handles alone order the passes. A write to version
+/// 0 does not depend on earlier content: the pass must fill the resource. A write to version 1 or later
+/// modifies the content in place: the pass depends on that content and does not declare a read of it. Two
+/// passes may not write the same version.
 ///
 /// No member throws on misuse; `compile` reports the errors.
 class Pass {
@@ -90,10 +89,6 @@ class Pass {
     /// same inputs may give a different result. Implied for passes that read a history. Only verification
     /// uses this: it does not run such passes again.
     void remembers() { declared_.passes.back().remembers = true; }
-
-    /// This pass runs after the named one, which may be declared later. For order without a data dependency:
-    /// it does not prevent the named pass from being culled. `compile` reports unknown names.
-    void after(std::string_view pass) { declared_.after(pass); }
 
     /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
     /// replaces the function; a pass without one only has its barriers issued and its attachments bound.

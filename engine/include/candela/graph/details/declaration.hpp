@@ -69,7 +69,6 @@ struct PassNode {
     std::uint32_t first_access = 0;  // each list ends where the next pass's begins
     std::uint32_t first_component = 0;
     std::uint32_t first_parameter = 0;
-    std::uint32_t first_after = 0;
     bool side_effect = false;
     bool remembers = false;
 };
@@ -113,14 +112,6 @@ class Arena {
     std::vector<Owned> owned_;
 };
 
-/// A write to a version that another pass has already overwritten. Valid only if the pass is declared `after`
-/// the pass that wrote the newest version.
-struct LateWrite {
-    std::uint32_t resource;
-    std::uint32_t version;  // the version of the handle
-    std::uint32_t writer;   // the pass that wrote the newest version at that time
-};
-
 /// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in one arena.
 class Declaration {
  public:
@@ -135,7 +126,6 @@ class Declaration {
     void end_pass();
     void read(ResourceHandle handle, ResourceKind kind, Binding binding);
     ResourceHandle write(ResourceHandle handle, ResourceKind kind, Binding binding);
-    void after(std::string_view pass) { afters.push_back(arena_->store_text(pass)); }
 
     template <class T>
     T* store(T value) {
@@ -152,9 +142,6 @@ class Declaration {
     [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const {
         return part(parameters, pass, &PassNode::first_parameter);
     }
-    [[nodiscard]] std::span<const std::string_view> afters_of(std::uint32_t pass) const {
-        return part(afters, pass, &PassNode::first_after);
-    }
     [[nodiscard]] const TextureDesc& texture(const Resource& resource) const {
         return textures[resource.desc];
     }
@@ -165,7 +152,6 @@ class Declaration {
     std::vector<Access> accesses;
     std::vector<ComponentRead> components;
     std::vector<Parameter> parameters;
-    std::vector<std::string_view> afters;
     std::vector<Resource> resources;
     std::vector<TextureDesc> textures;
     std::vector<BufferDesc> buffers;
@@ -186,11 +172,9 @@ class Declaration {
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
     void fault(FaultCode code, std::string message) { faults.push_back({code, std::move(message)}); }
     void check_binding(const Resource& resource, Binding binding, bool write);
-    void check_late_writes();
     void check_attachments();
 
     std::unique_ptr<Arena> arena_;
-    std::vector<LateWrite> late_writes_;  // of the pass being declared
     bool declaring_ = false;
 };
 

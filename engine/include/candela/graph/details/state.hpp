@@ -96,16 +96,22 @@ struct Bound {
     Binding binding;
 };
 
-/// A kept pass, in execution order. Its lists end where those of the next step begin.
+/// A version that a pass reads or modifies in place.
+struct Input {
+    std::uint32_t version;  // id
+    Stamp stamp = 0;        // at the pass's last run
+};
+
+/// A kept pass.
 struct Step {
     void (*invoke)(void*, Execution&) = nullptr;
     void* function = nullptr;
     std::string_view name;
-    std::uint32_t first_input = 0;
-    std::uint32_t first_output = 0;
-    std::uint32_t first_revision = 0;
-    std::uint32_t first_target = 0;
-    std::uint32_t first_bound = 0;
+    std::vector<Input> inputs;
+    std::vector<Output> outputs;
+    std::vector<Revision> revisions;
+    std::vector<Target> targets;
+    std::vector<Bound> bound;
     Barrier barrier = Barrier::none;
     bool side_effect = false;
     bool writes_import = false;
@@ -115,22 +121,17 @@ struct Step {
 
 /// The steps of one graph and the state kept between its frames. Slot i belongs to object i of the plan.
 struct State {
-    std::vector<Step> steps;            // and one more, which ends the lists
-    std::vector<std::uint32_t> inputs;  // version ids that passes read or modify in place
-    std::vector<Stamp> input_stamps;    // per input: its stamp at the pass's last run
-    std::vector<Output> outputs;
-    std::vector<Revision> revisions;
-    std::vector<Target> targets;
-    std::vector<Bound> bound;
+    std::vector<Step> steps;        // in execution order
     std::vector<Version> versions;  // per version id
     std::vector<Slot> slots;
     std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
     std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
-    std::vector<std::uint8_t> need;      // per step, and one more: scratch of a frame
-    std::vector<Content> contents;       // per version id; empty without verification
+    std::vector<std::uint8_t>
+        need;  // per step, and one more for versions that no step makes: scratch of a frame
+    std::vector<Content> contents;  // per version id; empty without verification
 
-    [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()) - 1; }
+    [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()); }
 };
 
 /// The state of a graph that has not run. The slots have no objects yet.
