@@ -101,27 +101,27 @@ bool same_radiance(Configuration a, const Configuration& b) {
 
 Renderer::State::State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
     : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
-    adopt(configuration_, size_, {});
+    switch_to(configuration_, size_, {});
 }
 
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
-    std::vector<std::string> faults = validate(configuration);
-    if (!faults.empty() || configuration == configuration_) {
-        return faults;
+    std::vector<std::string> errors = validate(configuration);
+    if (!errors.empty() || configuration == configuration_) {
+        return errors;
     }
     try {
-        adopt(configuration, size_, quality_);
+        switch_to(configuration, size_, quality_);
     } catch (const gl::GlError& error) {
-        faults.emplace_back(error.what());
+        errors.emplace_back(error.what());
     }
-    return faults;
+    return errors;
 }
 
-void Renderer::State::adopt(const Configuration& configuration, glm::uvec2 size, const Quality& quality) {
+void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality) {
     FrameGraph graph;
     FrameHandles frame =
         build_frame(graph, gpu_, configuration, {rendered_size(size, quality), size, quality.interleave});
-    runtime_.adopt(compile(std::move(graph)).take());
+    runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = frame;
     if (size != size_ || quality != quality_ || !same_radiance(configuration, configuration_)) {
         ++refinement_clock_.epoch;
@@ -142,7 +142,7 @@ void Renderer::State::render(const World& world, Entity camera, const Target& ta
     const gl::HostState host_state(gpu_.gl());
     const Quality quality = quality_now(world, {camera, target.size, jitter});
     if (target.size != size_ || quality != quality_) {
-        adopt(configuration_, target.size, quality);
+        switch_to(configuration_, target.size, quality);
     }
     runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});

@@ -42,7 +42,7 @@ class Renderer::State {
         Quality quality;
     };
 
-    void adopt(const Configuration& configuration, glm::uvec2 size, const Quality& quality);
+    void switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality);
     [[nodiscard]] double budget_ms() const;
     [[nodiscard]] Quality quality_now(const World& world, const ViewRequest& request);
     void learn_cost(const PendingFrame& frame);

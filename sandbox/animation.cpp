@@ -55,9 +55,9 @@ std::optional<T> value_at(const Keys<T>& keys, Interpolation interpolation, int 
 }
 
 [[noreturn]] void fail(const Script& script, std::size_t track, const char* member,
-                       const std::string& fault) {
+                       const std::string& error) {
     throw std::runtime_error(fmt::format("{}: tracks[{}].{}: '{}' {}", script.path.string(), track, member,
-                                         script.tracks[track].node, fault));
+                                         script.tracks[track].node, error));
 }
 
 std::vector<Entity> find_nodes(const World& world, const std::string& wanted) {

@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-[[noreturn]] void fail(const std::string& place, std::string_view fault) {
-    throw std::runtime_error(place.empty() ? std::string(fault) : fmt::format("{}: {}", place, fault));
+[[noreturn]] void fail(const std::string& place, std::string_view error) {
+    throw std::runtime_error(place.empty() ? std::string(error) : fmt::format("{}: {}", place, error));
 }
 
 /// The path of a member, for error messages. The path of the script itself is empty.
@@ -196,8 +196,8 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
 Json parse(std::string_view text) {
     try {
         return Json::parse(text);
-    } catch (const Json::parse_error& fault) {
-        const auto read = text.substr(0, std::min(fault.byte, text.size()));
+    } catch (const Json::parse_error& error) {
+        const auto read = text.substr(0, std::min(error.byte, text.size()));
         const auto line = 1 + std::count(read.begin(), read.end(), '\n');
         throw std::runtime_error(fmt::format("not valid JSON: line {}", line));
     } catch (const Json::out_of_range&) {
@@ -245,8 +245,8 @@ Script load_script(const fs::path& file_or_name) {
         Script script = read_script(text);
         script.path = path;
         return script;
-    } catch (const std::runtime_error& fault) {
-        throw std::runtime_error(fmt::format("{}: {}", path.string(), fault.what()));
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
     }
 }
 

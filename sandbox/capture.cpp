@@ -21,8 +21,8 @@ class LinearOutput {
     explicit LinearOutput(Renderer& renderer) : renderer_(renderer), before_(renderer.configuration()) {
         Configuration linear = before_;
         linear.tone_map.enabled = false;
-        const std::vector<std::string> faults = renderer_.configure(linear);
-        if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
+        const std::vector<std::string> errors = renderer_.configure(linear);
+        if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
     }
     ~LinearOutput() {
         // The renderer had this configuration before. If it fails nonetheless, the linear one stays.

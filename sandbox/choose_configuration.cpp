@@ -14,7 +14,7 @@ namespace {
 Configuration read_over(const Configuration& base, const std::filesystem::path& path) {
     const ConfigurationResult result = read_configuration(read_file(path), base);
     if (result.configuration) return *result.configuration;
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), fmt::join(result.faults, "; ")));
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), fmt::join(result.errors, "; ")));
 }
 
 template <class T>
@@ -43,8 +43,8 @@ Configuration choose_configuration(const Options& options, bool in_window) {
     override_by(options.seed, configuration.vpls.seed);
     override_by(options.vpl_visibility, configuration.visibility.method);
     override_by(options.interleave, configuration.interleave);
-    const std::vector<std::string> faults = validate(configuration);
-    if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
+    const std::vector<std::string> errors = validate(configuration);
+    if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
     return configuration;
 }
 

@@ -13,8 +13,8 @@ namespace {
 ConfigurationResult read(const Options& options) {
     try {
         return {choose_configuration(options, true), {}};
-    } catch (const std::runtime_error& fault) {
-        return {std::nullopt, {fault.what()}};
+    } catch (const std::runtime_error& error) {
+        return {std::nullopt, {error.what()}};
     }
 }
 

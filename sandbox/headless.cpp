@@ -37,8 +37,8 @@ int frames_of(const Options& options, const Scene& scene) {
 }
 
 void apply(Renderer& renderer, const Configuration& configuration) {
-    const std::vector<std::string> faults = renderer.configure(configuration);
-    if (!faults.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(faults, "; ")));
+    const std::vector<std::string> errors = renderer.configure(configuration);
+    if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
 }
 
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,

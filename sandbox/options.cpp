@@ -43,16 +43,16 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target,
 }
 
 /// All errors have the same form: the flag, the value and what is wrong with it.
-[[noreturn]] void fail(std::string_view flag, std::string_view value, std::string_view fault) {
-    throw CLI::ValidationError(std::string(flag), fmt::format("'{}' {}", value, fault));
+[[noreturn]] void fail(std::string_view flag, std::string_view value, std::string_view error) {
+    throw CLI::ValidationError(std::string(flag), fmt::format("'{}' {}", value, error));
 }
 
 /// Parses all of `text` as a number >= `least`.
 template <typename Number>
 std::optional<Number> parse_number(std::string_view text, Number least) {
     Number number{};
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool whole = fault == std::errc() && end == text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
     return whole && number >= least ? std::optional(number) : std::nullopt;
 }
 
@@ -201,8 +201,8 @@ std::variant<Options, EarlyExit> parse_options(int count, const char* const* arg
         return EarlyExit{0, app.help()};
     } catch (const CLI::CallForVersion& version) {
         return EarlyExit{0, fmt::format("{}\n", version.what())};
-    } catch (const CLI::ParseError& fault) {
-        return EarlyExit{2, fmt::format("candela: {}\n", one_line(fault.what()))};
+    } catch (const CLI::ParseError& error) {
+        return EarlyExit{2, fmt::format("candela: {}\n", one_line(error.what()))};
     }
 }
 

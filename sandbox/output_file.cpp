@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, const std::error_code& fault) {
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), fault.message()));
+[[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
+    throw std::runtime_error(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
 }
 
 std::error_code last_error() {
@@ -36,12 +36,12 @@ std::error_code write_bytes(const fs::path& path, const char* mode, std::span<co
 void replace_file(const fs::path& path, std::span<const std::byte> bytes) {
     fs::path fresh = path;
     fresh += fmt::format(".{}.part", ::getpid());
-    std::error_code fault = write_bytes(fresh, "wb", bytes);
-    if (!fault) fs::rename(fresh, path, fault);
-    if (!fault) return;
+    std::error_code error = write_bytes(fresh, "wb", bytes);
+    if (!error) fs::rename(fresh, path, error);
+    if (!error) return;
     std::error_code ignored;
     fs::remove(fresh, ignored);
-    fail(path, fault);
+    fail(path, error);
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ void write_file(const fs::path& path, std::span<const std::byte> bytes) {
     if (!fs::exists(status)) return replace_file(path, bytes);
     // A symbolic link stays a link: its target is replaced.
     if (fs::is_regular_file(status)) return replace_file(fs::canonical(path), bytes);
-    if (const std::error_code fault = write_bytes(path, "wb", bytes)) fail(path, fault);
+    if (const std::error_code error = write_bytes(path, "wb", bytes)) fail(path, error);
 }
 
 void write_text(const fs::path& path, std::string_view text) {

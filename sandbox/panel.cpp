@@ -219,7 +219,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
     }
     ImGui::End();
     // After drawing the account, which describes the last frame and thus the old configuration.
-    if (wanted != renderer.configuration()) faults = renderer.configure(wanted);
+    if (wanted != renderer.configuration()) errors = renderer.configure(wanted);
 }
 
 void Panel::draw_configuration(Configuration& wanted, const Quality& present) {
@@ -247,7 +247,7 @@ void Panel::draw_configuration(Configuration& wanted, const Quality& present) {
     ImGui::DragFloat("exposure (EV)", &wanted.tone_map.exposure_ev, 0.02F);
 
     ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(255, 96, 96, 255));
-    for (const std::string& fault : faults) ImGui::TextWrapped("%s", fault.c_str());
+    for (const std::string& error : errors) ImGui::TextWrapped("%s", error.c_str());
     ImGui::PopStyleColor();
 }
 

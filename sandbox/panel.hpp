@@ -15,7 +15,7 @@ class Panel {
  public:
     bool visible = true;
     /// The errors of the configuration that was last requested, in the panel or elsewhere.
-    std::vector<std::string> faults;
+    std::vector<std::string> errors;
 
     /// Draws the panel and applies the user's changes. `playback` is null without an animation. Call this
     /// between Gui::begin_frame and Gui::end_frame.

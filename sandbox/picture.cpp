@@ -36,8 +36,8 @@ static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
 template <typename T>
 using CMemory = std::unique_ptr<T, decltype(&std::free)>;
 
-[[noreturn]] void fail(const fs::path& path, std::string_view fault) {
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), fault));
+[[noreturn]] void fail(const fs::path& path, std::string_view error) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), error));
 }
 
 std::size_t pixel_count(glm::ivec2 size) {
@@ -58,9 +58,9 @@ std::string read_bytes(const fs::path& path) {
 
 /// Throws with the message of tinyexr, and frees it.
 [[noreturn]] void fail_exr(const fs::path& path, std::string_view action, const char* message) {
-    const std::string fault = message != nullptr ? message : "unknown fault";
+    const std::string error = message != nullptr ? message : "unknown error";
     FreeEXRErrorMessage(message);
-    fail(path, fmt::format("{}: {}", action, fault));
+    fail(path, fmt::format("{}: {}", action, error));
 }
 
 /// OpenEXR stores channels separately, sorted by name: blue, green, red.

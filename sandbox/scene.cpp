@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 std::optional<std::size_t> parse_index(const std::string& text) {
     std::size_t index = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), index);
-    const bool whole = fault == std::errc() && end == text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
     return whole ? std::optional(index) : std::nullopt;
 }
 

@@ -27,15 +27,15 @@ namespace candela::sandbox {
 
 namespace {
 
-constexpr int faulty_input = 2;
+constexpr int bad_input = 2;
 constexpr int no_driver = 3;
 constexpr int wrong_picture = 4;
 constexpr glm::ivec2 window_size{1280, 720};
 constexpr glm::ivec2 headless_size{512, 512};
 
 /// Prints the exception's message on one line.
-int report_fault(const std::exception& fault, int status) {
-    std::string line = fault.what();
+int report_error(const std::exception& error, int status) {
+    std::string line = error.what();
     for (char& c : line) c = c == '\n' ? ' ' : c;
     fmt::print(stderr, "candela: {}\n", line);
     return status;
@@ -73,9 +73,9 @@ std::unique_ptr<Window> open_window(const Options& options, glm::ivec2 size,
     if (!wants_window(options)) return nullptr;
     try {
         return std::make_unique<Window>(size, "Candela");
-    } catch (const ContextError& fault) {
+    } catch (const ContextError& error) {
         if (options.context == ContextChoice::window) throw;
-        tried.emplace_back(fault.what());
+        tried.emplace_back(error.what());
         return nullptr;
     }
 }
@@ -86,8 +86,8 @@ std::unique_ptr<HeadlessContext> open_headless(ContextChoice choice, std::vector
             auto context = HeadlessContext::create(kind);
             context->make_current();
             return context;
-        } catch (const ContextError& fault) {
-            tried.emplace_back(fault.what());
+        } catch (const ContextError& error) {
+            tried.emplace_back(error.what());
         }
     }
     throw ContextError(fmt::format("no OpenGL 4.5 context: {}", fmt::join(tried, "; ")));
@@ -130,7 +130,7 @@ void run_session(const Options& options) {
         const Entity camera = choose_camera(scene.world, options.camera, aspect(size_in_window));
         return run_window(*window, scene, camera, configuration, watch, options);
     }
-    for (const std::string& fault : tried) fmt::print(stderr, "candela: no window: {}\n", fault);
+    for (const std::string& error : tried) fmt::print(stderr, "candela: no window: {}\n", error);
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
@@ -144,12 +144,12 @@ int run(const Options& options) {
     try {
         run_session(options);
         return 0;
-    } catch (const ContextError& fault) {
-        return report_fault(fault, no_driver);
-    } catch (const EnergyError& fault) {
-        return report_fault(fault, wrong_picture);
-    } catch (const std::exception& fault) {
-        return report_fault(fault, faulty_input);
+    } catch (const ContextError& error) {
+        return report_error(error, no_driver);
+    } catch (const EnergyError& error) {
+        return report_error(error, wrong_picture);
+    } catch (const std::exception& error) {
+        return report_error(error, bad_input);
     }
 }
 

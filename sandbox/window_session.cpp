@@ -91,8 +91,8 @@ class WindowSession {
     void take_saved_configuration() {
         const std::optional<ConfigurationResult> saved = watch_.poll(ConfigWatch::Clock::now());
         if (!saved) return;
-        panel_.faults = saved->configuration ? renderer_.configure(*saved->configuration) : saved->faults;
-        for (const std::string& fault : panel_.faults) fmt::print(stderr, "candela: {}\n", fault);
+        panel_.errors = saved->configuration ? renderer_.configure(*saved->configuration) : saved->errors;
+        for (const std::string& error : panel_.errors) fmt::print(stderr, "candela: {}\n", error);
     }
 
     /// The viewer follows the animated camera that it started from, even if the user has moved away from it.

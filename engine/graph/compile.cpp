@@ -16,20 +16,20 @@ namespace detail {
 namespace {
 
 /// Checks that pass names are unique.
-void check_passes(const Declaration& declared, std::vector<Fault>& faults) {
+void check_passes(const Declaration& declared, std::vector<CompileError>& errors) {
     IndexTable table(declared.pass_count());
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
         const std::string_view name = declared.passes[pass].name;
         const auto same = [&](std::uint32_t other) { return declared.passes[other].name == name; };
         if (table.find_or_insert(hash_of(name), pass, same) != none) {
-            faults.push_back({FaultCode::duplicate_pass, fmt::format("two passes are called '{}'", name)});
+            errors.push_back({ErrorCode::duplicate_pass, fmt::format("two passes are called '{}'", name)});
         }
     }
 }
 
 /// Checks that the names of persistent and imported resources are unique, and that every resource with a
 /// history is written.
-void check_resources(const Declaration& declared, std::vector<Fault>& faults) {
+void check_resources(const Declaration& declared, std::vector<CompileError>& errors) {
     const auto known = [](const Resource& resource) {
         return resource.lifetime != Lifetime::transient && resource.history_of == none;
     };
@@ -38,8 +38,8 @@ void check_resources(const Declaration& declared, std::vector<Fault>& faults) {
     for (std::uint32_t index = 0; index < resources.size(); ++index) {
         const Resource& resource = resources[index];
         if (resource.history != none && resource.versions == 0) {
-            faults.push_back(
-                {FaultCode::unwritten_read, fmt::format("{} '{}' has a history, but nobody writes it",
+            errors.push_back(
+                {ErrorCode::unwritten_read, fmt::format("{} '{}' has a history, but nobody writes it",
                                                         to_string(resource.kind), resource.name)});
         }
         if (!known(resource)) {
@@ -50,7 +50,7 @@ void check_resources(const Declaration& declared, std::vector<Fault>& faults) {
         };
         const std::size_t hash = hash_of(resource.name) + static_cast<std::size_t>(resource.kind);
         if (table.find_or_insert(hash, index, same) != none) {
-            faults.push_back({FaultCode::duplicate_resource,
+            errors.push_back({ErrorCode::duplicate_resource,
                               fmt::format("two {}s that are kept or imported are called '{}'",
                                           to_string(resource.kind), resource.name)});
         }
@@ -140,22 +140,22 @@ CompiledGraph CompileResult::take() && {
         return std::move(*graph);
     }
     std::string message = "the frame graph does not compile:";
-    for (const Fault& fault : faults) {
-        message += "\n  " + fault.message;
+    for (const CompileError& error : errors) {
+        message += "\n  " + error.message;
     }
     throw GraphError(message);
 }
 
 CompileResult compile(FrameGraph&& graph, CompileOptions options) {
     detail::Declaration declared = std::move(graph.declared_);
-    std::vector<Fault> faults = std::move(declared.faults);
+    std::vector<CompileError> errors = std::move(declared.errors);
     detail::Plan plan;
 
-    detail::check_passes(declared, faults);
-    detail::check_resources(declared, faults);
+    detail::check_passes(declared, errors);
+    detail::check_resources(declared, errors);
     detail::number_versions(declared, plan);
-    if (!faults.empty()) {
-        return {std::nullopt, std::move(faults)};
+    if (!errors.empty()) {
+        return {std::nullopt, std::move(errors)};
     }
     plan.order = detail::order_passes(declared, plan, options.shuffle_seed);
 

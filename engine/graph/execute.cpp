@@ -44,7 +44,7 @@ double milliseconds(Clock::duration duration) {
 
 const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
     if (!graph_) {
-        throw GraphError("no frame graph has been adopted");
+        throw GraphError("there is no frame graph");
     }
     require_imports();
     notice_world(world);
@@ -61,7 +61,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
         PassRecord& record = record_.passes[position];
         record.ran = record.verified = false;
         record.cpu_ms = 0;
-        carried_ = carried_ | step.barrier;
+        pending_barriers_ = pending_barriers_ | step.barrier;
         if (state_.need[position] == nothing) {
             continue;
         }
@@ -193,13 +193,13 @@ bool GraphRuntime::mark_missing(std::uint32_t from) {
 
 void GraphRuntime::run_step(Execution& execution, bool changed) {
     detail::Step& step = state_.steps[execution.position_];
-    execution.anew_ = repeating_ || !step.has_run || !has_results(step);
+    execution.has_no_result_ = repeating_ || !step.has_run || !has_results(step);
     step.has_run = false;
     begin_outputs(step);
-    if (carried_ != Barrier::none) {
-        backend_.barrier(carried_);
+    if (pending_barriers_ != Barrier::none) {
+        backend_.barrier(pending_barriers_);
     }
-    carried_ = Barrier::none;
+    pending_barriers_ = Barrier::none;
     begin_pass(execution.position_);
     {
         const OnExit end([this] { backend_.end_pass(); });
@@ -336,10 +336,10 @@ void GraphRuntime::invalidate() {
 
 const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
     if (!graph_) {
-        throw GraphError("no frame graph has been adopted");
+        throw GraphError("there is no frame graph");
     }
     if (handle.graph != graph_->declared().id) {
-        throw GraphError("a handle is not of the adopted frame graph");
+        throw GraphError("a handle is not of the current frame graph");
     }
     return graph_->declared().resources.at(handle.resource);
 }
@@ -421,7 +421,7 @@ bool Execution::changed(ResourceHandle read) const {
     const detail::Step& step = state.steps[position_];
     for (const detail::Input& input : step.inputs) {
         if (input.version == version) {
-            return anew_ || state.versions[version].stamp != input.stamp;
+            return has_no_result_ || state.versions[version].stamp != input.stamp;
         }
     }
     throw GraphError(fmt::format("pass '{}' asks whether {} '{}' has changed without having declared it",

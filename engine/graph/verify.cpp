@@ -33,14 +33,14 @@ void GraphRuntime::set_verification(bool on) {
 
 void GraphRuntime::verify(const World& world) {
     if (!graph_ || !verifying_) {
-        throw GraphError("there is no frame to verify: no graph has been adopted, or verification is off");
+        throw GraphError("there is no frame to verify: there is no graph, or verification is off");
     }
     const std::vector<std::uint8_t> again = detail::repeatable_steps(state_);
     const Raised repeating(repeating_);
     Execution execution(*this, world);
-    carried_ = all_barriers;  // the planned barriers assume whole frames, one after the other
+    pending_barriers_ = all_barriers;  // the planned barriers assume whole frames, one after the other
     for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
-        carried_ = carried_ | state_.steps[position].barrier;
+        pending_barriers_ = pending_barriers_ | state_.steps[position].barrier;
         if (!again[position]) {
             continue;
         }
@@ -48,7 +48,7 @@ void GraphRuntime::verify(const World& world) {
         run_step(execution, false);
         record_.passes[position].verified = true;
     }
-    carried_ = all_barriers;
+    pending_barriers_ = all_barriers;
 }
 
 /// Records the contents of the step's outputs. If the inputs have not changed, compares them with those of

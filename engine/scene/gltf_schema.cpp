@@ -22,8 +22,8 @@ namespace {
 using Json = nlohmann::json;
 
 /// What is wrong with a value, worded to follow the value's name in a message; nullopt if it is valid.
-using Fault = std::optional<std::string>;
-using Check = std::function<Fault(const Json& value, const Json& document)>;
+using Problem = std::optional<std::string>;
+using Check = std::function<Problem(const Json& value, const Json& document)>;
 
 struct Rule {
     /// Members joined by dots; `[]` means each item of an array, `{}` each member of an object.
@@ -49,7 +49,7 @@ constexpr Range outer_cone{.lowest = std::numeric_limits<float>::min(), .highest
 constexpr std::uint64_t any_size = std::numeric_limits<std::int64_t>::max();
 constexpr std::uint64_t most_elements = std::numeric_limits<std::uint32_t>::max();
 
-Fault check_number(const Json& value, const Range& range) {
+Problem check_number(const Json& value, const Range& range) {
     if (!value.is_number()) {
         return "is not a number";
     }
@@ -65,13 +65,13 @@ Check number(Range range) {
 }
 
 Check numbers(std::size_t length, Range range) {
-    return [length, range](const Json& value, const Json&) -> Fault {
+    return [length, range](const Json& value, const Json&) -> Problem {
         if (!value.is_array() || value.size() != length) {
             return fmt::format("is not {} numbers", length);
         }
         for (const Json& item : value) {
-            if (Fault fault = check_number(item, range)) {
-                return "holds a member that " + *fault;
+            if (Problem error = check_number(item, range)) {
+                return "holds a member that " + *error;
             }
         }
         return {};
@@ -79,7 +79,7 @@ Check numbers(std::size_t length, Range range) {
 }
 
 Check whole(std::uint64_t lowest, std::uint64_t highest) {
-    return [lowest, highest](const Json& value, const Json&) -> Fault {
+    return [lowest, highest](const Json& value, const Json&) -> Problem {
         if (!value.is_number_integer()) {
             return "is not a whole number";
         }
@@ -92,9 +92,9 @@ Check whole(std::uint64_t lowest, std::uint64_t highest) {
 }
 
 Check stride() {
-    return [](const Json& value, const Json& document) -> Fault {
-        if (Fault fault = whole(4, 252)(value, document)) {
-            return fault;
+    return [](const Json& value, const Json& document) -> Problem {
+        if (Problem error = whole(4, 252)(value, document)) {
+            return error;
         }
         if (value.get<int>() % 4 != 0) {
             return fmt::format("is {}, not a multiple of 4", value.get<int>());
@@ -104,16 +104,17 @@ Check stride() {
 }
 
 Check text() {
-    return [](const Json& value, const Json&) { return value.is_string() ? Fault{} : "is not a string"; };
+    return [](const Json& value, const Json&) { return value.is_string() ? Problem{} : "is not a string"; };
 }
 
 Check flag() {
-    return
-        [](const Json& value, const Json&) { return value.is_boolean() ? Fault{} : "is not true or false"; };
+    return [](const Json& value, const Json&) {
+        return value.is_boolean() ? Problem{} : "is not true or false";
+    };
 }
 
 Check has(std::initializer_list<const char*> members) {
-    return [required = std::vector<const char*>(members)](const Json& value, const Json&) -> Fault {
+    return [required = std::vector<const char*>(members)](const Json& value, const Json&) -> Problem {
         if (!value.is_object()) {
             return "is not an object";
         }
@@ -127,29 +128,29 @@ Check has(std::initializer_list<const char*> members) {
 }
 
 Check version() {
-    return [](const Json& value, const Json&) -> Fault {
+    return [](const Json& value, const Json&) -> Problem {
         if (!value.is_string()) {
             return "is not a string";
         }
         const auto& number = value.get_ref<const std::string&>();
-        return number.starts_with("2.") ? Fault{} : fmt::format("is \"{}\"; only 2.0 is read", number);
+        return number.starts_with("2.") ? Problem{} : fmt::format("is \"{}\"; only 2.0 is read", number);
     };
 }
 
 Check one_of(std::vector<std::string_view> names) {
-    return [names = std::move(names)](const Json& value, const Json&) -> Fault {
+    return [names = std::move(names)](const Json& value, const Json&) -> Problem {
         if (!value.is_string()) {
             return "is not a string";
         }
         const auto& name = value.get_ref<const std::string&>();
         const bool known = std::ranges::find(names, name) != names.end();
-        return known ? Fault{} : fmt::format("is \"{}\", not one of {}", name, fmt::join(names, ", "));
+        return known ? Problem{} : fmt::format("is \"{}\", not one of {}", name, fmt::join(names, ", "));
     };
 }
 
 /// Checks for an index into the array at `path` of the document, which messages call `plural`.
 Check index_into(const char* path, const char* plural) {
-    return [pointer = Json::json_pointer(path), plural](const Json& value, const Json& document) -> Fault {
+    return [pointer = Json::json_pointer(path), plural](const Json& value, const Json& document) -> Problem {
         if (!value.is_number_integer()) {
             return "is not an index";
         }
@@ -282,8 +283,8 @@ std::vector<Rule> rules() {
 void apply(const Rule& rule, std::string_view path, const Json& value, const std::string& name,
            const Json& document) {
     if (path.empty()) {
-        if (const Fault fault = rule.check(value, document)) {
-            throw SceneError(name + ' ' + *fault);
+        if (const Problem error = rule.check(value, document)) {
+            throw SceneError(name + ' ' + *error);
         }
         return;
     }

@@ -128,7 +128,7 @@ class Writer {
 /// Checks the ranges of the values of a configuration.
 class Validator {
  public:
-    explicit Validator(std::vector<std::string>& faults) : faults_(&faults) {}
+    explicit Validator(std::vector<std::string>& errors) : errors_(&errors) {}
 
     template <class Members>
     void group(const char* name, Members members) {
@@ -149,18 +149,18 @@ class Validator {
         if (number >= range.least && number <= range.most) {
             return;
         }
-        faults_->push_back(
+        errors_->push_back(
             fmt::format("{}{}: {} is not from {} to {}", prefix_, name, number, range.least, range.most));
     }
 
  private:
-    std::vector<std::string>* faults_;
+    std::vector<std::string>* errors_;
     std::string prefix_;
 };
 
 class Reader {
  public:
-    Reader(const Json& root, std::vector<std::string>& faults) : json_(&root), faults_(&faults) {}
+    Reader(const Json& root, std::vector<std::string>& errors) : json_(&root), errors_(&errors) {}
 
     template <class Members>
     void group(const char* name, Members members) {
@@ -170,7 +170,7 @@ class Reader {
             return;
         }
         if (!found->is_object()) {
-            return fault(name, "is not an object");
+            return error(name, "is not an object");
         }
         const Json* outer = std::exchange(json_, &*found);
         const std::string outer_prefix = std::exchange(prefix_, fmt::format("{}{}.", prefix_, name));
@@ -190,18 +190,18 @@ class Reader {
     void report_unknown() {
         for (const auto& [name, value] : json_->items()) {
             if (!known_.contains(prefix_ + name)) {
-                fault(name, "is unknown");
+                error(name, "is unknown");
             }
         }
     }
 
  private:
-    void fault(std::string_view name, std::string_view what) {
-        faults_->push_back(fmt::format("{}{}: {}", prefix_, name, what));
+    void error(std::string_view name, std::string_view what) {
+        errors_->push_back(fmt::format("{}{}: {}", prefix_, name, what));
     }
     void read(const char* name, const Json& json, bool& value, Range /*range*/) {
         if (!json.is_boolean()) {
-            return fault(name, "is not true or false");
+            return error(name, "is not true or false");
         }
         value = json.get<bool>();
     }
@@ -209,18 +209,18 @@ class Reader {
         const bool fits =
             json.is_number_integer() && json.get<double>() >= range.least && json.get<double>() <= range.most;
         if (!fits) {
-            return fault(name, fmt::format("is not a whole number from {} to {}", range.least, range.most));
+            return error(name, fmt::format("is not a whole number from {} to {}", range.least, range.most));
         }
         value = json.get<std::uint32_t>();
     }
     void read(const char* name, const Json& json, float& value, Range range) {
         const bool infinite = json.is_string() && json.get<std::string>() == "infinity";
         if (!json.is_number() && !infinite) {
-            return fault(name, "is not a number");
+            return error(name, "is not a number");
         }
         const double number = infinite ? std::numeric_limits<double>::infinity() : json.get<double>();
         if (number < range.least || number > range.most) {
-            return fault(name, fmt::format("is not from {} to {}", range.least, range.most));
+            return error(name, fmt::format("is not from {} to {}", range.least, range.most));
         }
         value = static_cast<float>(number);
     }
@@ -242,11 +242,11 @@ class Reader {
                 return;
             }
         }
-        fault(name, fmt::format("is not one of {}", fmt::join(names, ", ")));
+        error(name, fmt::format("is not one of {}", fmt::join(names, ", ")));
     }
 
     const Json* json_;
-    std::vector<std::string>* faults_;
+    std::vector<std::string>* errors_;
     std::string prefix_;
     std::set<std::string> known_;
 };
@@ -257,17 +257,17 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     ConfigurationResult result;
     const Json json = Json::parse(text, nullptr, false);
     if (json.is_discarded() || !json.is_object()) {
-        result.faults.emplace_back(json.is_discarded() ? "not valid JSON" : "not a JSON object");
+        result.errors.emplace_back(json.is_discarded() ? "not valid JSON" : "not a JSON object");
         return result;
     }
     Configuration configuration = base;
-    Reader reader(json, result.faults);
+    Reader reader(json, result.errors);
     visit(configuration, reader);
     reader.report_unknown();
     // Rejected members kept their old values; this adds errors that depend on several values.
     const std::vector<std::string> of_values = validate(configuration);
-    result.faults.insert(result.faults.end(), of_values.begin(), of_values.end());
-    if (result.faults.empty()) {
+    result.errors.insert(result.errors.end(), of_values.begin(), of_values.end());
+    if (result.errors.empty()) {
         result.configuration = configuration;
     }
     return result;
@@ -281,18 +281,18 @@ std::string write_configuration(const Configuration& configuration) {
 }
 
 std::vector<std::string> validate(const Configuration& configuration) {
-    std::vector<std::string> faults;
-    Validator validator(faults);
+    std::vector<std::string> errors;
+    Validator validator(errors);
     visit(configuration, validator);
     if (configuration.vpls.placement == VplPlacement::surfels && configuration.vpls.count > most_surfels) {
-        faults.push_back(fmt::format("vpls.count: {} surfels are too many; {} are possible",
+        errors.push_back(fmt::format("vpls.count: {} surfels are too many; {} are possible",
                                      configuration.vpls.count, most_surfels));
     }
     if (configuration.lists.tile_size % 16 != 0) {
-        faults.push_back(
+        errors.push_back(
             fmt::format("lists.tile_size: {} is not a multiple of 16", configuration.lists.tile_size));
     }
-    return faults;
+    return errors;
 }
 
 std::span<const NamedConfiguration> named_configurations() {

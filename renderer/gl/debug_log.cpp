@@ -17,7 +17,7 @@ void set_enabled(const Functions& gl, GLenum capability, bool enabled) {
 
 }  // namespace
 
-bool DebugMessage::is_fault() const {
+bool DebugMessage::is_error() const {
     return type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR ||
            severity == GL_DEBUG_SEVERITY_HIGH;
 }

@@ -17,7 +17,7 @@ struct DebugMessage {
     std::uint64_t times = 1;
 
     /// Whether it is an error, undefined behaviour or of high severity: never expected in a correct program.
-    [[nodiscard]] bool is_fault() const;
+    [[nodiscard]] bool is_error() const;
 };
 
 /// Collects the debug output of the current context, synchronously, as long as it lives. A callback that was

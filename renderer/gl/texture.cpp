@@ -58,7 +58,7 @@ class PackedTransfers {
 };
 
 /// Why a texture cannot be made within these limits; empty if it can.
-std::string fault(const TextureDesc& desc, const Limits& limits) {
+std::string error(const TextureDesc& desc, const Limits& limits) {
     const std::uint32_t longest = std::max(desc.size.x, desc.size.y);
     if (std::min(desc.size.x, desc.size.y) == 0) return "a side has no texels";
     if (longest > limits.texture_size)
@@ -132,7 +132,7 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     const auto fail = [&](std::string_view why) {
         throw GlError(fmt::format("texture \"{}\" of {}×{}: {}", label, desc.size.x, desc.size.y, why));
     };
-    if (const std::string why = fault(desc, device.limits()); !why.empty()) fail(why);
+    if (const std::string why = error(desc, device.limits()); !why.empty()) fail(why);
 
     const auto width = static_cast<GLsizei>(desc.size.x);
     const auto height = static_cast<GLsizei>(desc.size.y);

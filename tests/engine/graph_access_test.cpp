@@ -38,7 +38,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, a
             valid.push_back(run.history_valid(past));
         });
     });
-    adopt();
+    switch_to();
     const auto room_for = [&](std::uint64_t count) {
         runtime.set(wanted, count);
         (void)run();
@@ -82,12 +82,12 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: what a pass did not declare it ma
             attempt([&] { (void)run.history_valid(a); });
         });
     });
-    adopt();
+    switch_to();
     (void)run();
     CHECK(errors == std::vector<std::string>{"pass 'use' uses texture 'b' without having declared it",
                                              "pass 'use' uses value 'number' without having declared it",
                                              "pass 'use' writes value 'number' without having declared it",
-                                             "a handle is not of the adopted frame graph",
+                                             "a handle is not of the current frame graph",
                                              "value 'unset' has not been set",
                                              "pass 'use' writes texture 'a' without having declared it",
                                              "texture 'a' is not a history"});
@@ -115,7 +115,7 @@ TEST_CASE_FIXTURE(GraphFixture,
             run.reserve(written, 8);  // version 2, written in two steps
         });
     });
-    adopt();
+    switch_to();
     (void)run();
     CHECK(refused == 2);
 }

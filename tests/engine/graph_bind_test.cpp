@@ -43,7 +43,7 @@ TEST_SUITE("graph: binding") {
                 CHECK(backend.bound.size() == 4);
             });
         });
-        adopt();
+        switch_to();
         CHECK(run() == "numbers picture reader");
         CHECK(backend.misuse.empty());
     }
@@ -55,7 +55,7 @@ TEST_SUITE("graph: binding") {
             pass.side_effect();
             pass.run([this](Execution&) { CHECK(backend.bound.empty()); });
         });
-        adopt();
+        switch_to();
         CHECK(run() == "picture reader");
     }
 
@@ -76,7 +76,7 @@ TEST_SUITE("graph: binding") {
                 CHECK(bound(Usage::storage, 5) == run.object(map));
             });
         });
-        adopt();
+        switch_to();
         CHECK(run() == "grows");
         CHECK(backend.misuse.empty());
     }
@@ -95,7 +95,7 @@ TEST_SUITE("graph: binding") {
                 written = run.object(mean);
             });
         });
-        adopt();
+        switch_to();
         for (int frame = 0; frame < 3; ++frame) run();
     }
 
@@ -105,9 +105,9 @@ TEST_SUITE("graph: binding") {
             pass.side_effect();
         });
         const CompileResult result = compile(std::move(graph));
-        REQUIRE(result.faults.size() == 1);
+        REQUIRE(result.errors.size() == 1);
         CHECK(
-            result.faults[0].message ==
+            result.errors[0].message ==
             "pass 'draws' writes texture 'picture' as colour target, for which there are no binding points");
     }
 }

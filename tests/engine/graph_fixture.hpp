@@ -30,7 +30,7 @@ struct GraphFixture {
     World world;
     FrameGraph graph;
 
-    void adopt() { runtime.adopt(compile(std::move(graph)).take()); }
+    void switch_to() { runtime.switch_to(compile(std::move(graph)).take()); }
     std::string run() { return ran(runtime.run(world)); }
 
     TextureHandle draw(std::string_view name, std::vector<TextureHandle> sources, TextureHandle target) {

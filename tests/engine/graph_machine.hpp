@@ -89,7 +89,7 @@ class Machine {
                                 return [this, pass, handles](Execution& run) { compute(run, pass, handles); };
                             }),
                     options);
-        runtime_.adopt(std::move(compiled).take());
+        runtime_.switch_to(std::move(compiled).take());
         for (std::size_t index = 0; index < graph.resources.size(); ++index) {
             const bool gpu = graph.resources[index].kind != ResourceKind::value;
             if (gpu && graph.resources[index].lifetime == Lifetime::imported) {

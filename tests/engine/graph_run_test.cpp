@@ -36,7 +36,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a component pool that changes dirtie
     });
     const TextureHandle target = texture("target", Lifetime::imported);
     draw("show", {lit}, target);
-    adopt();
+    switch_to();
     runtime.bind(target, 77, colour);
 
     CHECK(run() == "gather light show");
@@ -71,7 +71,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: what only culled passes read the hos
         (void)pass.write(graph.value<float>("mapped"));
     });
     graph.add("print", [&](Pass& pass) { pass.side_effect(); });
-    adopt();
+    switch_to();
     CHECK(run() == "print");
     runtime.set(exposure, 1.0F);  // allowed, without effect
     runtime.bind(sky, 9, colour);
@@ -86,9 +86,9 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: an imported value is needed once, an
         return pass.write(texture("mapped"), Usage::colour_target);
     });
     draw("show", {mapped}, target);
-    CHECK_THROWS_WITH_AS(run(), "no frame graph has been adopted", GraphError);
-    CHECK_THROWS_WITH_AS(runtime.set(exposure, 1.0F), "no frame graph has been adopted", GraphError);
-    adopt();
+    CHECK_THROWS_WITH_AS(run(), "there is no frame graph", GraphError);
+    CHECK_THROWS_WITH_AS(runtime.set(exposure, 1.0F), "there is no frame graph", GraphError);
+    switch_to();
     CHECK_THROWS_WITH_AS(run(), "imported value 'exposure' has not been set", GraphError);
     runtime.set(exposure, 1.0F);
     CHECK_THROWS_WITH_AS(run(), "imported texture 'target' has not been bound", GraphError);
@@ -103,7 +103,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: an imported value is needed once, an
     CHECK_THROWS_WITH_AS(runtime.bind(mapped, 5, colour), "texture 'mapped' is not imported", GraphError);
     FrameGraph other;
     CHECK_THROWS_WITH_AS(runtime.set(other.import_value<int>("x"), 1),
-                         "a handle is not of the adopted frame graph", GraphError);
+                         "a handle is not of the current frame graph", GraphError);
 }
 
 TEST_CASE_FIXTURE(GraphFixture, "graph run: a bind is new content to the readers") {
@@ -113,7 +113,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a bind is new content to the readers
         pass.read(blurred, Usage::sampled);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     runtime.bind(sky, 9, colour);
     CHECK(run() == "blur show");
     CHECK(run() == "show");
@@ -146,7 +146,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         pass.read(turn);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     runtime.set(knob, 1);
     runtime.set(turn, 1);
     CHECK(runtime.object(a) == runtime.object(c));
@@ -170,7 +170,7 @@ TEST_CASE_FIXTURE(
         pass.read(mapped, Usage::sampled);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     runtime.set(knob, 1);
     CHECK(run() == "opaque transparent tone-map show");
     CHECK(run() == "show");
@@ -195,7 +195,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         pass.read(seen, Usage::sampled);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     runtime.set(knob, 1);
     CHECK(run() == "opaque peek transparent tone-map show");
     CHECK(run() == "show");
@@ -222,7 +222,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         pass.read(both, Usage::sampled);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     runtime.set(knob, 2);
     CHECK(run() == "halve clear light show");
     runtime.set(knob, 3);
@@ -255,7 +255,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         pass.side_effect();
         pass.run([&, mixed](Execution& run) { shown = backend.objects.at(run.object(mixed)).content; });
     });
-    adopt();
+    switch_to();
     for (const int frame : {1, 2}) {
         runtime.set(knob, frame);
         CHECK(run() == "mix show");
@@ -291,7 +291,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: what a pass throws leaves a runtime 
         pass.read(b, Usage::sampled);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     runtime.set(knob, 1);
     CHECK(run() == "draw filter show");
     fail = true;
@@ -324,7 +324,7 @@ TEST_CASE_FIXTURE(GraphFixture,
         (void)pass.write(target, Usage::colour_target);
         (void)pass.write(depth, Usage::depth_target);
     });
-    adopt();
+    switch_to();
     runtime.bind(target, 70, colour);
     runtime.bind(depth, 71, {colour.size, Format::depth32f});
     runtime.set(knob, 1);
@@ -348,7 +348,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: time is taken where asked for") {
             }
         });
     });
-    adopt();
+    switch_to();
     CHECK(runtime.run(world).passes.front().cpu_ms == 0.0);
     CHECK(runtime.run(world, Timing::on).passes.front().cpu_ms >= 2.0);
 }

@@ -70,8 +70,8 @@ struct VerifyFixture : GraphFixture {
         const TextureHandle target = texture("target", Lifetime::imported);
         target_ = draw("show", {shown}, target);
     }
-    void adopt() {
-        GraphFixture::adopt();
+    void switch_to() {
+        GraphFixture::switch_to();
         runtime.bind(target_, 77, colour);
     }
 
@@ -82,7 +82,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: a captured variable is an undecl
     std::uint64_t captured = 1;
     const TextureHandle lit = fill("light", texture("lit"), [&](Execution&) { return captured; });
     show(lit);
-    adopt();
+    switch_to();
     CHECK(frame() == "light show | light");
     CHECK(frame() == "show | light");
     captured = 2;
@@ -106,7 +106,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: a component read without saying 
     const TextureHandle lit =
         raise("light", fill("clear", texture("lit"), [](Execution&) { return 0U; }), power);
     show(lit);
-    adopt();
+    switch_to();
     CHECK(frame() == "gather clear light show | gather clear light");
     world.set(entity, Light{2});
     CHECK_THROWS_WITH_AS(
@@ -128,7 +128,7 @@ TEST_CASE_FIXTURE(VerifyFixture,
         pass.read(made, Usage::storage);
         pass.side_effect();
     });
-    GraphFixture::adopt();
+    GraphFixture::switch_to();
     CHECK_THROWS_WITH_AS(
         frame(),
         "pass 'scatter' has an undeclared input: run again while nothing that it declares has "
@@ -143,7 +143,7 @@ TEST_CASE_FIXTURE(VerifyFixture,
     const TextureHandle first = fill("opaque", texture("lit"), [&](Execution&) { return captured; });
     const TextureHandle second = raise("transparent", first, knob);
     show(raise("bloom", second, knob));
-    adopt();
+    switch_to();
     runtime.set(knob, 5);
     CHECK(frame() == "opaque transparent bloom show | opaque transparent bloom");
     CHECK(frame() == "show | opaque transparent bloom");
@@ -160,7 +160,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what shares an object with other
     const TextureHandle b = draw("draw b", {a}, texture("b"));
     const TextureHandle c = draw("draw c", {b}, texture("c"));
     show(c);
-    adopt();
+    switch_to();
     CHECK(runtime.object(a) == runtime.object(c));
     CHECK(frame() == "draw a draw b draw c show | draw a draw b draw c");
     CHECK(frame() == "show | draw a draw b draw c");
@@ -178,7 +178,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what was captured shows across a
             pass.read(kept, Usage::sampled);
             (void)pass.write(target, Usage::colour_target);
         });
-        GraphFixture::adopt();
+        GraphFixture::switch_to();
         runtime.bind(target, 77, other);
     };
     declare(1, colour);
@@ -208,7 +208,7 @@ TEST_CASE_FIXTURE(VerifyFixture,
         pass.read(out, Usage::storage);
         pass.side_effect();
     });
-    GraphFixture::adopt();
+    GraphFixture::switch_to();
     CHECK(frame() == "upload print | upload");
     const ObjectId object = runtime.object(out);
     CHECK(frame() == "print | upload");
@@ -245,7 +245,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: memories are left alone, and wha
         pass.read(sum, Usage::sampled);
         pass.side_effect();
     });
-    adopt();
+    switch_to();
     for (const int number : {1, 2, 3}) {
         runtime.set(knob, number);
         CHECK(frame() == "accumulate count clear copy show watch | clear copy");
@@ -267,7 +267,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what passes with side effects ha
     });
     const TextureHandle read = fill("other", texture("other"), [](Execution&) { return 3U; });
     show(draw("read", {printed, read}, texture("read")));
-    adopt();
+    switch_to();
     CHECK(frame() == "draw print other read show | other read");
     CHECK(content(runtime.object(printed)) == 11);
     CHECK(frame() == "draw print read show | other read");
@@ -278,7 +278,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: an import is not read after the 
     const TextureHandle target = texture("target", Lifetime::imported);
     const TextureHandle copied = draw("copy", {target}, texture("copied", Lifetime::persistent));
     target_ = draw("show", {copied}, target);
-    adopt();
+    switch_to();
     CHECK(frame() == "copy show | ");
 }
 
@@ -313,7 +313,7 @@ TEST_CASE_FIXTURE(VerifyFixture,
         pass.read(both, Usage::storage);
         pass.side_effect();
     });
-    GraphFixture::adopt();
+    GraphFixture::switch_to();
     const auto parts = [&](int first, int second) {
         made.clear();
         runtime.set(left, first);
@@ -339,15 +339,15 @@ TEST_CASE_FIXTURE(VerifyFixture,
 TEST_CASE_FIXTURE(GraphFixture, "graph verify: off, it reads nothing back, and asks for being switched on") {
     draw("draw", {}, texture("drawn"));
     graph.add("print", [&](Pass& pass) { pass.side_effect(); });
-    adopt();
+    switch_to();
     (void)run();
     CHECK(backend.digests == 0);
     CHECK_THROWS_WITH_AS(runtime.verify(world),
-                         "there is no frame to verify: no graph has been adopted, or verification is off",
+                         "there is no frame to verify: there is no graph, or verification is off",
                          GraphError);
 }
 
-TEST_CASE("graph verify: random graphs give the same under verification, and none is found at fault" *
+TEST_CASE("graph verify: random graphs give the same under verification, and none is found at error" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false});
@@ -366,7 +366,7 @@ TEST_CASE("graph verify: random graphs give the same under verification, and non
     }));
 }
 
-TEST_CASE("graph verify: random graphs with memories are not found at fault" *
+TEST_CASE("graph verify: random graphs with memories are not found at error" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20});

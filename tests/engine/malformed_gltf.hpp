@@ -12,7 +12,7 @@ namespace candela::test {
 
 /// What the import reports about the file; "imported" on success. Checks that a failure leaves the world
 /// unchanged, and that its message is one line that starts with the file's name.
-inline std::string fault_of(const Bytes& file) {
+inline std::string error_of(const Bytes& file) {
     World world;
     const Entity before = world.create();
     world.set(before, Name{"before"});
@@ -32,8 +32,8 @@ inline std::string fault_of(const Bytes& file) {
     return "imported";
 }
 
-inline std::string fault_of(const GltfBuilder& file) {
-    return fault_of(file.gltf());
+inline std::string error_of(const GltfBuilder& file) {
+    return error_of(file.gltf());
 }
 
 /// A file that contains everything that the import reads.

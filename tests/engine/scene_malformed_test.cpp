@@ -18,7 +18,7 @@ namespace {
 struct Defect {
     std::string where;  ///< JSON pointer
     std::string value;  ///< JSON text; empty: the member is removed
-    std::string fault;
+    std::string error;
 };
 
 void check(const std::vector<Defect>& defects) {
@@ -33,7 +33,7 @@ void check(const std::vector<Defect>& defects) {
             REQUIRE(file.document.contains(where));
             file.document[where.parent_pointer()].erase(where.back());
         }
-        CHECK(fault_of(file) == defect.fault);
+        CHECK(error_of(file) == defect.error);
     }
 }
 
@@ -41,8 +41,8 @@ void check(const std::vector<Defect>& defects) {
 
 TEST_SUITE("malformed glTF") {
     TEST_CASE("the complete scene itself is sound") {
-        CHECK(fault_of(complete_scene()) == "imported");
-        CHECK(fault_of(complete_scene().glb()) == "imported");
+        CHECK(error_of(complete_scene()) == "imported");
+        CHECK(error_of(complete_scene().glb()) == "imported");
     }
 
     TEST_CASE("references to what does not exist, negative ones included") {
@@ -119,7 +119,7 @@ TEST_SUITE("malformed glTF") {
         GltfBuilder file = complete_scene();
         file.document["accessors"][0].erase("bufferView");
         file.document["accessors"][0]["count"] = 4'000'000'000;
-        CHECK(fault_of(file) == fmt::format("mesh 0: accessor 0 has no buffer view but 4000000000 elements, "
+        CHECK(error_of(file) == fmt::format("mesh 0: accessor 0 has no buffer view but 4000000000 elements, "
                                             "more than the {} bytes of data",
                                             file.data.size()));
     }
@@ -157,13 +157,13 @@ TEST_SUITE("malformed glTF") {
     TEST_CASE("an index beyond the vertices") {
         GltfBuilder file = right_triangle();
         file.primitive()["indices"] = file.add_indices({0, 1, 3});
-        CHECK(fault_of(file) == "mesh 0: accessor 1 has index 3, but there are 3 vertices");
+        CHECK(error_of(file) == "mesh 0: accessor 1 has index 3, but there are 3 vertices");
     }
 
     TEST_CASE("four vertices without indices") {
         GltfBuilder file;
         file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
-        CHECK(fault_of(file) ==
+        CHECK(error_of(file) ==
               "mesh 0: it has 4 indices or vertices, which make no whole number of triangles");
     }
 
@@ -173,16 +173,16 @@ TEST_SUITE("malformed glTF") {
               -std::numeric_limits<float>::infinity()}) {
             GltfBuilder positions;
             positions.add_primitive({0, 0, 0, 1, bad, 0, 0, 1, 0});
-            CHECK(fault_of(positions) == "mesh 0: accessor 0 has a NaN or infinity in element 1");
+            CHECK(error_of(positions) == "mesh 0: accessor 0 has a NaN or infinity in element 1");
 
             GltfBuilder normals = right_triangle();
             normals.primitive()["attributes"]["NORMAL"] = normals.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, bad});
-            CHECK(fault_of(normals) == "mesh 0: accessor 1 has a NaN or infinity in element 2");
+            CHECK(error_of(normals) == "mesh 0: accessor 1 has a NaN or infinity in element 2");
 
             GltfBuilder coordinates = right_triangle();
             coordinates.primitive()["attributes"]["TEXCOORD_0"] =
                 coordinates.add_accessor(std::vector<float>{bad, 0, 0, 0, 0, 0}, 5126, "VEC2", 2);
-            CHECK(fault_of(coordinates) == "mesh 0: accessor 1 has a NaN or infinity in element 0");
+            CHECK(error_of(coordinates) == "mesh 0: accessor 1 has a NaN or infinity in element 0");
         }
         check({
             {"/nodes/0/translation/1", "1e39",
@@ -193,7 +193,7 @@ TEST_SUITE("malformed glTF") {
              "node 2: its transform overflows"},
         });
         const std::string text = R"({"asset": {"version": "2.0"}, "nodes": [{"scale": [1, 1e999, 1]}]})";
-        CHECK(fault_of(to_bytes(text)).starts_with("invalid JSON: number overflow"));
+        CHECK(error_of(to_bytes(text)).starts_with("invalid JSON: number overflow"));
     }
 
     TEST_CASE("transforms") {
@@ -225,7 +225,7 @@ TEST_SUITE("malformed glTF") {
         GltfBuilder file = complete_scene();
         file.document.erase("scene");
         file.document.erase("scenes");
-        CHECK(fault_of(file) == "it has no scene");
+        CHECK(error_of(file) == "it has no scene");
     }
 
     TEST_CASE("lights and cameras out of their limits") {
@@ -295,7 +295,7 @@ TEST_SUITE("malformed glTF") {
                         0,    0,   0,    0,   'I', 'D',  'A', 'T', 0, 0, 0, 0};
         GltfBuilder file = complete_scene();
         file.document["images"][0]["uri"] = "data:image/png;base64," + base64(png);
-        CHECK(fault_of(file) == "image 0: its 45 bytes cannot hold 16384 x 16384 pixels");
+        CHECK(error_of(file) == "image 0: its 45 bytes cannot hold 16384 x 16384 pixels");
     }
 
     TEST_CASE("buffers") {
@@ -303,7 +303,7 @@ TEST_SUITE("malformed glTF") {
         const auto with_buffer = [&](const Json& buffer) {
             file.document["buffers"] = Json::array();
             file.document["buffers"].push_back(buffer);
-            return fault_of(to_bytes(file.document.dump()));
+            return error_of(to_bytes(file.document.dump()));
         };
         CHECK(with_buffer({{"byteLength", 36}, {"uri", "nowhere.bin"}}) ==
               "buffer 0: nowhere.bin does not exist");
@@ -334,13 +334,13 @@ TEST_SUITE("malformed glTF") {
     }
 
     TEST_CASE("what is no glTF at all") {
-        CHECK(fault_of(Bytes{}) == "the file is empty");
-        CHECK(fault_of(to_bytes("{")).starts_with("invalid JSON: parse error"));
-        CHECK(fault_of(to_bytes("gl")).starts_with("invalid JSON: parse error"));
-        CHECK(fault_of(to_bytes("[]")) == "the document is not a JSON object");
-        CHECK(fault_of(to_bytes("null")) == "the document is not a JSON object");
-        CHECK(fault_of(to_bytes("{\"asset\": \"\xFF\"}")).starts_with("invalid JSON: parse error"));
-        CHECK(fault_of(to_bytes("{\"extras\": " + std::string(1'000'000, '['))) ==
+        CHECK(error_of(Bytes{}) == "the file is empty");
+        CHECK(error_of(to_bytes("{")).starts_with("invalid JSON: parse error"));
+        CHECK(error_of(to_bytes("gl")).starts_with("invalid JSON: parse error"));
+        CHECK(error_of(to_bytes("[]")) == "the document is not a JSON object");
+        CHECK(error_of(to_bytes("null")) == "the document is not a JSON object");
+        CHECK(error_of(to_bytes("{\"asset\": \"\xFF\"}")).starts_with("invalid JSON: parse error"));
+        CHECK(error_of(to_bytes("{\"extras\": " + std::string(1'000'000, '['))) ==
               "its JSON is nested too deeply");
     }
 
@@ -355,13 +355,13 @@ TEST_SUITE("malformed glTF") {
         const Bytes whole = complete_scene().glb();
         for (std::size_t size = 0; size < whole.size(); ++size) {
             CAPTURE(size);
-            CHECK(fault_of(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))) !=
+            CHECK(error_of(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))) !=
                   "imported");
         }
         const auto with_u32 = [&](std::size_t offset, std::uint32_t value) {
             Bytes changed = whole;
             std::memcpy(changed.data() + offset, &value, 4);
-            return fault_of(changed);
+            return error_of(changed);
         };
         const std::size_t binary = 20 + std::size_t{whole[12]} + std::size_t{whole[13]} * 256;
         CHECK(with_u32(4, 1) == "the .glb has version 1; only 2 is read");
@@ -378,6 +378,6 @@ TEST_SUITE("malformed glTF") {
     TEST_CASE("a file's own strings do not break the message's one line") {
         GltfBuilder file = complete_scene();
         file.document["extensionsRequired"] = {"EXT_\n\r\x7F" + std::string(10'000, 'x')};
-        CHECK(fault_of(file).starts_with("it requires the extension EXT_"));
+        CHECK(error_of(file).starts_with("it requires the extension EXT_"));
     }
 }

@@ -58,7 +58,7 @@ void check_edited(const Bytes& sound, unsigned int seed, int rounds) {
         for (std::size_t edits = 1 + below(3, random); edits > 0 && !file.empty(); --edits) {
             edit(file, random);
         }
-        refused += fault_of(file) != "imported" ? 1 : 0;
+        refused += error_of(file) != "imported" ? 1 : 0;
     }
     // Most edits cause an error, but an edit of a number's last digit or of a name is harmless.
     CHECK(refused > rounds / 4);

@@ -13,12 +13,12 @@ using namespace candela;
 
 namespace {
 
-using Faults = std::vector<std::string>;
+using GraphErrors = std::vector<std::string>;
 
-Faults faults_of(std::string_view json) {
+GraphErrors errors_of(std::string_view json) {
     const ConfigurationResult result = read_configuration(json);
-    CHECK(result.configuration.has_value() == result.faults.empty());
-    return result.faults;
+    CHECK(result.configuration.has_value() == result.errors.empty());
+    return result.errors;
 }
 
 /// A configuration in which every setting differs from the default.
@@ -44,7 +44,7 @@ TEST_SUITE("configuration") {
         CHECK(read_configuration(write_configuration(unusual())).configuration == unusual());
         for (const NamedConfiguration& named : named_configurations()) {
             CAPTURE(named.name);
-            CHECK(validate(named.configuration) == Faults{});
+            CHECK(validate(named.configuration) == GraphErrors{});
             CHECK(read_configuration(write_configuration(named.configuration)).configuration ==
                   named.configuration);
         }
@@ -57,44 +57,45 @@ TEST_SUITE("configuration") {
         CHECK(read_configuration(R"({"vpls": {"count": 9}})", unusual()).configuration == wanted);
     }
 
-    TEST_CASE("every fault is named by its place") {
-        CHECK(faults_of("") == Faults{"not valid JSON"});
-        CHECK(faults_of("{\"path\": ") == Faults{"not valid JSON"});
-        CHECK(faults_of("[]") == Faults{"not a JSON object"});
-        CHECK(faults_of("3") == Faults{"not a JSON object"});
+    TEST_CASE("every error is named by its place") {
+        CHECK(errors_of("") == GraphErrors{"not valid JSON"});
+        CHECK(errors_of("{\"path\": ") == GraphErrors{"not valid JSON"});
+        CHECK(errors_of("[]") == GraphErrors{"not a JSON object"});
+        CHECK(errors_of("3") == GraphErrors{"not a JSON object"});
         const std::string paths =
             "path: is not one of forward, tiled-forward, forward+, deferred, tiled-deferred, "
             "clustered-forward, clustered-deferred";
-        CHECK(faults_of(R"({"path": "sideways"})") == Faults{paths});
-        CHECK(faults_of(R"({"path": 1})") == Faults{paths});
-        CHECK(faults_of(R"({"indirect": "on"})") == Faults{"indirect: is not true or false"});
-        CHECK(faults_of(R"({"vpls": 256})") == Faults{"vpls: is not an object"});
-        CHECK(faults_of(R"({"bounce": 1, "vpls": {"number": 2}})").size() == 2);
+        CHECK(errors_of(R"({"path": "sideways"})") == GraphErrors{paths});
+        CHECK(errors_of(R"({"path": 1})") == GraphErrors{paths});
+        CHECK(errors_of(R"({"indirect": "on"})") == GraphErrors{"indirect: is not true or false"});
+        CHECK(errors_of(R"({"vpls": 256})") == GraphErrors{"vpls: is not an object"});
+        CHECK(errors_of(R"({"bounce": 1, "vpls": {"number": 2}})").size() == 2);
         for (const char* count :
              {"-1", "1.5", "\"many\"", "null", "4294967296", "1e300", "18446744073709551616"}) {
             CAPTURE(count);
-            const Faults faults = faults_of(std::string(R"({"vpls": {"count": )") + count + "}}");
-            REQUIRE(faults.size() == 1);
-            CHECK(faults[0].starts_with("vpls.count: "));
+            const GraphErrors errors = errors_of(std::string(R"({"vpls": {"count": )") + count + "}}");
+            REQUIRE(errors.size() == 1);
+            CHECK(errors[0].starts_with("vpls.count: "));
         }
-        CHECK(faults_of(R"({"shadows": {"cube_resolution": 15}})").size() == 1);
-        CHECK(faults_of(R"({"shadows": {"map_resolution": 8193}})").size() == 1);
-        CHECK(faults_of(R"({"vpls": {"geometry_bound": -0.1}})").size() == 1);
-        CHECK(faults_of(R"({"tone_map": {"exposure_ev": "infinity"}})").size() == 1);
-        CHECK(faults_of(R"({"frame_budget_ms": -1})") == Faults{"frame_budget_ms: is not from 0 to 1000000"});
-        CHECK(faults_of(R"({"frame_budget_ms": true})") == Faults{"frame_budget_ms: is not a number"});
+        CHECK(errors_of(R"({"shadows": {"cube_resolution": 15}})").size() == 1);
+        CHECK(errors_of(R"({"shadows": {"map_resolution": 8193}})").size() == 1);
+        CHECK(errors_of(R"({"vpls": {"geometry_bound": -0.1}})").size() == 1);
+        CHECK(errors_of(R"({"tone_map": {"exposure_ev": "infinity"}})").size() == 1);
+        CHECK(errors_of(R"({"frame_budget_ms": -1})") ==
+              GraphErrors{"frame_budget_ms: is not from 0 to 1000000"});
+        CHECK(errors_of(R"({"frame_budget_ms": true})") == GraphErrors{"frame_budget_ms: is not a number"});
         CHECK(read_configuration(R"({"frame_budget_ms": 12.5})", unusual()).configuration->frame_budget_ms ==
               12.5F);
         CHECK_FALSE(read_configuration(R"({"frame_budget_ms": "auto"})").configuration->frame_budget_ms);
-        CHECK(faults_of(R"({"vpls": {"interleave": 3}})") ==
-              Faults{"vpls.interleave: is not one of auto, 1, 2, 4, 8"});
+        CHECK(errors_of(R"({"vpls": {"interleave": 3}})") ==
+              GraphErrors{"vpls.interleave: is not one of auto, 1, 2, 4, 8"});
         CHECK(read_configuration(R"({"vpls": {"interleave": 8}})").configuration->interleave ==
               Interleave::eight);
         CHECK(
             read_configuration(R"({"vpls": {"interleave": "auto"}})", unusual()).configuration->interleave ==
             Interleave::automatic);
 
-        const Faults several = faults_of(
+        const GraphErrors several = errors_of(
             R"({"path": "sideways", "vpls": {"count": -1, "seed": true}, "shadows": {"enabled": 1}, "extra": {}})");
         REQUIRE(several.size() == 5);
         CHECK(several[0].starts_with("path: "));
@@ -112,13 +113,13 @@ TEST_SUITE("configuration") {
         c.geometry_bound = std::nanf("");
         c.shadows.cube_resolution = 0;
         c.tone_map.exposure_ev = std::numeric_limits<float>::infinity();
-        const Faults faults = validate(c);
-        REQUIRE(faults.size() == 5);
-        CHECK(faults[0].starts_with("vpls.count: "));
-        CHECK(faults[1].starts_with("vpls.bounces: "));
-        CHECK(faults[2].starts_with("vpls.geometry_bound: "));
-        CHECK(faults[3].starts_with("shadows.cube_resolution: "));
-        CHECK(faults[4].starts_with("tone_map.exposure_ev: "));
+        const GraphErrors errors = validate(c);
+        REQUIRE(errors.size() == 5);
+        CHECK(errors[0].starts_with("vpls.count: "));
+        CHECK(errors[1].starts_with("vpls.bounces: "));
+        CHECK(errors[2].starts_with("vpls.geometry_bound: "));
+        CHECK(errors[3].starts_with("shadows.cube_resolution: "));
+        CHECK(errors[4].starts_with("tone_map.exposure_ev: "));
     }
 
     TEST_CASE("of surfels fewer are possible than of VPLs on paths") {
@@ -132,13 +133,13 @@ TEST_SUITE("configuration") {
         CHECK(validate(c).empty());
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "a faulty configuration leaves the present one running") {
+    TEST_CASE_FIXTURE(RenderFixture, "a bad configuration leaves the present one running") {
         const Scene scene = cornell_box();
         configure(linear_configuration(ShadingPath::forward));
         const Picture before = render(scene, {20, 15});
-        Configuration faulty = unusual();
-        faulty.vpls.bounces = 65;
-        CHECK(renderer.configure(faulty).size() == 1);
+        Configuration bad = unusual();
+        bad.vpls.bounces = 65;
+        CHECK(renderer.configure(bad).size() == 1);
         CHECK(renderer.configuration() == linear_configuration(ShadingPath::forward));
         CHECK(render(scene, {20, 15}) == before);
         CHECK_FALSE(ran("forward"));

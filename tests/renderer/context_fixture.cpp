@@ -45,7 +45,7 @@ GlFixture::~GlFixture() {
     context->make_current();
     for (const gl::DebugMessage& message : device.take_messages()) {
         INFO(message.text);
-        CHECK_FALSE(message.is_fault());
+        CHECK_FALSE(message.is_error());
     }
     CHECK(device.live() == gl::ObjectCounts{});
 }

@@ -56,7 +56,7 @@ Shown show(ContextKind kind) {
     }
     for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {
         INFO(message.text);
-        CHECK_FALSE(message.is_fault());
+        CHECK_FALSE(message.is_error());
     }
     return shown;
 }

@@ -122,13 +122,13 @@ TEST_SUITE("gl device") {
         const auto messages = device.take_messages();
         REQUIRE(messages.size() == 1);
         CHECK(messages[0].type == GL_DEBUG_TYPE_ERROR);
-        CHECK(messages[0].is_fault());
+        CHECK(messages[0].is_error());
         CHECK(messages[0].times == 2);
         CHECK(messages[0].text.find("GL_INVALID_ENUM") != std::string::npos);
         CHECK(device.take_messages().empty());
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "what is said in passing is no fault, and notifications are not kept") {
+    TEST_CASE_FIXTURE(GlFixture, "what is said in passing is no error, and notifications are not kept") {
         const auto say = [&](GLenum type, GLuint id, GLenum severity) {
             device.gl().DebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, type, id, severity, -1, "word");
         };
@@ -138,9 +138,9 @@ TEST_SUITE("gl device") {
         say(GL_DEBUG_TYPE_OTHER, 4, GL_DEBUG_SEVERITY_HIGH);
         const auto messages = device.take_messages();
         REQUIRE(messages.size() == 3);
-        CHECK_FALSE(messages[0].is_fault());
-        CHECK(messages[1].is_fault());
-        CHECK(messages[2].is_fault());
+        CHECK_FALSE(messages[0].is_error());
+        CHECK(messages[1].is_error());
+        CHECK(messages[2].is_error());
         CHECK(messages[2].text == "word");
     }
 

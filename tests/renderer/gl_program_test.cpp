@@ -22,7 +22,7 @@ std::string text_of(const std::vector<EmbeddedShader>& files, std::string_view n
 }
 
 /// The error when assembling a stage.
-std::string fault_of(const std::vector<EmbeddedShader>& files, std::string_view name) {
+std::string error_of(const std::vector<EmbeddedShader>& files, std::string_view name) {
     try {
         static_cast<void>(text_of(files, name));
     } catch (const ProgramError& error) {
@@ -32,7 +32,7 @@ std::string fault_of(const std::vector<EmbeddedShader>& files, std::string_view 
 }
 
 /// The error when making a program.
-std::string fault_of(Device& device, const std::vector<EmbeddedShader>& files,
+std::string error_of(Device& device, const std::vector<EmbeddedShader>& files,
                      const std::vector<std::string>& stages) {
     try {
         static_cast<void>(compile(device, ShaderLibrary{files}, stages));
@@ -73,13 +73,13 @@ TEST_SUITE("gl shader source") {
         CHECK(text_of({{"a.frag", text}}, "a.frag") == "#version 450 core\n#line 1 0\n" + std::string(text));
     }
 
-    TEST_CASE("faulty includes are named with file and line") {
-        CHECK(fault_of({}, "a.frag") == "shaders/a.frag: there is no such shader file");
-        CHECK(fault_of({{"a.frag", "\n#include \"b.glsl\"\n"}, {"b.glsl", "\n\n#include \"c.glsl\"\n"}},
+    TEST_CASE("bad includes are named with file and line") {
+        CHECK(error_of({}, "a.frag") == "shaders/a.frag: there is no such shader file");
+        CHECK(error_of({{"a.frag", "\n#include \"b.glsl\"\n"}, {"b.glsl", "\n\n#include \"c.glsl\"\n"}},
                        "a.frag") == "shaders/b.glsl:3: there is no shader file \"c.glsl\" to include");
-        CHECK(fault_of({{"a.frag", "#include \"a.frag\"\n"}}, "a.frag") ==
+        CHECK(error_of({{"a.frag", "#include \"a.frag\"\n"}}, "a.frag") ==
               "shaders/a.frag:1: \"a.frag\" includes itself: a.frag -> a.frag");
-        CHECK(fault_of({{"a.frag", "#include \"b.glsl\"\n"},
+        CHECK(error_of({{"a.frag", "#include \"b.glsl\"\n"},
                         {"b.glsl", "\n#include \"c.glsl\"\n"},
                         {"c.glsl", "#include \"b.glsl\"\n"}},
                        "a.frag") ==
@@ -119,10 +119,10 @@ TEST_SUITE("gl program") {
             {"good.glsl", "float g() { return 1.0; }\n"},
             {"bad.glsl", "// fine\n\nvec4 f() {\n    return vec4(nothing);\n}\n"},
         };
-        const std::string fault = fault_of(device, files, {"a.frag"});
-        CHECK(fault.starts_with("shaders/a.frag does not compile:\n"));
-        CHECK(fault.find("\nshaders/bad.glsl:4: ") != std::string::npos);
-        CHECK(fault.find("nothing") != std::string::npos);
+        const std::string error = error_of(device, files, {"a.frag"});
+        CHECK(error.starts_with("shaders/a.frag does not compile:\n"));
+        CHECK(error.find("\nshaders/bad.glsl:4: ") != std::string::npos);
+        CHECK(error.find("nothing") != std::string::npos);
     }
 
     TEST_CASE_FIXTURE(GlFixture, "the line is right behind an include, too") {
@@ -130,7 +130,7 @@ TEST_SUITE("gl program") {
             {"a.comp", "layout(local_size_x = 1) in;\n#include \"b.glsl\"\n\nvoid main() { nothing(); }\n"},
             {"b.glsl", "const int b = 1;\n\n\n\n"},
         };
-        CHECK(fault_of(device, files, {"a.comp"}).find("\nshaders/a.comp:4: ") != std::string::npos);
+        CHECK(error_of(device, files, {"a.comp"}).find("\nshaders/a.comp:4: ") != std::string::npos);
     }
 
     TEST_CASE_FIXTURE(GlFixture, "stages that do not fit, or are none, are refused by name") {
@@ -138,8 +138,8 @@ TEST_SUITE("gl program") {
             {"a.vert", "out vec3 x;\nvoid main() { x = vec3(1); gl_Position = vec4(0); }\n"},
             {"a.frag", "in vec4 x;\nout vec4 c;\nvoid main() { c = x; }\n"},
         };
-        CHECK(fault_of(device, files, {"a.vert", "a.frag"}).starts_with("a.vert and a.frag do not link: "));
-        CHECK(fault_of(device, files, {"a.glsl"}) ==
+        CHECK(error_of(device, files, {"a.vert", "a.frag"}).starts_with("a.vert and a.frag do not link: "));
+        CHECK(error_of(device, files, {"a.glsl"}) ==
               "shaders/a.glsl: a stage file ends in .vert, .frag, .geom or .comp");
         CHECK(device.live() == ObjectCounts{});
     }

@@ -120,7 +120,7 @@ TEST_SUITE("switching") {
         CHECK(creations > 0);
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "a file's faults are all named, and the present configuration goes on") {
+    TEST_CASE_FIXTURE(RenderFixture, "a file's errors are all named, and the present configuration goes on") {
         const Scene scene = scene_with_lights();
         configure(by_path(ShadingPath::clustered_forward));
         const Picture before = render(scene, size);
@@ -131,19 +131,19 @@ TEST_SUITE("switching") {
             renderer.configuration());
         CHECK_FALSE(read.configuration);
         std::vector<std::string> places;
-        for (const std::string& fault : read.faults) places.push_back(fault.substr(0, fault.find(':')));
+        for (const std::string& error : read.errors) places.push_back(error.substr(0, error.find(':')));
         std::ranges::sort(places);
         CHECK(places == std::vector<std::string>{"indirect", "lists.shape", "lists.slices", "lists.tile_size",
                                                  "path", "vpls.count"});
 
         for (const std::uint32_t tile_size : {0U, 8U, 24U, 128U}) {
             CAPTURE(tile_size);
-            Configuration faulty = by_path(ShadingPath::tiled_deferred);
-            faulty.lists = {.tile_size = tile_size, .slices = 1};
-            const std::vector<std::string> faults = renderer.configure(faulty);
-            CHECK(std::ranges::any_of(faults,
+            Configuration bad = by_path(ShadingPath::tiled_deferred);
+            bad.lists = {.tile_size = tile_size, .slices = 1};
+            const std::vector<std::string> errors = renderer.configure(bad);
+            CHECK(std::ranges::any_of(errors,
                                       [](const auto& f) { return f.starts_with("lists.tile_size: "); }));
-            CHECK(std::ranges::any_of(faults, [](const auto& f) { return f.starts_with("lists.slices: "); }));
+            CHECK(std::ranges::any_of(errors, [](const auto& f) { return f.starts_with("lists.slices: "); }));
         }
         CHECK(renderer.configuration() == by_path(ShadingPath::clustered_forward));
         CHECK(render(scene, size) == before);

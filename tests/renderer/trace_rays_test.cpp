@@ -107,7 +107,7 @@ class TraceRays : public GlFixture {
                 triangles = backend.buffer(run.object(tracing.triangles)).download<gpu::TraceTriangle>();
             });
         });
-        runtime.adopt(compile(std::move(graph)).take());
+        runtime.switch_to(compile(std::move(graph)).take());
         runtime.run(world);
 
         std::vector<GpuHit> hits;

@@ -22,22 +22,22 @@ namespace {
 namespace fs = std::filesystem;
 
 template <class Action>
-std::string fault_of(Action action) {
+std::string error_of(Action action) {
     try {
         action();
-    } catch (const std::runtime_error& fault) {
-        return fault.what();
+    } catch (const std::runtime_error& error) {
+        return error.what();
     }
     return "none";
 }
 
-std::string fault_of_script(std::string_view json) {
-    return fault_of([&] { static_cast<void>(read_script(json)); });
+std::string error_of_script(std::string_view json) {
+    return error_of([&] { static_cast<void>(read_script(json)); });
 }
 
 /// The error of a script of 60 frames with one track, for the node "lamp".
-std::string fault_of_track(std::string_view members) {
-    return fault_of_script(fmt::format(R"({{"frames": 60, "tracks": [{{"node": "lamp", {}}}]}})", members));
+std::string error_of_track(std::string_view members) {
+    return error_of_script(fmt::format(R"({{"frames": 60, "tracks": [{{"node": "lamp", {}}}]}})", members));
 }
 
 const std::string everything = R"({
@@ -121,74 +121,74 @@ TEST_SUITE("animation script") {
         CHECK(script.tracks.empty());
     }
 
-    TEST_CASE("what is no script is a fault that names the place") {
-        CHECK(fault_of_script("") == "not valid JSON: line 1");
-        CHECK(fault_of_script("{\n \"frames\": 3,\n nonsense }") == "not valid JSON: line 3");
-        CHECK(fault_of_script("[1]") == "not a JSON object");
-        CHECK(fault_of_script(R"({"tracks": []})") == "frames: is missing");
-        CHECK(fault_of_script(R"({"frames": 2})") == "tracks: is missing");
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": {}})") == "tracks: is not a list");
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": [1]})") == "tracks[0]: is not an object");
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": [{}]})") == "tracks[0].node: is missing");
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": [], "speed": 2})") == "speed: is unknown");
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": [], "loop": 1})") == "loop: is not true or false");
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": [], "scene": 1})") == "scene: is not a word");
+    TEST_CASE("what is no script is a error that names the place") {
+        CHECK(error_of_script("") == "not valid JSON: line 1");
+        CHECK(error_of_script("{\n \"frames\": 3,\n nonsense }") == "not valid JSON: line 3");
+        CHECK(error_of_script("[1]") == "not a JSON object");
+        CHECK(error_of_script(R"({"tracks": []})") == "frames: is missing");
+        CHECK(error_of_script(R"({"frames": 2})") == "tracks: is missing");
+        CHECK(error_of_script(R"({"frames": 2, "tracks": {}})") == "tracks: is not a list");
+        CHECK(error_of_script(R"({"frames": 2, "tracks": [1]})") == "tracks[0]: is not an object");
+        CHECK(error_of_script(R"({"frames": 2, "tracks": [{}]})") == "tracks[0].node: is missing");
+        CHECK(error_of_script(R"({"frames": 2, "tracks": [], "speed": 2})") == "speed: is unknown");
+        CHECK(error_of_script(R"({"frames": 2, "tracks": [], "loop": 1})") == "loop: is not true or false");
+        CHECK(error_of_script(R"({"frames": 2, "tracks": [], "scene": 1})") == "scene: is not a word");
         for (const char* frames : {"0", "-1", "1.5", "1e3", "2147483648", "\"2\"", "null"}) {
-            CHECK(fault_of_script(fmt::format(R"({{"frames": {}, "tracks": []}})", frames)) ==
+            CHECK(error_of_script(fmt::format(R"({{"frames": {}, "tracks": []}})", frames)) ==
                   "frames: is not a whole number from 1 to 2147483647");
         }
-        CHECK(fault_of_script(R"({"frames": 2, "tracks": [{"node": "a"}, {"node": "a"}]})") ==
+        CHECK(error_of_script(R"({"frames": 2, "tracks": [{"node": "a"}, {"node": "a"}]})") ==
               "tracks[1].node: 'a' has a track already");
     }
 
-    TEST_CASE("a faulty track is a fault that names the place") {
-        CHECK(fault_of_track(R"("speed": 1)") == "tracks[0].speed: is unknown");
-        CHECK(fault_of_track(R"("interpolation": "cubic")") ==
+    TEST_CASE("a bad track is a error that names the place") {
+        CHECK(error_of_track(R"("speed": 1)") == "tracks[0].speed: is unknown");
+        CHECK(error_of_track(R"("interpolation": "cubic")") ==
               "tracks[0].interpolation: is not one of linear, step, smooth");
-        CHECK(fault_of_track(R"("intensity": 3)") == "tracks[0].intensity: is not a list of keys");
-        CHECK(fault_of_track(R"("intensity": [])") == "tracks[0].intensity: is not a list of keys");
-        CHECK(fault_of_track(R"("intensity": [[0, 1], [2]])") ==
+        CHECK(error_of_track(R"("intensity": 3)") == "tracks[0].intensity: is not a list of keys");
+        CHECK(error_of_track(R"("intensity": [])") == "tracks[0].intensity: is not a list of keys");
+        CHECK(error_of_track(R"("intensity": [[0, 1], [2]])") ==
               "tracks[0].intensity[1]: is not a pair of a frame and a value");
-        CHECK(fault_of_track(R"("intensity": [[0.5, 1]])") ==
+        CHECK(error_of_track(R"("intensity": [[0.5, 1]])") ==
               "tracks[0].intensity[0][0]: is not a whole number from 0 to 60");
-        CHECK(fault_of_track(R"("intensity": [[-1, 1]])") ==
+        CHECK(error_of_track(R"("intensity": [[-1, 1]])") ==
               "tracks[0].intensity[0][0]: is not a whole number from 0 to 60");
-        CHECK(fault_of_track(R"("intensity": [[61, 1]])") ==
+        CHECK(error_of_track(R"("intensity": [[61, 1]])") ==
               "tracks[0].intensity[0][0]: is not a whole number from 0 to 60");
-        CHECK(fault_of_track(R"("intensity": [[0, -1]])") == "tracks[0].intensity[0][1]: is negative");
-        CHECK(fault_of_track(R"("intensity": [[0, "1"]])") == "tracks[0].intensity[0][1]: is not a number");
-        CHECK(fault_of_track(R"("enabled": [[0, 1]])") == "tracks[0].enabled[0][1]: is not true or false");
-        CHECK(fault_of_track(R"("colour": [[0, [1, -1, 0]]])") == "tracks[0].colour[0][1]: is negative");
-        CHECK(fault_of_track(R"("translation": [[0, [1, 2]]])") ==
+        CHECK(error_of_track(R"("intensity": [[0, -1]])") == "tracks[0].intensity[0][1]: is negative");
+        CHECK(error_of_track(R"("intensity": [[0, "1"]])") == "tracks[0].intensity[0][1]: is not a number");
+        CHECK(error_of_track(R"("enabled": [[0, 1]])") == "tracks[0].enabled[0][1]: is not true or false");
+        CHECK(error_of_track(R"("colour": [[0, [1, -1, 0]]])") == "tracks[0].colour[0][1]: is negative");
+        CHECK(error_of_track(R"("translation": [[0, [1, 2]]])") ==
               "tracks[0].translation[0][1]: is not three numbers");
-        CHECK(fault_of_track(R"("translation": [[0, [1, 2, null]]])") ==
+        CHECK(error_of_track(R"("translation": [[0, [1, 2, null]]])") ==
               "tracks[0].translation[0][1][2]: is not a number");
-        CHECK(fault_of_track(R"("rotation": [[0, [0, 0, 1]]])") ==
+        CHECK(error_of_track(R"("rotation": [[0, [0, 0, 1]]])") ==
               "tracks[0].rotation[0][1]: is not a quaternion [x, y, z, w] or a turn {axis, degrees}");
-        CHECK(fault_of_track(R"("rotation": [[0, [0, 0, 0, 0]]])") ==
+        CHECK(error_of_track(R"("rotation": [[0, [0, 0, 0, 0]]])") ==
               "tracks[0].rotation[0][1]: has no length");
-        CHECK(fault_of_track(R"("rotation": [[0, {"axis": [0, 0, 0], "degrees": 1}]])") ==
+        CHECK(error_of_track(R"("rotation": [[0, {"axis": [0, 0, 0], "degrees": 1}]])") ==
               "tracks[0].rotation[0][1].axis: has no length");
-        CHECK(fault_of_track(R"("rotation": [[0, {"axis": [0, 0, 1], "radians": 1}]])") ==
+        CHECK(error_of_track(R"("rotation": [[0, {"axis": [0, 0, 1], "radians": 1}]])") ==
               "tracks[0].rotation[0][1].radians: is unknown");
-        CHECK(fault_of_track(R"("rotation": [[0, {"axis": [0, 0, 1]}]])") ==
+        CHECK(error_of_track(R"("rotation": [[0, {"axis": [0, 0, 1]}]])") ==
               "tracks[0].rotation[0][1].degrees: is missing");
     }
 
     TEST_CASE("keys go forward in time") {
-        CHECK(fault_of_track(R"("scale": [[5, [1, 1, 1]], [4, [1, 1, 1]]])") ==
+        CHECK(error_of_track(R"("scale": [[5, [1, 1, 1]], [4, [1, 1, 1]]])") ==
               "tracks[0].scale[1]: frame 4 does not come after frame 5");
-        CHECK(fault_of_track(R"("scale": [[5, [1, 1, 1]], [5, [1, 1, 1]]])") ==
+        CHECK(error_of_track(R"("scale": [[5, [1, 1, 1]], [5, [1, 1, 1]]])") ==
               "tracks[0].scale[1]: frame 5 does not come after frame 5");
-        CHECK(fault_of_track(R"("scale": [[0, [1, 1, 1]], [60, [1, 1, 1]]])") == "none");
+        CHECK(error_of_track(R"("scale": [[0, [1, 1, 1]], [60, [1, 1, 1]]])") == "none");
     }
 
-    TEST_CASE("numbers that are none, or that no float holds, are faults") {
-        CHECK(fault_of_track(R"("intensity": [[0, NaN]])").starts_with("not valid JSON"));
-        CHECK(fault_of_track(R"("intensity": [[0, Infinity]])").starts_with("not valid JSON"));
-        CHECK(fault_of_track(R"("intensity": [[0, 1e999]])") == "not valid JSON: a number is too large");
-        CHECK(fault_of_track(R"("intensity": [[0, 1e39]])") == "tracks[0].intensity[0][1]: is too large");
-        CHECK(fault_of_track(R"("translation": [[0, [0, -1e39, 0]]])") ==
+    TEST_CASE("numbers that are none, or that no float holds, are errors") {
+        CHECK(error_of_track(R"("intensity": [[0, NaN]])").starts_with("not valid JSON"));
+        CHECK(error_of_track(R"("intensity": [[0, Infinity]])").starts_with("not valid JSON"));
+        CHECK(error_of_track(R"("intensity": [[0, 1e999]])") == "not valid JSON: a number is too large");
+        CHECK(error_of_track(R"("intensity": [[0, 1e39]])") == "tracks[0].intensity[0][1]: is too large");
+        CHECK(error_of_track(R"("translation": [[0, [0, -1e39, 0]]])") ==
               "tracks[0].translation[0][1][1]: is too large");
     }
 
@@ -201,17 +201,17 @@ TEST_SUITE("animation script") {
         }
     }
 
-    TEST_CASE("faults of a file name it, and so does what is neither a file nor shipped") {
+    TEST_CASE("errors of a file name it, and so does what is neither a file nor shipped") {
         const TemporaryFolder folder;
         const fs::path file = folder / "a.json";
         std::ofstream(file) << R"({"frames": 2})";
-        CHECK(fault_of([&] { static_cast<void>(load_script(file)); }) ==
+        CHECK(error_of([&] { static_cast<void>(load_script(file)); }) ==
               file.string() + ": tracks: is missing");
         for (const std::string& wanted :
              {(folder / "none.json").string(), std::string("orbit"), std::string("/tmp")}) {
-            const std::string fault = fault_of([&] { static_cast<void>(load_script(wanted)); });
-            CHECK(fault.starts_with(wanted + ": "));
-            CHECK(fault.ends_with("door-opens, flicker-walk, orbit-camera, orbit-light, teleport, toggle"));
+            const std::string error = error_of([&] { static_cast<void>(load_script(wanted)); });
+            CHECK(error.starts_with(wanted + ": "));
+            CHECK(error.ends_with("door-opens, flicker-walk, orbit-camera, orbit-light, teleport, toggle"));
         }
     }
 

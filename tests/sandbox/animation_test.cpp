@@ -98,14 +98,14 @@ void check_equal(const Stage& a, const Stage& b) {
     CHECK(a.world.get<DirectionalLight>(a.sun) == b.world.get<DirectionalLight>(b.sun));
 }
 
-std::string fault_of(const std::vector<Track>& tracks, const World& world) {
+std::string error_of(const std::vector<Track>& tracks, const World& world) {
     Script script;
     script.path = "some.json";
     script.tracks = tracks;
     try {
         const Animation animation(script, world);
-    } catch (const std::runtime_error& fault) {
-        return fault.what();
+    } catch (const std::runtime_error& error) {
+        return error.what();
     }
     return "none";
 }
@@ -261,19 +261,19 @@ TEST_SUITE("animation") {
         CHECK(stage.world.revision<Transform>() > transforms);
     }
 
-    TEST_CASE("nodes that are not there, not alone or no lights are faults by name") {
+    TEST_CASE("nodes that are not there, not alone or no lights are errors by name") {
         Stage stage;
-        CHECK(fault_of({{.node = "lamp"}}, stage.world) == "none");
-        CHECK(fault_of({{.node = "lamp"}, {.node = "lump"}}, stage.world) ==
+        CHECK(error_of({{.node = "lamp"}}, stage.world) == "none");
+        CHECK(error_of({{.node = "lamp"}, {.node = "lump"}}, stage.world) ==
               "some.json: tracks[1].node: 'lump' is no node of the scene");
-        CHECK(fault_of({{.node = "arm", .intensity = {{0, 1.0F}}}}, stage.world) ==
+        CHECK(error_of({{.node = "arm", .intensity = {{0, 1.0F}}}}, stage.world) ==
               "some.json: tracks[0].intensity: 'arm' is no light");
-        CHECK(fault_of({{.node = "arm", .colour = {{0, up}}}}, stage.world) ==
+        CHECK(error_of({{.node = "arm", .colour = {{0, up}}}}, stage.world) ==
               "some.json: tracks[0].colour: 'arm' is no light");
-        CHECK(fault_of({{.node = "arm", .enabled = {{0, true}}}}, stage.world) ==
+        CHECK(error_of({{.node = "arm", .enabled = {{0, true}}}}, stage.world) ==
               "some.json: tracks[0].enabled: 'arm' is no light");
         stage.world.set(stage.sun, Name{"lamp"});
-        CHECK(fault_of({{.node = "lamp"}}, stage.world) ==
+        CHECK(error_of({{.node = "lamp"}}, stage.world) ==
               "some.json: tracks[0].node: 'lamp' is the name of 2 nodes");
     }
 }

@@ -60,7 +60,7 @@ TEST_SUITE("choosing a configuration") {
         }
     }
 
-    TEST_CASE("faults name the file") {
+    TEST_CASE("errors name the file") {
         const TemporaryFolder folder;
         Options options;
         options.config = folder / "a.json";

@@ -155,15 +155,15 @@ TEST_SUITE("config watch") {
         CHECK(path_of(file.settle()) == ShadingPath::tiled_deferred);
     }
 
-    TEST_CASE("faults come once a save, by file and member, and a better save recovers") {
+    TEST_CASE("errors come once a save, by file and member, and a better save recovers") {
         Watched file;
         file.write(R"({"path": "fastest", "lists": {"tile_size": 17}, "colour": 1})");
         const auto saved = file.settle();
         REQUIRE(saved);
         CHECK_FALSE(saved->configuration);
-        REQUIRE(saved->faults.size() == 1);
+        REQUIRE(saved->errors.size() == 1);
         for (const std::string& word : {file.name(), std::string("path"), std::string("colour")})
-            CHECK_MESSAGE(saved->faults[0].find(word) != std::string::npos, word);
+            CHECK_MESSAGE(saved->errors[0].find(word) != std::string::npos, word);
         for (int i = 0; i < 3; ++i) CHECK_FALSE(file.look());
         file.touch();
         CHECK(file.settle());

@@ -50,17 +50,17 @@ bool same_bits(const Picture& a, const Picture& b) {
 }
 
 template <typename Action>
-std::string fault_of(Action action) {
+std::string error_of(Action action) {
     try {
         action();
     } catch (const std::runtime_error& error) {
         return error.what();
     }
-    return "no fault";
+    return "no error";
 }
 
-bool names(const std::string& fault, const fs::path& path) {
-    return fault.starts_with(path.string() + ": ");
+bool names(const std::string& error, const fs::path& path) {
+    return error.starts_with(path.string() + ": ");
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ TEST_SUITE("picture") {
         Picture expected{{2, 3}, {}};
         for (const float value : values) expected.pixels.emplace_back(value);
         CHECK(same_bits(read_pfm(folder / "a.pfm"), expected));
-        CHECK(names(fault_of([&] { write_grey_pfm(folder / "b.pfm", {2, 2}, values); }), folder / "b.pfm"));
+        CHECK(names(error_of([&] { write_grey_pfm(folder / "b.pfm", {2, 2}, values); }), folder / "b.pfm"));
     }
 
     TEST_CASE("a file that was cut short is refused at every length") {
@@ -139,12 +139,12 @@ TEST_SUITE("picture") {
         const fs::path cut = folder / "cut";
         for (std::size_t length = 0; length < pfm.size(); ++length) {
             write(cut, pfm.substr(0, length));
-            CHECK(names(fault_of([&] { (void)read_pfm(cut); }), cut));
+            CHECK(names(error_of([&] { (void)read_pfm(cut); }), cut));
         }
         for (std::size_t length = 0; length < exr.size(); ++length) {
             CAPTURE(length);
             write(cut, exr.substr(0, length));
-            CHECK(names(fault_of([&] { (void)read_exr(cut); }), cut));
+            CHECK(names(error_of([&] { (void)read_exr(cut); }), cut));
         }
     }
 
@@ -169,10 +169,10 @@ TEST_SUITE("picture") {
         const TemporaryFolder folder;
         const fs::path path = folder / "a.png";
         const std::vector<std::uint8_t> rgb(11);
-        CHECK(names(fault_of([&] { write_png(path, {2, 2}, rgb); }), path));
-        CHECK(names(fault_of([&] { write_png(path, {0, 0}, {}); }), path));
-        CHECK(names(fault_of([&] { write_exr(path, Picture{{2, 2}, std::vector<glm::vec3>(3)}); }), path));
-        CHECK(names(fault_of([&] { write_pfm(path, Picture{{-1, -1}, std::vector<glm::vec3>(1)}); }), path));
+        CHECK(names(error_of([&] { write_png(path, {2, 2}, rgb); }), path));
+        CHECK(names(error_of([&] { write_png(path, {0, 0}, {}); }), path));
+        CHECK(names(error_of([&] { write_exr(path, Picture{{2, 2}, std::vector<glm::vec3>(3)}); }), path));
+        CHECK(names(error_of([&] { write_pfm(path, Picture{{-1, -1}, std::vector<glm::vec3>(1)}); }), path));
         CHECK(folder.file_count() == 0);
     }
 
@@ -180,18 +180,18 @@ TEST_SUITE("picture") {
         const TemporaryFolder folder;
         const Picture picture = gradient({4, 4});
         const fs::path lost = folder / "no-such-folder" / "a.pfm";
-        const std::string fault = fault_of([&] { write_pfm(lost, picture); });
-        CHECK(names(fault, lost));
-        CHECK(fault.find("No such file or directory") != std::string::npos);
+        const std::string error = error_of([&] { write_pfm(lost, picture); });
+        CHECK(names(error, lost));
+        CHECK(error.find("No such file or directory") != std::string::npos);
 
         const fs::path directory = folder / "folder.png";
         fs::create_directory(directory);
-        CHECK(names(fault_of([&] { write_pfm(directory, picture); }), directory));
+        CHECK(names(error_of([&] { write_pfm(directory, picture); }), directory));
         CHECK(fs::is_directory(directory));
         CHECK(folder.file_count() == 1);
 
         // A device that is always full simulates a full disk.
-        const std::string full = fault_of([&] { write_pfm("/dev/full", picture); });
+        const std::string full = error_of([&] { write_pfm("/dev/full", picture); });
         CHECK(full == "/dev/full: cannot be written: No space left on device");
     }
 
@@ -208,7 +208,7 @@ TEST_SUITE("picture") {
     TEST_CASE("files that are no pictures are refused by name") {
         const TemporaryFolder folder;
         const fs::path path = folder / "a.pfm";
-        CHECK(names(fault_of([&] { (void)read_pfm(path); }), path));
+        CHECK(names(error_of([&] { (void)read_pfm(path); }), path));
         for (const char* text :
              {"", "PF", "Pg\n1 1\n-1.0\n000000000000", "Pf\n1 1\n-1.0\n000000000000", "PF\n0 0\n-1.0\n",
               "PF\n-1 -1\n-1.0\n000000000000", "PF\n1 1\n0.0\n000000000000", "PF\n1 1\nnan\n000000000000",
@@ -217,10 +217,10 @@ TEST_SUITE("picture") {
               "PF\n1 1\n-1.0x000000000000", "PF\n99999999999 1\n-1.0\n"}) {
             CAPTURE(text);
             write(path, text);
-            CHECK(names(fault_of([&] { (void)read_pfm(path); }), path));
-            CHECK(names(fault_of([&] { (void)read_exr(path); }), path));
+            CHECK(names(error_of([&] { (void)read_pfm(path); }), path));
+            CHECK(names(error_of([&] { (void)read_exr(path); }), path));
         }
-        CHECK(names(fault_of([&] { (void)read_exr(folder / ""); }), folder / ""));
+        CHECK(names(error_of([&] { (void)read_exr(folder / ""); }), folder / ""));
     }
 }
 

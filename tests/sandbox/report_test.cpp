@@ -31,7 +31,7 @@ RunReport some_run() {
     run.state.lights = {
         .count = 300, .with_shadow = 2, .without_shadow = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
     run.state.memory = {
-        .texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .spare_bytes = 0};
+        .texture_bytes = 7, .buffer_bytes = 8, .shared_by_aliasing_bytes = 9, .free_pool_bytes = 0};
     return run;
 }
 

@@ -34,11 +34,11 @@ void add_triangle(World& world, float size) {
     world.set(entity, MeshInstance{mesh});
 }
 
-std::string fault_of(World world, const std::string& camera) {
+std::string error_of(World world, const std::string& camera) {
     try {
         static_cast<void>(choose_camera(world, camera, 1.0F));
-    } catch (const SceneError& fault) {
-        return fault.what();
+    } catch (const SceneError& error) {
+        return error.what();
     }
     return "none";
 }
@@ -64,15 +64,15 @@ TEST_SUITE("scene") {
         CHECK(world.count<Camera>() == 2);
     }
 
-    TEST_CASE("a camera that is not there is a fault that lists those that are") {
+    TEST_CASE("a camera that is not there is a error that lists those that are") {
         World world;
         add_camera(world, "front");
         for (const char* wanted : {"back", "1", "-1", "0x", ""}) {
-            const std::string fault = fault_of(world, wanted);
-            CHECK(fault.find(std::string("'") + wanted + "'") != std::string::npos);
-            CHECK(fault.find("'front'") != std::string::npos);
+            const std::string error = error_of(world, wanted);
+            CHECK(error.find(std::string("'") + wanted + "'") != std::string::npos);
+            CHECK(error.find("'front'") != std::string::npos);
         }
-        CHECK(fault_of(World(), "0").find("none") != std::string::npos);
+        CHECK(error_of(World(), "0").find("none") != std::string::npos);
     }
 
     TEST_CASE("bounds are those of the placed meshes") {

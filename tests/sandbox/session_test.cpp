@@ -143,7 +143,7 @@ TEST_SUITE("session") {
         CHECK(before * 0.25F == frame(1)[10 * 33 + 16]);
     }
 
-    TEST_CASE("faults end with status 2 and leave nothing behind") {
+    TEST_CASE("errors end with status 2 and leave nothing behind") {
         const TemporaryFolder folder;
         const TemporaryFolder inputs;
         std::ofstream(inputs / "broken.json") << R"({"path": "sideways"})";
@@ -162,7 +162,7 @@ TEST_SUITE("session") {
         SUBCASE("no such camera") {
             options.camera = "none";
         }
-        SUBCASE("a faulty configuration") {
+        SUBCASE("a bad configuration") {
             options.config = inputs / "broken.json";
         }
         SUBCASE("a flag out of range") {

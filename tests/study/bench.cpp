@@ -30,9 +30,9 @@ Bench::Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size)
 
 void Bench::configure(Configuration configuration) {
     configuration.tone_map.enabled = false;
-    const std::vector<std::string> faults = renderer_.configure(configuration);
-    if (!faults.empty()) {
-        throw std::invalid_argument(fmt::format("{}", fmt::join(faults, "; ")));
+    const std::vector<std::string> errors = renderer_.configure(configuration);
+    if (!errors.empty()) {
+        throw std::invalid_argument(fmt::format("{}", fmt::join(errors, "; ")));
     }
 }
 

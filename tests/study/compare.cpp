@@ -21,8 +21,8 @@ namespace {
 using sandbox::Picture;
 using Path = std::filesystem::path;
 
-[[noreturn]] void fail(const Path& path, std::string_view fault) {
-    throw std::runtime_error(fmt::format("{}: {}", path.string(), fault));
+[[noreturn]] void fail(const Path& path, std::string_view error) {
+    throw std::runtime_error(fmt::format("{}: {}", path.string(), error));
 }
 
 Picture read_by_extension(const Path& path) {

@@ -22,9 +22,9 @@ using sandbox::write_pfm;
 
 namespace {
 
-std::string fault_of(const Comparison& comparison) {
+std::string error_of(const Comparison& comparison) {
     try {
-        return "no fault, but " + compare(comparison);
+        return "no error, but " + compare(comparison);
     } catch (const std::runtime_error& error) {
         return error.what();
     }
@@ -70,33 +70,33 @@ TEST_SUITE("compare") {
         CHECK(std::vector<int>(bytes.begin() + 9, bytes.end()) == std::vector<int>{128, 128, 128});
     }
 
-    TEST_CASE("faults name the file, and nothing is written") {
+    TEST_CASE("errors name the file, and nothing is written") {
         const TemporaryFolder folder;
         const auto a = folder / "a.pfm";
         write_pfm(a, constant({4, 3}, glm::vec3(1.0F)));
         write_pfm(folder / "wide.pfm", constant({5, 3}, glm::vec3(1.0F)));
         write_pfm(folder / "black.pfm", constant({4, 3}, glm::vec3(0.0F)));
-        Picture faulty = constant({4, 3}, glm::vec3(1.0F));
-        faulty.pixels[6].b = std::nanf("");
-        write_exr(folder / "nan.exr", faulty);
+        Picture bad = constant({4, 3}, glm::vec3(1.0F));
+        bad.pixels[6].b = std::nanf("");
+        write_exr(folder / "nan.exr", bad);
         std::ofstream(folder / "text.exr") << "no picture";
         std::ofstream(folder / "a.txt") << "no picture";
         const auto heat = folder / "heat.png";
-        const auto fault = [&](const char* name) { return fault_of({a, folder / name, {}, heat, {}}); };
+        const auto error = [&](const char* name) { return error_of({a, folder / name, {}, heat, {}}); };
         const auto at = [&](const char* name) { return (folder / name).string(); };
 
-        CHECK(fault("gone.pfm") == at("gone.pfm") + ": cannot be read: No such file or directory");
-        CHECK(fault("wide.pfm") == at("wide.pfm") + ": is 5x3, not 4x3 as the picture to compare");
-        CHECK(fault("nan.exr") == at("nan.exr") + ": pixel (2, 1) is not finite");
-        CHECK(fault("text.exr").starts_with(at("text.exr") + ": cannot be read as OpenEXR"));
-        CHECK(fault("a.txt") == at("a.txt") + ": is named neither .pfm nor .exr");
-        CHECK(fault_of({folder / "nan.exr", a, {}, heat, {}}).starts_with(at("nan.exr") + ": "));
-        CHECK(fault_of({a, a, folder / "black.pfm", heat, {}}) == at("black.pfm") + ": masks every pixel");
-        CHECK(fault_of({a, a, folder / "wide.pfm", heat, {}}).starts_with(at("wide.pfm") + ": is 5x3"));
-        CHECK(fault_of({a, a, {}, folder / "heat.jpg", {}}).starts_with(at("heat.jpg") + ": "));
-        CHECK(fault_of({a, a, {}, folder / "no-folder/heat.png", {}}) ==
+        CHECK(error("gone.pfm") == at("gone.pfm") + ": cannot be read: No such file or directory");
+        CHECK(error("wide.pfm") == at("wide.pfm") + ": is 5x3, not 4x3 as the picture to compare");
+        CHECK(error("nan.exr") == at("nan.exr") + ": pixel (2, 1) is not finite");
+        CHECK(error("text.exr").starts_with(at("text.exr") + ": cannot be read as OpenEXR"));
+        CHECK(error("a.txt") == at("a.txt") + ": is named neither .pfm nor .exr");
+        CHECK(error_of({folder / "nan.exr", a, {}, heat, {}}).starts_with(at("nan.exr") + ": "));
+        CHECK(error_of({a, a, folder / "black.pfm", heat, {}}) == at("black.pfm") + ": masks every pixel");
+        CHECK(error_of({a, a, folder / "wide.pfm", heat, {}}).starts_with(at("wide.pfm") + ": is 5x3"));
+        CHECK(error_of({a, a, {}, folder / "heat.jpg", {}}).starts_with(at("heat.jpg") + ": "));
+        CHECK(error_of({a, a, {}, folder / "no-folder/heat.png", {}}) ==
               at("no-folder/heat.png") + ": cannot be written: No such file or directory");
-        CHECK(fault_of({a, a, {}, heat, -1.0}) == "--scale: -1 is no relative error above 0");
+        CHECK(error_of({a, a, {}, heat, -1.0}) == "--scale: -1 is no relative error above 0");
         CHECK(folder.file_count() == 6);
     }
 }

@@ -136,7 +136,7 @@ void run_idle_passes(benchmark::State& state, Wiring (*wiring)(std::size_t)) {
     std::vector<TextureHandle> made(plan.reads.size());
     Idle backend;
     GraphRuntime runtime(backend);
-    runtime.adopt(compile(declare(plan, made, true)).take());
+    runtime.switch_to(compile(declare(plan, made, true)).take());
     const World world;
     for (auto _ : state) {
         benchmark::DoNotOptimize(runtime.run(world).passes.data());

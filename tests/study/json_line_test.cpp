@@ -37,7 +37,7 @@ TEST_SUITE("JSON lines") {
         CHECK(Json::parse(to_line({{"x", third}})).at("x").get<double>() == third);
     }
 
-    TEST_CASE("faulty files are named") {
+    TEST_CASE("bad files are named") {
         const TemporaryFolder folder;
         candela::sandbox::write_text(folder / "broken.json", "{");
         for (const char* name : {"none.json", "broken.json"}) {

@@ -242,10 +242,10 @@ Json work_json(const Report& report, std::size_t pixels) {
 
 /// `bytes` excludes what is only kept for returning to the previous configuration.
 Json memory_json(const MemoryUse& memory) {
-    return {{"bytes", memory.texture_bytes + memory.buffer_bytes - memory.spare_bytes},
+    return {{"bytes", memory.texture_bytes + memory.buffer_bytes - memory.free_pool_bytes},
             {"texture_bytes", memory.texture_bytes},
             {"buffer_bytes", memory.buffer_bytes},
-            {"spare_bytes", memory.spare_bytes},
+            {"free_pool_bytes", memory.free_pool_bytes},
             {"shared_by_aliasing_bytes", memory.shared_by_aliasing_bytes}};
 }
 

@@ -157,12 +157,12 @@ TEST_SUITE("measures") {
         CHECK_THROWS_WITH_AS((void)measure({}, {}), "no pixel counts", std::invalid_argument);
         for (const float value :
              {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-            Picture faulty = picture;
-            faulty.pixels[6].g = value;
-            CHECK(first_not_finite(faulty) == glm::ivec2(2, 1));
-            CHECK_THROWS_WITH_AS((void)measure(faulty, picture), "the picture: pixel (2, 1) is not finite",
+            Picture bad = picture;
+            bad.pixels[6].g = value;
+            CHECK(first_not_finite(bad) == glm::ivec2(2, 1));
+            CHECK_THROWS_WITH_AS((void)measure(bad, picture), "the picture: pixel (2, 1) is not finite",
                                  std::invalid_argument);
-            CHECK_THROWS_WITH_AS((void)measure(picture, faulty), "the reference: pixel (2, 1) is not finite",
+            CHECK_THROWS_WITH_AS((void)measure(picture, bad), "the reference: pixel (2, 1) is not finite",
                                  std::invalid_argument);
         }
         CHECK(first_not_finite(picture) == std::nullopt);

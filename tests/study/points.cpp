@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::array members{"id", "config", "seeds", "fresh_seeds"};
 
-[[noreturn]] void fail(const std::string& fault) {
-    throw std::invalid_argument(fault);
+[[noreturn]] void fail(const std::string& error) {
+    throw std::invalid_argument(error);
 }
 
 void require_known_members(const Json& point) {

@@ -12,7 +12,7 @@ std::vector<Point> points_of(const char* text) {
     return read_points(Json::parse(text), "points.json");
 }
 
-std::string fault_of(const char* text) {
+std::string error_of(const char* text) {
     try {
         static_cast<void>(points_of(text));
     } catch (const std::invalid_argument& error) {
@@ -41,7 +41,7 @@ TEST_SUITE("points") {
         REQUIRE(points.size() == 2);
         CHECK_FALSE(points[0].fresh_seeds);
         CHECK(points[1].fresh_seeds);
-        CHECK(fault_of(R"([{"id": "a", "fresh_seeds": 1}])") ==
+        CHECK(error_of(R"([{"id": "a", "fresh_seeds": 1}])") ==
               "points.json: point 0: \"fresh_seeds\" is neither true nor false");
     }
 
@@ -50,21 +50,21 @@ TEST_SUITE("points") {
               R"({"lever":{"x":1}})");
     }
 
-    TEST_CASE("faults name the list, the point and the fault") {
-        CHECK(fault_of("{}") == "points.json: is not a list of points");
-        CHECK(fault_of("[1]") == "points.json: point 0: is not an object");
-        CHECK(fault_of(R"([{"id": "a"}, {}])") == "points.json: point 1: \"id\" is not a text");
-        CHECK(fault_of(R"([{"id": "a"}, {"id": "a"}])") == "points.json: \"a\" is the id of two points");
-        CHECK(fault_of(R"([{"id": "a", "sedes": [1]}])") == "points.json: point 0: \"sedes\" is unknown");
-        CHECK(fault_of(R"([{"id": "a", "config": "x"}])") ==
+    TEST_CASE("errors name the list, the point and the error") {
+        CHECK(error_of("{}") == "points.json: is not a list of points");
+        CHECK(error_of("[1]") == "points.json: point 0: is not an object");
+        CHECK(error_of(R"([{"id": "a"}, {}])") == "points.json: point 1: \"id\" is not a text");
+        CHECK(error_of(R"([{"id": "a"}, {"id": "a"}])") == "points.json: \"a\" is the id of two points");
+        CHECK(error_of(R"([{"id": "a", "sedes": [1]}])") == "points.json: point 0: \"sedes\" is unknown");
+        CHECK(error_of(R"([{"id": "a", "config": "x"}])") ==
               "points.json: point 0: \"config\" is not an object");
     }
 
-    TEST_CASE("an id that is no name for a file is a fault") {
+    TEST_CASE("an id that is no name for a file is a error") {
         for (const char* text :
              {R"([{"id": ""}])", R"([{"id": "../a"}])", R"([{"id": "a/b"}])", R"([{"id": ".a"}])"}) {
             CAPTURE(text);
-            CHECK(fault_of(text).starts_with("points.json: point 0: \"id\""));
+            CHECK(error_of(text).starts_with("points.json: point 0: \"id\""));
         }
     }
 
@@ -73,7 +73,7 @@ TEST_SUITE("points") {
                                  R"([{"id": "a", "seeds": [-1]}])", R"([{"id": "a", "seeds": [0.5]}])",
                                  R"([{"id": "a", "seeds": [4294967296]}])"}) {
             CAPTURE(text);
-            CHECK(fault_of(text).starts_with("points.json: point 0: \"seeds\""));
+            CHECK(error_of(text).starts_with("points.json: point 0: \"seeds\""));
         }
     }
 }

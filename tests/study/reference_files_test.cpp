@@ -183,7 +183,7 @@ TEST_SUITE("reference files") {
         CHECK(read_text(folder / "file") == "x");
     }
 
-    TEST_CASE("pictures of another size than the description says are a fault of the file") {
+    TEST_CASE("pictures of another size than the description says are a error of the file") {
         const TemporaryFolder folder;
         write_reference(folder / "reference", "a.gltf", sample());
         sandbox::write_pfm(folder / "reference" / "indirect.pfm", {{1, 1}, {glm::vec3(1.0F)}});

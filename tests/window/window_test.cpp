@@ -98,9 +98,9 @@ class App {
             posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(),
                                              O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
         }
-        const int fault = posix_spawn(&process_, CANDELA_APP, &actions, nullptr, arguments.data(), environ);
+        const int error = posix_spawn(&process_, CANDELA_APP, &actions, nullptr, arguments.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
-        REQUIRE(fault == 0);
+        REQUIRE(error == 0);
         REQUIRE_MESSAGE(wait_until([&] { return find_window(DefaultRootWindow(display_.get())); }),
                         "no window");
         // Before the picture there is text on black, which is darker.
@@ -413,7 +413,7 @@ TEST_SUITE("window") {
         CHECK((written("0.001") == whole));
     }
 
-    TEST_CASE("a configuration that is saved goes into force, and a faulty one leaves it there") {
+    TEST_CASE("a configuration that is saved goes into force, and a bad one leaves it there") {
         const TemporaryFolder folder;
         const fs::path config = folder / "config.json";
         const fs::path report = folder / "report.json";

@@ -89,13 +89,13 @@ ResourceHandle Declaration::add_value(std::string_view name, std::type_index typ
 
 ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
     if (!owns(of, kind)) {
-        fault(FaultCode::foreign_handle, fmt::format("history of a {} of another graph", to_string(kind)));
+        error(ErrorCode::foreign_handle, fmt::format("history of a {} of another graph", to_string(kind)));
         return {};
     }
     const Resource base = resources[of.resource];
     if (base.lifetime == Lifetime::imported || base.history_of != none) {
         const auto what = base.history_of != none ? "is a history itself" : "is imported";
-        fault(FaultCode::wrong_usage,
+        error(ErrorCode::wrong_usage,
               fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, what));
         return {id, of.resource, of.version};
     }
@@ -117,7 +117,7 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
 
 void Declaration::begin_pass(std::string_view name) {
     if (declaring_) {
-        fault(FaultCode::nested_pass,
+        error(ErrorCode::nested_pass,
               fmt::format("pass '{}' is declared inside pass '{}'", name, passes.back().name));
     }
     declaring_ = true;
@@ -152,20 +152,20 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Binding binding
     const std::uint32_t pass = pass_count() - 1;
     const std::string_view name = passes[pass].name;
     if (!owns(handle, kind)) {
-        return fault(FaultCode::foreign_handle,
+        return error(ErrorCode::foreign_handle,
                      fmt::format("pass '{}' reads a {} of another graph", name, to_string(kind)));
     }
     Resource& resource = resources[handle.resource];
     check_binding(resource, binding, false);
     if (handle.version < resource.versions) {
         if (resource.writer == pass) {
-            fault(FaultCode::feedback,
+            error(ErrorCode::feedback,
                   fmt::format("pass '{}' reads {} '{}' and overwrites it: a write from version 1 "
                               "on depends on what was there by itself",
                               name, to_string(kind), resource.name));
         } else {
-            fault(
-                FaultCode::stale_handle,
+            error(
+                ErrorCode::stale_handle,
                 fmt::format("pass '{}' reads {} '{}' as it was before pass '{}' wrote it", name,
                             to_string(kind), resource.name, writer_of(handle.resource, handle.version + 1)));
         }
@@ -173,7 +173,7 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Binding binding
     }
     const bool given = resource.lifetime == Lifetime::imported || resource.history_of != none;
     if (handle.version == 0 && !given) {
-        fault(FaultCode::unwritten_read, fmt::format("pass '{}' reads {} '{}', which nobody has written",
+        error(ErrorCode::unwritten_read, fmt::format("pass '{}' reads {} '{}', which nobody has written",
                                                      name, to_string(kind), resource.name));
     }
     resource.reader = pass;
@@ -184,32 +184,32 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Bind
     const std::uint32_t pass = pass_count() - 1;
     const std::string_view name = passes[pass].name;
     if (!owns(handle, kind)) {
-        fault(FaultCode::foreign_handle,
+        error(ErrorCode::foreign_handle,
               fmt::format("pass '{}' writes a {} of another graph", name, to_string(kind)));
         return handle;
     }
     Resource& resource = resources[handle.resource];
     if (resource.history_of != none) {
-        fault(FaultCode::wrong_usage,
+        error(ErrorCode::wrong_usage,
               fmt::format("pass '{}' writes the history of {} '{}', which is read only", name,
                           to_string(kind), resource.name));
         return handle;
     }
     if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {
-        fault(FaultCode::wrong_usage,
+        error(ErrorCode::wrong_usage,
               fmt::format("pass '{}' writes value '{}', which the host sets", name, resource.name));
         return handle;
     }
     check_binding(resource, binding, true);
     if (resource.reader == pass) {
-        fault(FaultCode::feedback,
+        error(ErrorCode::feedback,
               fmt::format(
                   "pass '{}' reads {} '{}' and overwrites it: a write from version 1 on depends on what was "
                   "there by itself",
                   name, to_string(kind), resource.name));
     }
     if (handle.version < resource.versions) {
-        fault(FaultCode::two_writers, fmt::format("passes '{}' and '{}' both write version {} of {} '{}'",
+        error(ErrorCode::two_writers, fmt::format("passes '{}' and '{}' both write version {} of {} '{}'",
                                                   writer_of(handle.resource, handle.version + 1), name,
                                                   handle.version + 1, to_string(kind), resource.name));
     }
@@ -225,13 +225,13 @@ void Declaration::check_binding(const Resource& resource, Binding binding, bool 
     const Usage usage = binding.usage;
     const std::string_view verb = write ? "writes" : "reads";
     if (!allowed(resource.kind, usage, write)) {
-        return fault(FaultCode::wrong_usage,
+        return error(ErrorCode::wrong_usage,
                      fmt::format("pass '{}' {} {} '{}' as {}", passes.back().name, verb,
                                  to_string(resource.kind), resource.name, to_string(usage)));
     }
     if (binding.point != Binding::unbound && !has_point(resource.kind, usage)) {
-        fault(
-            FaultCode::wrong_usage,
+        error(
+            ErrorCode::wrong_usage,
             fmt::format("pass '{}' {} {} '{}' as {}, for which there are no binding points",
                         passes.back().name, verb, to_string(resource.kind), resource.name, to_string(usage)));
     }
@@ -241,7 +241,7 @@ void Declaration::check_binding(const Resource& resource, Binding binding, bool 
     const Format format = texture(resource).format;
     if ((usage == Usage::colour_target && is_depth(format)) ||
         (usage == Usage::depth_target && !is_depth(format))) {
-        fault(FaultCode::wrong_usage,
+        error(ErrorCode::wrong_usage,
               fmt::format("pass '{}' {} texture '{}' as {}, but its format is {}", passes.back().name, verb,
                           resource.name, to_string(usage), to_string(format)));
     }
@@ -258,7 +258,7 @@ void Declaration::check_attachments() {
         }
         if (access.usage == Usage::depth_target) {
             if (depth && depth != &resource) {
-                fault(FaultCode::attachment_mismatch,
+                error(ErrorCode::attachment_mismatch,
                       fmt::format("pass '{}' has two depth targets, '{}' and '{}'", passes.back().name,
                                   depth->name, resource.name));
             }
@@ -273,7 +273,7 @@ void Declaration::check_attachments() {
         }
         const glm::uvec2 size = texture(*first).size;
         if (size != desc.size) {
-            fault(FaultCode::attachment_mismatch,
+            error(ErrorCode::attachment_mismatch,
                   fmt::format("pass '{}' has attachments of different sizes: '{}' is {}x{}, '{}' is {}x{}",
                               passes.back().name, first->name, size.x, size.y, resource.name, desc.size.x,
                               desc.size.y));

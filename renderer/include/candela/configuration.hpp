@@ -168,10 +168,10 @@ struct Configuration {
 };
 
 /// A configuration, or the errors that prevent it, one per string. There is a configuration exactly if
-/// `faults` is empty.
+/// `errors` is empty.
 struct ConfigurationResult {
     std::optional<Configuration> configuration;
-    std::vector<std::string> faults;
+    std::vector<std::string> errors;
 };
 
 /// Reads a JSON object. Members that are left out keep the values of `base`. Unknown members, wrong types and

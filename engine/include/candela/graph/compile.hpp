@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <candela/graph/backend.hpp>
-#include <candela/graph/fault.hpp>
+#include <candela/graph/errors.hpp>
 #include <candela/graph/frame_graph.hpp>
 
 namespace candela {
@@ -42,8 +42,8 @@ struct Plan {
 }  // namespace detail
 
 /// A declaration with its plan: the execution order, the storage objects of the resources and the barriers.
-/// GraphRuntime::adopt takes it; `describe_text` and its siblings print it. Owns the passes' functions and
-/// parameters. The GPU objects belong to the GraphRuntime.
+/// GraphRuntime::switch_to takes it; `describe_text` and its siblings print it. Owns the passes' functions
+/// and parameters. The GPU objects belong to the GraphRuntime.
 class CompiledGraph {
  public:
     CompiledGraph(detail::Declaration declared, detail::Plan plan)
@@ -68,10 +68,10 @@ struct CompileOptions {
 /// Either a graph, or the errors that prevented compilation.
 struct CompileResult {
     std::optional<CompiledGraph> graph;
-    std::vector<Fault> faults;
+    std::vector<CompileError> errors;
 
     explicit operator bool() const { return graph.has_value(); }
-    /// Moves the graph out. Throws GraphError with all faults, one per line, if there is no graph.
+    /// Moves the graph out. Throws GraphError with all errors, one per line, if there is no graph.
     [[nodiscard]] CompiledGraph take() &&;
 };
 

@@ -15,7 +15,7 @@
 #include <candela/graph/backend.hpp>
 #include <candela/graph/compile.hpp>
 #include <candela/graph/details/state.hpp>
-#include <candela/graph/fault.hpp>
+#include <candela/graph/errors.hpp>
 #include <candela/graph/records.hpp>
 #include <candela/graph/resources.hpp>
 
@@ -113,7 +113,7 @@ class Execution {
     GraphRuntime& runtime_;
     const World& world_;
     std::uint32_t position_ = 0;
-    bool anew_ = true;  // the running pass has no previous result that it could keep
+    bool has_no_result_ = true;  // the running pass has no previous result that it could keep
 };
 
 /// Runs a compiled graph, frame by frame, and can switch to another graph. Owns what is kept between frames:
@@ -143,12 +143,12 @@ class GraphRuntime {
     /// date: it runs again only to provide results that were not kept, such as transients. Imported textures
     /// and buffers must be bound again; imported values stay set.
     ///
-    /// Objects that the new graph does not use go to a free pool. The next call of `adopt` reuses what it can
-    /// from there and destroys the rest; `trim` destroys them at once. If the back end throws, the exception
-    /// passes through and the runtime keeps the old graph, unchanged.
-    void adopt(CompiledGraph graph);
+    /// Objects that the new graph does not use go to a free pool. The next call of `switch_to` reuses what it
+    /// can from there and destroys the rest; `trim` destroys them at once. If the back end throws, the
+    /// exception passes through and the runtime keeps the old graph, unchanged.
+    void switch_to(CompiledGraph graph);
 
-    /// The current graph, or null before the first `adopt`. Valid until the next `adopt`.
+    /// The current graph, or null before the first `switch_to`. Valid until the next `switch_to`.
     [[nodiscard]] const CompiledGraph* graph() const { return graph_ ? &*graph_ : nullptr; }
 
     /// Sets an imported value, which stays until it is set again. If T has operator== and the new value
@@ -158,8 +158,8 @@ class GraphRuntime {
     void set(ValueHandle<T> imported, std::type_identity_t<T> value);
 
     /// Provides the object of an imported texture or buffer. The host keeps ownership, and the object must
-    /// stay alive while it is bound. The binding stays until the next `bind` or `adopt`. Each call counts as
-    /// new content, so the readers run again. If passes read the host's content and later passes overwrite
+    /// stay alive while it is bound. The binding stays until the next `bind` or `switch_to`. Each call counts
+    /// as new content, so the readers run again. If passes read the host's content and later passes overwrite
     /// it, call `bind` before each run. `object` may be 0 for the window's framebuffer. Does nothing if only
     /// culled passes use the resource. Throws GraphError like `set`.
     void bind(TextureHandle imported, ObjectId object, const TextureDesc& desc) {
@@ -211,10 +211,10 @@ class GraphRuntime {
     void invalidate();
     /// Makes all histories invalid in the next frame, for example after a camera cut.
     void invalidate_history() { cut_ = true; }
-    /// Destroys the objects in the free pool (see `adopt`).
+    /// Destroys the objects in the free pool (see `switch_to`).
     void trim();
 
-    /// A value of the current graph; the reference is valid until the value is set again or `adopt` is
+    /// A value of the current graph; the reference is valid until the value is set again or `switch_to` is
     /// called. GraphError if it was never set.
     template <class T>
     [[nodiscard]] const T& value(ValueHandle<T> value) const {
@@ -262,13 +262,13 @@ class GraphRuntime {
     Backend& backend_;
     std::optional<CompiledGraph> graph_;
     detail::State state_;
-    std::vector<detail::Slot> spare_;  // free pool: objects of the previous graph
+    std::vector<detail::Slot> free_pool_;  // free pool: objects of the previous graph
     FrameRecord record_;
     std::uint64_t frame_ = 0;
     std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
     const World* world_ = nullptr;   // of the last run
     detail::Stamp clock_ = 0;
-    Barrier carried_ = Barrier::none;  // pending: planned for passes that were skipped
+    Barrier pending_barriers_ = Barrier::none;  // pending: planned for passes that were skipped
     bool cut_ = false;
     bool verifying_ = false;
     bool repeating_ = false;  // during verify

@@ -72,8 +72,8 @@ class Pass {
     }
 
     /// A constant on which the pass's result depends, for example one that the function captures.
-    /// `GraphRuntime::adopt` keeps the results of a pass only if its parameters are equal in both graphs. The
-    /// graph owns the copy.
+    /// `GraphRuntime::switch_to` keeps the results of a pass only if its parameters are equal in both graphs.
+    /// The graph owns the copy.
     template <std::equality_comparable T>
     void parameter(T value) {
         const auto equal = [](const void* a, const void* b) {
@@ -111,8 +111,8 @@ class Pass {
 class FrameGraph {
  public:
     // Names appear in messages and reports. They also identify persistent and imported resources across
-    // graphs (GraphRuntime::adopt), so the names of persistent and imported resources must be unique within
-    // each kind (texture, buffer, value). The graph copies the names.
+    // graphs (GraphRuntime::switch_to), so the names of persistent and imported resources must be unique
+    // within each kind (texture, buffer, value). The graph copies the names.
 
     /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
     /// and GraphRuntime::bind gives the actual description.

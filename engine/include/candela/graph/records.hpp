@@ -7,7 +7,7 @@
 namespace candela {
 
 struct PassRecord {
-    std::string_view name;  ///< valid until the next call of GraphRuntime::adopt
+    std::string_view name;  ///< valid until the next call of GraphRuntime::switch_to
     bool ran = false;
     bool verified = false;  ///< GraphRuntime::verify ran it again, with the same result
     double cpu_ms = 0.0;    ///< elapsed milliseconds on the CPU side; 0 without timing
@@ -26,7 +26,7 @@ struct MemoryUse {
     std::uint64_t shared_by_aliasing_bytes = 0;
     /// The part of texture_bytes and buffer_bytes in the free pool, kept for a switch back to the previous
     /// graph.
-    std::uint64_t spare_bytes = 0;
+    std::uint64_t free_pool_bytes = 0;
 };
 
 enum class Timing : bool { off, on };

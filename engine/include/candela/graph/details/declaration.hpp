@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <candela/ecs/world.hpp>
-#include <candela/graph/fault.hpp>
+#include <candela/graph/errors.hpp>
 #include <candela/graph/resources.hpp>
 
 namespace candela {
@@ -156,7 +156,7 @@ class Declaration {
     std::vector<TextureDesc> textures;
     std::vector<BufferDesc> buffers;
     std::vector<std::type_index> value_types;
-    std::vector<Fault> faults;  // those found while declaring
+    std::vector<CompileError> errors;  // those found while declaring
 
  private:
     template <class T>
@@ -170,7 +170,7 @@ class Declaration {
                                 std::size_t desc);
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
-    void fault(FaultCode code, std::string message) { faults.push_back({code, std::move(message)}); }
+    void error(ErrorCode code, std::string message) { errors.push_back({code, std::move(message)}); }
     void check_binding(const Resource& resource, Binding binding, bool write);
     void check_attachments();
 

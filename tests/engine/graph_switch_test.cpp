@@ -23,7 +23,7 @@ struct Configuration {
     int bias = 1;
     bool deferred = false;
     glm::uvec2 target_size{64, 32};
-    bool faulty = false;
+    bool bad = false;
 };
 
 struct Handles {
@@ -81,7 +81,7 @@ Declared declare(const Configuration& configuration) {
         pass.read(lit, Usage::sampled);
         pass.read(handles.exposure);
         (void)pass.write(handles.target, Usage::colour_target);
-        if (configuration.faulty) {
+        if (configuration.bad) {
             pass.read(graph.value<int>("never set"));
         }
     });
@@ -94,15 +94,15 @@ struct Fixture {
     World world;
     Handles handles;
 
-    void adopt(const Configuration& configuration) {
+    void switch_to(const Configuration& configuration) {
         Declared declared = declare(configuration);
-        runtime.adopt(compile(std::move(declared.graph)).take());
+        runtime.switch_to(compile(std::move(declared.graph)).take());
         handles = declared.handles;
         runtime.bind(handles.target, 1000, {configuration.target_size});
     }
     std::string run() { return ran(runtime.run(world)); }
     void start() {
-        adopt({});
+        switch_to({});
         runtime.set(handles.exposure, 1);
         CHECK(run() == "gather casters shadow-maps forward tone-map");
         CHECK(run() == "tone-map");
@@ -110,10 +110,10 @@ struct Fixture {
 };
 
 TEST_CASE_FIXTURE(Fixture,
-                  "graph adoption: another path finds the shadow maps done and the host's values set") {
+                  "graph switch: another path finds the shadow maps done and the host's values set") {
     start();
     const ObjectId map = runtime.object(handles.shadow_map);
-    adopt({.deferred = true});
+    switch_to({.deferred = true});
     CHECK(runtime.object(handles.shadow_map) == map);
     CHECK(runtime.value(handles.lights) == 0);
     CHECK(run() == "gbuffer deferred tone-map");
@@ -122,55 +122,55 @@ TEST_CASE_FIXTURE(Fixture,
     CHECK(run() == "gather casters shadow-maps deferred tone-map");
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: another parameter has its pass run, the same again does not") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: another parameter has its pass run, the same again does not") {
     start();
-    adopt({.bias = 2});
+    switch_to({.bias = 2});
     CHECK(run() == "casters shadow-maps forward tone-map");  // the result of "casters" is transient
-    adopt({.bias = 2});
+    switch_to({.bias = 2});
     CHECK(run() == "forward tone-map");  // so is the result of "forward"
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: another description is another resource") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: another description is another resource") {
     start();
-    adopt({.map_size = 16});
+    switch_to({.map_size = 16});
     CHECK(backend.objects.at(runtime.object(handles.shadow_map)).texture_desc.size == glm::uvec2(16));
     CHECK(run() == "casters shadow-maps forward tone-map");
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: changes of the world between two graphs are seen") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: changes of the world between two graphs are seen") {
     start();
     world.set(world.create(), Light{});
-    adopt({.deferred = true});
+    switch_to({.deferred = true});
     CHECK(run() == "gather casters shadow-maps gbuffer deferred tone-map");
 }
 
 TEST_CASE_FIXTURE(Fixture,
-                  "graph adoption: an imported object must be bound anew, its old handle is of no use") {
+                  "graph switch: an imported object must be bound anew, its old handle is of no use") {
     start();
     const TextureHandle old_target = handles.target;
     Declared declared = declare({});
-    runtime.adopt(compile(std::move(declared.graph)).take());
+    runtime.switch_to(compile(std::move(declared.graph)).take());
     CHECK_THROWS_WITH_AS(run(), "imported texture 'target' has not been bound", GraphError);
-    CHECK_THROWS_WITH_AS(runtime.bind(old_target, 1000, {}), "a handle is not of the adopted frame graph",
+    CHECK_THROWS_WITH_AS(runtime.bind(old_target, 1000, {}), "a handle is not of the current frame graph",
                          GraphError);
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: what does not compile leaves the running graph as it is") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: what does not compile leaves the running graph as it is") {
     start();
     const std::size_t objects = backend.objects.size();
-    const CompileResult result = compile(declare({.deferred = true, .faulty = true}).graph);
+    const CompileResult result = compile(declare({.deferred = true, .bad = true}).graph);
     CHECK_FALSE(result);
     CHECK(run() == "tone-map");
     CHECK(backend.objects.size() == objects);
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: a back end that fails leaves the running graph as it is") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: a back end that fails leaves the running graph as it is") {
     start();
     const std::size_t objects = backend.objects.size();
     for (std::size_t creations = 0; creations < 3; ++creations) {
         backend.creations_left = creations;
         Declared declared = declare({.map_size = 32, .deferred = true, .target_size = {128, 128}});
-        CHECK_THROWS_WITH_AS(runtime.adopt(compile(std::move(declared.graph)).take()), "out of memory",
+        CHECK_THROWS_WITH_AS(runtime.switch_to(compile(std::move(declared.graph)).take()), "out of memory",
                              std::runtime_error);
         CHECK(backend.objects.size() == objects);
         CHECK(run() == "tone-map");
@@ -178,19 +178,19 @@ TEST_CASE_FIXTURE(Fixture, "graph adoption: a back end that fails leaves the run
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: switching back and forth creates nothing after the first round") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: switching back and forth creates nothing after the first round") {
     start();
-    adopt({.deferred = true});
+    switch_to({.deferred = true});
     (void)run();
-    adopt({});
+    switch_to({});
     (void)run();
     const std::size_t created = backend.created;
     const std::size_t objects = backend.objects.size();
     const MemoryUse memory = runtime.memory();
     for (int time = 0; time < 500; ++time) {
-        adopt({.deferred = true});
+        switch_to({.deferred = true});
         (void)run();
-        adopt({});
+        switch_to({});
         (void)run();
     }
     CHECK(backend.created == created);
@@ -199,34 +199,34 @@ TEST_CASE_FIXTURE(Fixture, "graph adoption: switching back and forth creates not
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph adoption: 200 sizes leave as many objects as one") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: 200 sizes leave as many objects as one") {
     start();
     runtime.trim();
     const std::size_t objects = backend.objects.size();
     for (unsigned size = 1; size <= 200; ++size) {
-        adopt({.target_size = {size, 200 - size / 2}});
+        switch_to({.target_size = {size, 200 - size / 2}});
         CHECK(run() == "forward tone-map");
         CHECK(backend.objects.size() <= 2 * objects);
     }
-    adopt({});
+    switch_to({});
     runtime.trim();
     CHECK(backend.objects.size() == objects);
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE("graph adoption: a runtime leaves nothing behind") {
+TEST_CASE("graph switch: a runtime leaves nothing behind") {
     RecordingBackend backend;
     {
         GraphRuntime runtime(backend);
-        runtime.adopt(compile(declare({}).graph).take());
-        runtime.adopt(compile(declare({.deferred = true}).graph).take());
+        runtime.switch_to(compile(declare({}).graph).take());
+        runtime.switch_to(compile(declare({.deferred = true}).graph).take());
         CHECK(!backend.objects.empty());
     }
     CHECK(backend.objects.empty());
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE("graph adoption: history survives, and so does what it remembers") {
+TEST_CASE("graph switch: history survives, and so does what it remembers") {
     RecordingBackend backend;
     GraphRuntime runtime(backend);
     const World world;
@@ -244,14 +244,14 @@ TEST_CASE("graph adoption: history survives, and so does what it remembers") {
                 backend.objects.at(run.object(mixed)).content = frame;
             });
         });
-        runtime.adopt(compile(std::move(graph)).take());
+        runtime.switch_to(compile(std::move(graph)).take());
         (void)runtime.run(world);
     }
     CHECK(seen == std::vector<std::uint64_t>{0, 1, 2});
     CHECK(backend.created == 2);
 }
 
-TEST_CASE("graph memory: what is shared, and what is spared, is told") {
+TEST_CASE("graph memory: what is shared, and what is pooled, is told") {
     RecordingBackend backend;
     GraphRuntime runtime(backend);
     const auto chain = [](std::size_t length) {
@@ -271,13 +271,13 @@ TEST_CASE("graph memory: what is shared, and what is spared, is told") {
         return compile(std::move(graph)).take();
     };
     const std::uint64_t bytes = 64 * 32 * 8;
-    runtime.adopt(chain(5));
+    runtime.switch_to(chain(5));
     CHECK(runtime.memory().texture_bytes == 2 * bytes);
     CHECK(runtime.memory().shared_by_aliasing_bytes == 3 * bytes);
-    CHECK(runtime.memory().spare_bytes == 0);
-    runtime.adopt(chain(1));
+    CHECK(runtime.memory().free_pool_bytes == 0);
+    runtime.switch_to(chain(1));
     CHECK(runtime.memory().texture_bytes == 2 * bytes);
-    CHECK(runtime.memory().spare_bytes == bytes);
+    CHECK(runtime.memory().free_pool_bytes == bytes);
     runtime.trim();
     CHECK(runtime.memory().texture_bytes == bytes);
 }

@@ -16,15 +16,15 @@ using namespace candela;
 const TextureDesc colour{{64, 32}, Format::rgba16f};
 const TextureDesc depth{{64, 32}, Format::depth32f};
 
-std::vector<Fault> faults_of(FrameGraph& graph) {
-    return compile(std::move(graph)).faults;
+std::vector<CompileError> errors_of(FrameGraph& graph) {
+    return compile(std::move(graph)).errors;
 }
 
-/// The only fault of a graph; it must have exactly one.
-Fault fault_of(FrameGraph& graph) {
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 1);
-    return faults.front();
+/// The only error of a graph; it must have exactly one.
+CompileError error_of(FrameGraph& graph) {
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 1);
+    return errors.front();
 }
 
 TextureHandle add_draw(FrameGraph& graph, std::string_view pass_name, TextureHandle target) {
@@ -38,7 +38,7 @@ void add_read(FrameGraph& graph, std::string_view pass_name, TextureHandle sourc
     });
 }
 
-TEST_CASE("graph fault: handles of no graph, of another, of another kind") {
+TEST_CASE("graph error: handles of no graph, of another, of another kind") {
     FrameGraph other;
     const TextureHandle foreign = other.texture("elsewhere", colour);
 
@@ -54,56 +54,56 @@ TEST_CASE("graph fault: handles of no graph, of another, of another kind") {
     });
     (void)graph.history(foreign);
 
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 7);
-    for (const Fault& fault : faults) {
-        CHECK(fault.code == FaultCode::foreign_handle);
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 7);
+    for (const CompileError& error : errors) {
+        CHECK(error.code == ErrorCode::foreign_handle);
     }
-    CHECK(faults[0].message == "pass 'default' reads a texture of another graph");
-    CHECK(faults[2].message == "pass 'write' writes a texture of another graph");
-    CHECK(faults[5].message == "pass 'kind' reads a buffer of another graph");
-    CHECK(faults[6].message == "history of a texture of another graph");
+    CHECK(errors[0].message == "pass 'default' reads a texture of another graph");
+    CHECK(errors[2].message == "pass 'write' writes a texture of another graph");
+    CHECK(errors[5].message == "pass 'kind' reads a buffer of another graph");
+    CHECK(errors[6].message == "history of a texture of another graph");
 }
 
-TEST_CASE("graph fault: a read of a version since overwritten names both passes") {
+TEST_CASE("graph error: a read of a version since overwritten names both passes") {
     FrameGraph graph;
     const TextureHandle first = add_draw(graph, "draw", graph.texture("image", colour));
     const TextureHandle second = add_draw(graph, "overdraw", first);
     (void)add_draw(graph, "overdraw more", second);
     add_read(graph, "show", first);
-    CHECK(fault_of(graph) ==
-          Fault{FaultCode::stale_handle,
-                "pass 'show' reads texture 'image' as it was before pass 'overdraw' wrote it"});
+    CHECK(error_of(graph) ==
+          CompileError{ErrorCode::stale_handle,
+                       "pass 'show' reads texture 'image' as it was before pass 'overdraw' wrote it"});
 }
 
-TEST_CASE("graph fault: two writers of one version") {
+TEST_CASE("graph error: two writers of one version") {
     FrameGraph graph;
     const TextureHandle blank = graph.texture("image", colour);
     (void)add_draw(graph, "draw", blank);
     (void)add_draw(graph, "draw too", blank);
-    CHECK(fault_of(graph) == Fault{FaultCode::two_writers,
-                                   "passes 'draw' and 'draw too' both write version 1 of "
-                                   "texture 'image'"});
+    CHECK(error_of(graph) == CompileError{ErrorCode::two_writers,
+                                          "passes 'draw' and 'draw too' both write version 1 of "
+                                          "texture 'image'"});
 }
 
-TEST_CASE("graph fault: reads of what nobody writes") {
+TEST_CASE("graph error: reads of what nobody writes") {
     FrameGraph graph;
     add_read(graph, "show", graph.texture("image", colour));
     add_read(graph, "show kept", graph.texture("kept", colour, Lifetime::persistent));
     graph.add("use", [&](Pass& pass) { pass.read(graph.value<int>("number")); });
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 3);
-    CHECK(faults[0] ==
-          Fault{FaultCode::unwritten_read, "pass 'show' reads texture 'image', which nobody has written"});
-    CHECK(faults[1].message == "pass 'show kept' reads texture 'kept', which nobody has written");
-    CHECK(faults[2].message == "pass 'use' reads value 'number', which nobody has written");
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 3);
+    CHECK(errors[0] == CompileError{ErrorCode::unwritten_read,
+                                    "pass 'show' reads texture 'image', which nobody has written"});
+    CHECK(errors[1].message == "pass 'show kept' reads texture 'kept', which nobody has written");
+    CHECK(errors[2].message == "pass 'use' reads value 'number', which nobody has written");
 }
 
-TEST_CASE("graph fault: a history of what nobody writes") {
+TEST_CASE("graph error: a history of what nobody writes") {
     FrameGraph graph;
     add_read(graph, "show", graph.history(graph.texture("image", colour)));
-    CHECK(fault_of(graph) ==
-          Fault{FaultCode::unwritten_read, "texture 'image' has a history, but nobody writes it"});
+    CHECK(error_of(graph) ==
+          CompileError{ErrorCode::unwritten_read, "texture 'image' has a history, but nobody writes it"});
 }
 
 TEST_CASE("graph: what is imported and what is remembered may be read before it is written") {
@@ -116,10 +116,10 @@ TEST_CASE("graph: what is imported and what is remembered may be read before it 
     const TextureHandle blank = graph.texture("image", colour);
     add_read(graph, "past", graph.history(blank));
     (void)add_draw(graph, "draw", blank);
-    CHECK(compile(std::move(graph)).faults.empty());
+    CHECK(compile(std::move(graph)).errors.empty());
 }
 
-TEST_CASE("graph fault: histories of what has none, and writes of what is read only") {
+TEST_CASE("graph error: histories of what has none, and writes of what is read only") {
     FrameGraph graph;
     const TextureHandle sky = graph.texture("sky", colour, Lifetime::imported);
     const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
@@ -127,28 +127,28 @@ TEST_CASE("graph fault: histories of what has none, and writes of what is read o
     (void)graph.history(graph.history(image));
     (void)add_draw(graph, "rewrite", graph.history(image));
     graph.add("host", [&](Pass& pass) { (void)pass.write(graph.import_value<int>("number")); });
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 4);
-    for (const Fault& fault : faults) {
-        CHECK(fault.code == FaultCode::wrong_usage);
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 4);
+    for (const CompileError& error : errors) {
+        CHECK(error.code == ErrorCode::wrong_usage);
     }
-    CHECK(faults[0].message == "texture 'sky' has no history: it is imported");
-    CHECK(faults[1].message == "texture 'image' has no history: it is a history itself");
-    CHECK(faults[2].message == "pass 'rewrite' writes the history of texture 'image', which is read only");
-    CHECK(faults[3].message == "pass 'host' writes value 'number', which the host sets");
+    CHECK(errors[0].message == "texture 'sky' has no history: it is imported");
+    CHECK(errors[1].message == "texture 'image' has no history: it is a history itself");
+    CHECK(errors[2].message == "pass 'rewrite' writes the history of texture 'image', which is read only");
+    CHECK(errors[3].message == "pass 'host' writes value 'number', which the host sets");
 }
 
 /// Whether a pass that accesses an imported texture or buffer with `access` is invalid.
 template <class Access>
-bool faulty(const TextureDesc& desc, Access access) {
+bool bad(const TextureDesc& desc, Access access) {
     FrameGraph graph;
     const TextureHandle texture = graph.texture("texture", desc, Lifetime::imported);
     const BufferHandle<int> buffer = graph.buffer<int>("buffer", 8, Lifetime::imported);
     graph.add("pass", [&](Pass& pass) { access(pass, texture, buffer); });
-    return !faults_of(graph).empty();
+    return !errors_of(graph).empty();
 }
 
-TEST_CASE("graph fault: each usage that a kind of resource or a direction does not allow") {
+TEST_CASE("graph error: each usage that a kind of resource or a direction does not allow") {
     using enum Usage;
     const auto one_of = [](Usage usage, std::initializer_list<Usage> usages) {
         return std::find(usages.begin(), usages.end(), usage) != usages.end();
@@ -157,35 +157,37 @@ TEST_CASE("graph fault: each usage that a kind of resource or a direction does n
                               layer_target, copy}) {
         CAPTURE(to_string(usage));
         const TextureDesc& desc = usage == depth_target ? depth : colour;
-        CHECK(faulty(desc, [&](Pass& pass, auto texture, auto) { pass.read(texture, usage); }) !=
+        CHECK(bad(desc, [&](Pass& pass, auto texture, auto) { pass.read(texture, usage); }) !=
               one_of(usage, {sampled, storage, depth_target, copy}));
-        CHECK(faulty(desc, [&](Pass& pass, auto texture, auto) { (void)pass.write(texture, usage); }) !=
+        CHECK(bad(desc, [&](Pass& pass, auto texture, auto) { (void)pass.write(texture, usage); }) !=
               one_of(usage, {storage, colour_target, depth_target, layer_target, copy}));
-        CHECK(faulty(desc, [&](Pass& pass, auto, auto buffer) { pass.read(buffer, usage); }) !=
+        CHECK(bad(desc, [&](Pass& pass, auto, auto buffer) { pass.read(buffer, usage); }) !=
               one_of(usage, {storage, uniform, vertex, index, indirect, copy}));
-        CHECK(faulty(desc, [&](Pass& pass, auto, auto buffer) { (void)pass.write(buffer, usage); }) !=
+        CHECK(bad(desc, [&](Pass& pass, auto, auto buffer) { (void)pass.write(buffer, usage); }) !=
               one_of(usage, {storage, copy}));
     }
 }
 
-TEST_CASE("graph fault: wrong usage and wrong format are named") {
+TEST_CASE("graph error: wrong usage and wrong format are named") {
     FrameGraph graph;
     graph.add("draw", [&](Pass& pass) {
         (void)pass.write(graph.texture("normal", colour), Usage::sampled);
         (void)pass.write(graph.texture("z", depth), Usage::colour_target);
         (void)pass.write(graph.texture("albedo", colour), Usage::depth_target);
     });
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 3);
-    CHECK(faults[0] == Fault{FaultCode::wrong_usage, "pass 'draw' writes texture 'normal' as sampled"});
-    CHECK(faults[1] == Fault{FaultCode::wrong_usage,
-                             "pass 'draw' writes texture 'z' as colour target, but its format is depth32f"});
-    CHECK(faults[2] ==
-          Fault{FaultCode::wrong_usage,
-                "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 3);
+    CHECK(errors[0] ==
+          CompileError{ErrorCode::wrong_usage, "pass 'draw' writes texture 'normal' as sampled"});
+    CHECK(errors[1] ==
+          CompileError{ErrorCode::wrong_usage,
+                       "pass 'draw' writes texture 'z' as colour target, but its format is depth32f"});
+    CHECK(errors[2] ==
+          CompileError{ErrorCode::wrong_usage,
+                       "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
 }
 
-TEST_CASE("graph fault: a pass reads what it overwrites, in either order of declaring") {
+TEST_CASE("graph error: a pass reads what it overwrites, in either order of declaring") {
     for (const bool read_first : {true, false}) {
         FrameGraph graph;
         const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
@@ -199,10 +201,10 @@ TEST_CASE("graph fault: a pass reads what it overwrites, in either order of decl
             }
             pass.side_effect();
         });
-        CHECK(fault_of(graph) == Fault{FaultCode::feedback,
-                                       "pass 'loop' reads texture 'image' and overwrites it: a "
-                                       "write from version 1 on depends on what was there by "
-                                       "itself"});
+        CHECK(error_of(graph) == CompileError{ErrorCode::feedback,
+                                              "pass 'loop' reads texture 'image' and overwrites it: a "
+                                              "write from version 1 on depends on what was there by "
+                                              "itself"});
     }
 }
 
@@ -214,10 +216,10 @@ TEST_CASE("graph: a pass may read back its own result, and write it in steps") {
         pass.read(counted, Usage::indirect);
         pass.side_effect();
     });
-    CHECK(compile(std::move(graph), {.shuffle_seed = 1}).faults.empty());
+    CHECK(compile(std::move(graph), {.shuffle_seed = 1}).errors.empty());
 }
 
-TEST_CASE("graph fault: attachments of different sizes, and two depth targets") {
+TEST_CASE("graph error: attachments of different sizes, and two depth targets") {
     FrameGraph graph;
     graph.add("draw", [&](Pass& pass) {
         (void)pass.write(graph.texture("albedo", colour), Usage::colour_target);
@@ -225,16 +227,17 @@ TEST_CASE("graph fault: attachments of different sizes, and two depth targets") 
         (void)pass.write(graph.texture("near", depth), Usage::depth_target);
         (void)pass.write(graph.texture("far", depth), Usage::depth_target);
     });
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 2);
-    CHECK(faults[0] ==
-          Fault{FaultCode::attachment_mismatch,
-                "pass 'draw' has attachments of different sizes: 'albedo' is 64x32, 'normal' is 64x64"});
-    CHECK(faults[1] ==
-          Fault{FaultCode::attachment_mismatch, "pass 'draw' has two depth targets, 'near' and 'far'"});
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 2);
+    CHECK(
+        errors[0] ==
+        CompileError{ErrorCode::attachment_mismatch,
+                     "pass 'draw' has attachments of different sizes: 'albedo' is 64x32, 'normal' is 64x64"});
+    CHECK(errors[1] == CompileError{ErrorCode::attachment_mismatch,
+                                    "pass 'draw' has two depth targets, 'near' and 'far'"});
 }
 
-TEST_CASE("graph fault: names used twice") {
+TEST_CASE("graph error: names used twice") {
     FrameGraph graph;
     for (int time = 0; time < 2; ++time) {
         graph.add("draw", [&](Pass& pass) {
@@ -243,26 +246,27 @@ TEST_CASE("graph fault: names used twice") {
         });
     }
     (void)graph.value<int>("kept");  // another kind: no clash
-    const std::vector<Fault> faults = faults_of(graph);
-    REQUIRE(faults.size() == 2);
-    CHECK(faults[0] == Fault{FaultCode::duplicate_pass, "two passes are called 'draw'"});
-    CHECK(faults[1] ==
-          Fault{FaultCode::duplicate_resource, "two textures that are kept or imported are called 'kept'"});
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 2);
+    CHECK(errors[0] == CompileError{ErrorCode::duplicate_pass, "two passes are called 'draw'"});
+    CHECK(errors[1] == CompileError{ErrorCode::duplicate_resource,
+                                    "two textures that are kept or imported are called 'kept'"});
 }
 
-TEST_CASE("graph fault: a pass inside a pass") {
+TEST_CASE("graph error: a pass inside a pass") {
     FrameGraph graph;
     graph.add("outer", [&](Pass&) { graph.add("inner", [](Pass&) {}); });
-    CHECK(fault_of(graph) == Fault{FaultCode::nested_pass, "pass 'inner' is declared inside pass 'outer'"});
+    CHECK(error_of(graph) ==
+          CompileError{ErrorCode::nested_pass, "pass 'inner' is declared inside pass 'outer'"});
 }
 
-TEST_CASE("graph fault: all faults are found at once, and taking the graph tells them") {
+TEST_CASE("graph error: all errors are found at once, and taking the graph tells them") {
     FrameGraph graph;
     add_read(graph, "show", {});
     add_read(graph, "show", graph.texture("image", colour));
     CompileResult result = compile(std::move(graph));
     CHECK_FALSE(result);
-    CHECK(result.faults.size() == 3);
+    CHECK(result.errors.size() == 3);
     CHECK_THROWS_WITH_AS((void)std::move(result).take(), R"(the frame graph does not compile:
   pass 'show' reads a texture of another graph
   pass 'show' reads texture 'image', which nobody has written

@@ -67,7 +67,7 @@ GraphRuntime::~GraphRuntime() {
     trim();
 }
 
-void GraphRuntime::adopt(CompiledGraph graph) {
+void GraphRuntime::switch_to(CompiledGraph graph) {
     detail::State state = detail::make_state(graph);
     std::vector<PassRecord> passes;
     passes.reserve(state.step_count());
@@ -77,7 +77,7 @@ void GraphRuntime::adopt(CompiledGraph graph) {
     if (verifying_) {
         state.contents.resize(state.versions.size());
     }
-    std::vector<detail::Slot> stock = spare_;
+    std::vector<detail::Slot> stock = free_pool_;
     if (graph_) {
         const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, state_);
         for (std::size_t index = 0; index < taken.size(); ++index) {
@@ -90,15 +90,15 @@ void GraphRuntime::adopt(CompiledGraph graph) {
 
     // Nothing fails from here on. Unused objects of the previous graph go to the free pool; the objects that
     // were in it before are destroyed, unless they were taken.
-    const auto spared = stock.begin() + static_cast<std::ptrdiff_t>(spare_.size());
-    std::for_each(stock.begin(), spared, [this](const detail::Slot& slot) { destroy(slot); });
-    stock.erase(stock.begin(), spared);
+    const auto pooled = stock.begin() + static_cast<std::ptrdiff_t>(free_pool_.size());
+    std::for_each(stock.begin(), pooled, [this](const detail::Slot& slot) { destroy(slot); });
+    stock.erase(stock.begin(), pooled);
     std::erase_if(stock, [](const detail::Slot& slot) { return slot.object == 0; });
     // The planned barriers of the new graph do not cover the writes of the previous one.
     if (graph_) {
-        carried_ = all_barriers;
+        pending_barriers_ = all_barriers;
     }
-    spare_ = std::move(stock);
+    free_pool_ = std::move(stock);
     state_ = std::move(state);
     graph_ = std::move(graph);
     record_.passes = std::move(passes);
@@ -149,10 +149,10 @@ void GraphRuntime::destroy(const detail::Slot& slot) {
 }
 
 void GraphRuntime::trim() {
-    for (const detail::Slot& slot : spare_) {
+    for (const detail::Slot& slot : free_pool_) {
         destroy(slot);
     }
-    spare_.clear();
+    free_pool_.clear();
 }
 
 MemoryUse GraphRuntime::memory() const {
@@ -168,9 +168,9 @@ MemoryUse GraphRuntime::memory() const {
     for (const detail::Slot& slot : state_.slots) {
         add(slot);
     }
-    for (const detail::Slot& slot : spare_) {
+    for (const detail::Slot& slot : free_pool_) {
         add(slot);
-        use.spare_bytes += bytes(slot);
+        use.free_pool_bytes += bytes(slot);
     }
     if (!graph_) {
         return use;

@@ -6,7 +6,7 @@
 
 namespace candela {
 
-enum class FaultCode : std::uint8_t {
+enum class ErrorCode : std::uint8_t {
     foreign_handle,       ///< a null handle, or one of another graph or of another kind
     stale_handle,         ///< a read of a version that another pass has already overwritten
     two_writers,          ///< two passes write one version
@@ -20,10 +20,10 @@ enum class FaultCode : std::uint8_t {
 };
 
 /// One reason why a graph does not compile. `message` is one line that names the passes and resources.
-struct Fault {
-    FaultCode code;
+struct CompileError {
+    ErrorCode code;
     std::string message;
-    bool operator==(const Fault&) const = default;
+    bool operator==(const CompileError&) const = default;
 };
 
 /// Thrown for misuse of a GraphRuntime or an Execution, for a failed verification, and by CompileResult::take
