@@ -23,104 +23,160 @@ namespace {
 /// of which pixel evaluates which VPLs would be visible.
 constexpr std::uint32_t most_vpls_of_blended = 1024;
 
-std::optional<TextureHandle> depth_of(const std::optional<VisibleSurfaces>& surfaces) {
-    return surfaces ? std::optional(surfaces->depth) : std::nullopt;
+/// The scene and what lights it, independent of the view.
+struct LitScene {
+    SceneData scene;
+    Tracing tracing;
+    LightBuffers buffers;
+    SceneLights lights;
+    ShadowMaps shadows;
+};
+
+LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration, FrameHandles& frame) {
+    const SceneData scene = add_scene_upload(graph, gpu);
+    const Tracing tracing = add_bvh(graph, gpu, scene);
+    frame.metrics = tracing.metrics;
+    frame.lights = add_lights(graph, tracing.metrics);
+    const ShadowMaps shadows =
+        add_shadow_maps(graph, gpu, scene, frame.lights, frame.metrics, configuration.shadows);
+    frame.shadows = shadows.plan;
+    frame.drawn_shadows = shadows.drawn;
+    const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
+    return {scene, tracing, buffers, {frame.lights, buffers.lights}, shadows};
+}
+
+ValueHandle<CameraView> add_camera(FrameGraph& graph, const Configuration& configuration, const LitScene& lit,
+                                   FrameHandles& frame) {
+    const ValueHandle<CameraView> camera = add_view(graph, frame.request);
+    if (!configuration.refinement.enabled) {
+        return camera;
+    }
+    frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
+    frame.refinement = add_refinement(graph, *frame.refinement_clock, lit.scene, frame.lights, camera);
+    return add_refined_view(graph, frame.request, *frame.refinement);
+}
+
+/// Places VPLs and finds their light. Returns what their depth maps are made of.
+MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const VplSettings& settings, const LitScene& lit,
+                      FrameHandles& frame) {
+    if (settings.placement == VplPlacement::paths) {
+        const ValueHandle<VplPlan> plan =
+            add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, settings);
+        frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.buffers.lights);
+        return {plan, frame.vpls->vpls, {}, {}};
+    }
+    frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
+    const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
+    const Surfels surfels = add_surfels(graph, gpu, lit.scene, frame.refinement, settings);
+    const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
+    frame.vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, lit.lights, settings.bounces);
+    return {surfels.plan, surfels.surfels, motion, surfels.set};
+}
+
+/// The indirect light, if the picture shows any.
+std::optional<VplLight> add_vpls(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
+                                 const LitScene& lit, FrameHandles& frame) {
+    if (!configuration.indirect || configuration.show == Show::direct) {
+        return std::nullopt;
+    }
+    const MappedVpls mapped = place_vpls(graph, gpu, configuration.vpls, lit, frame);
+    VplLight light{.vpls = *frame.vpls,
+                   .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
+                                               configuration.visibility, configuration.geometry_bound)};
+    if (configuration.visibility.method == VplVisibility::maps) {
+        light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
+    } else if (configuration.visibility.method == VplVisibility::rays) {
+        light.rays = lit.tracing;
+    }
+    return light;
+}
+
+/// Surfaces that are found before they are shaded, if any.
+struct FoundSurfaces {
+    std::optional<VisibleSurfaces> visible;
+    std::optional<Gbuffer> gbuffer;
+
+    [[nodiscard]] std::optional<TextureHandle> depth() const {
+        return visible ? std::optional(visible->depth) : std::nullopt;
+    }
+};
+
+/// `needed`: by a pass other than that which shades.
+FoundSurfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
+                            const FrameView& view, bool needed) {
+    if (stage == SurfaceStage::gbuffer) {
+        const Gbuffer gbuffer = add_gbuffer(graph, gpu, seen, view);
+        return {VisibleSurfaces{gbuffer.depth, gbuffer.normal}, gbuffer};
+    }
+    if (stage == SurfaceStage::forward_after_prepass || needed) {
+        return {add_depth_prepass(graph, gpu, seen, view), {}};
+    }
+    return {};
+}
+
+/// The light lists of the shading path; none if each surface evaluates all lights. `depth` bounds tiles.
+std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
+                                    const LitScene& lit, const FrameView& view,
+                                    std::optional<TextureHandle> depth) {
+    switch (info_of(configuration.path).lights) {
+        case LightList::all:
+            break;
+        case LightList::tile: {
+            const LightGrid grid = add_tile_grid(graph, gpu, view.size, configuration.lists);
+            return add_light_tiles(graph, gpu, {lit.lights, view, grid}, depth);
+        }
+        case LightList::cluster: {
+            const LightGrid grid = add_cluster_grid(graph, gpu, view.camera, lit.tracing.metrics, view.size,
+                                                    configuration.lists);
+            return add_light_clusters(graph, gpu, {lit.lights, view, grid});
+        }
+    }
+    return std::nullopt;
+}
+
+/// Irradiance that is gathered from the VPLs before surfaces are shaded.
+TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& visible, const VplLight& light,
+                          const FrameView& view, FrameHandles& frame) {
+    const GatheredVpls gathered = add_vpl_gather(graph, gpu, visible, light, view, frame.interleave);
+    if (frame.interleave == 1) {
+        return gathered.irradiance;
+    }
+    frame.indirect = add_vpl_reconstruct(graph, gpu, visible, gathered, light, view);
+    return frame.indirect->irradiance;
 }
 
 }  // namespace
 
 FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                          const FrameExtent& extent) {
-    const glm::uvec2 size = extent.size;
     FrameHandles frame;
     frame.request = graph.import_value<ViewRequest>("view request");
     frame.target = graph.texture("target", {extent.target, Format::rgba8}, Lifetime::imported);
 
-    const SceneData scene = add_scene_upload(graph, gpu);
-    const Tracing tracing = add_bvh(graph, gpu, scene);
-    frame.metrics = tracing.metrics;
-    frame.lights = add_lights(graph, tracing.metrics);
+    const LitScene lit = add_scene(graph, gpu, configuration, frame);
+    const ValueHandle<CameraView> camera = add_camera(graph, configuration, lit, frame);
+    const FrameView view = add_view_upload(graph, gpu, camera, extent.size);
+    const SceneData seen = add_view_cull(graph, gpu, lit.scene, camera);
 
-    const ShadowMaps shadows =
-        add_shadow_maps(graph, gpu, scene, frame.lights, frame.metrics, configuration.shadows);
-    frame.shadows = shadows.plan;
-    frame.drawn_shadows = shadows.drawn;
-    const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
-    const SceneLights scene_lights{frame.lights, buffers.lights};
-    ValueHandle<CameraView> camera = add_view(graph, frame.request);
-    if (configuration.refinement.enabled) {
-        frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
-        frame.refinement = add_refinement(graph, *frame.refinement_clock, scene, frame.lights, camera);
-        camera = add_refined_view(graph, frame.request, *frame.refinement);
+    const std::optional<VplLight> vpls = add_vpls(graph, gpu, configuration, lit, frame);
+    if (vpls) {
+        frame.interleave =
+            std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
+                     extent.least_interleave);
     }
-    const FrameView view = add_view_upload(graph, gpu, camera, size);
-    const SceneData seen = add_view_cull(graph, gpu, scene, camera);
-    std::optional<MappedVpls> mapped;
-    if (configuration.indirect && configuration.vpls.placement == VplPlacement::surfels) {
-        frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
-        const ValueHandle<SceneMotion> motion = add_scene_motion(graph, scene, *frame.epoch);
-        const Surfels surfels = add_surfels(graph, gpu, scene, frame.refinement, configuration.vpls);
-        const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, tracing, surfels, motion);
-        frame.vpls =
-            add_surfel_light(graph, gpu, tracing, visibility, scene_lights, configuration.vpls.bounces);
-        mapped = MappedVpls{surfels.plan, surfels.surfels, motion, surfels.set};
-    } else if (configuration.indirect) {
-        const ValueHandle<VplPlan> plan =
-            add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, configuration.vpls);
-        frame.vpls = add_vpl_trace(graph, gpu, tracing, plan, buffers.lights);
-        mapped = MappedVpls{plan, frame.vpls->vpls, {}, {}};
-    }
-    std::optional<VplLight> vpl_light;
-    if (frame.vpls) {
-        vpl_light =
-            VplLight{.vpls = *frame.vpls,
-                     .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
-                                                 configuration.visibility, configuration.geometry_bound)};
-        if (configuration.visibility.method == VplVisibility::maps) {
-            vpl_light->maps = add_vpl_maps(graph, gpu, tracing, *mapped, vpl_light->common);
-        } else if (configuration.visibility.method == VplVisibility::rays) {
-            vpl_light->rays = tracing;
-        }
-    }
-    const bool shows_indirect = vpl_light && configuration.show != Show::direct;
-    if (!shows_indirect) {
-        frame.vpls.reset();  // nothing reads them: their passes are culled
-    }
-    frame.interleave =
-        shows_indirect
-            ? std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
-                       extent.least_interleave)
-            : 1;
-
     // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
-    const bool gathers =
-        shows_indirect && (frame.interleave > 1 || configuration.vpls.count > most_asked(*vpl_light));
+    const bool gathers = vpls && (frame.interleave > 1 || configuration.vpls.count > most_asked(*vpls));
 
-    // Visible surfaces that are found before shading.
     const ShadingPathInfo& path = info_of(configuration.path);
-    std::optional<VisibleSurfaces> visible;
-    std::optional<Gbuffer> gbuffer;
-    if (path.surfaces == SurfaceStage::gbuffer) {
-        gbuffer = add_gbuffer(graph, gpu, seen, view);
-        visible = {gbuffer->depth, gbuffer->normal};
-    } else if (path.surfaces == SurfaceStage::forward_after_prepass || gathers) {
-        visible = add_depth_prepass(graph, gpu, seen, view);
-    }
+    const FoundSurfaces found = find_surfaces(graph, gpu, path.surfaces, seen, view, gathers);
     const bool bounds_lists = path.surfaces != SurfaceStage::forward;
-
-    if (path.lights == LightList::tile) {
-        const LightGrid grid = add_tile_grid(graph, gpu, size, configuration.lists);
-        frame.lists = add_light_tiles(graph, gpu, {scene_lights, view, grid},
-                                      bounds_lists ? depth_of(visible) : std::nullopt);
-    } else if (path.lights == LightList::cluster) {
-        const LightGrid grid = add_cluster_grid(graph, gpu, camera, frame.metrics, size, configuration.lists);
-        frame.lists = add_light_clusters(graph, gpu, {scene_lights, view, grid});
-    }
+    frame.lists =
+        add_lists(graph, gpu, configuration, lit, view, bounds_lists ? found.depth() : std::nullopt);
 
     Lighting lighting{.lights = frame.lights,
-                      .buffers = buffers,
-                      .shadows = shadows,
-                      .vpls = shows_indirect ? vpl_light : std::nullopt,
+                      .buffers = lit.buffers,
+                      .shadows = lit.shadows,
+                      .vpls = vpls,
                       .lists = frame.lists,
                       .show = configuration.show};
     // Blended surfaces evaluate VPLs while they are shaded, because the gathered irradiance is that of the
@@ -131,26 +187,20 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         of_blended.most_vpls = most_vpls_of_blended;
     }
     if (path.lights == LightList::tile && bounds_lists) {
-        of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lists->inputs, scene.layout);
+        of_blended.lists = add_blended_light_tiles(graph, gpu, frame.lists->inputs, lit.scene.layout);
     }
-
     if (gathers) {
-        const GatheredVpls gathered =
-            add_vpl_gather(graph, gpu, *visible, *vpl_light, view, frame.interleave);
-        lighting.indirect = gathered.irradiance;
-        if (frame.interleave > 1) {
-            frame.indirect = add_vpl_reconstruct(graph, gpu, *visible, gathered, *vpl_light, view);
-            lighting.indirect = frame.indirect->irradiance;
-        }
+        lighting.indirect = gather_vpls(graph, gpu, *found.visible, *vpls, view, frame);
         lighting.vpls.reset();
     }
 
     const ShadedSurfaces solid =
-        gbuffer ? ShadedSurfaces{add_deferred(graph, gpu, *gbuffer, lighting, view), gbuffer->depth}
-                : add_forward(graph, gpu, seen, lighting, view, depth_of(visible));
+        found.gbuffer
+            ? ShadedSurfaces{add_deferred(graph, gpu, *found.gbuffer, lighting, view), found.gbuffer->depth}
+            : add_forward(graph, gpu, seen, lighting, view, found.depth());
     TextureHandle radiance = add_transparent(graph, gpu, seen, of_blended, view, solid);
     if (frame.refinement) {
-        radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, size);
+        radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, extent.size);
     }
     add_tone_map(graph, gpu, radiance, frame.target, extent.target, configuration.tone_map);
     return frame;

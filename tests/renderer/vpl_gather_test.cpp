@@ -108,6 +108,20 @@ TEST_SUITE("interleaved gathering") {
         CHECK(order == all);
     }
 
+    TEST_CASE_FIXTURE(VplGatherTests,
+                      "textures of the stages share storage where their lifetimes do not overlap") {
+        const Scene scene = cornell_box();
+        Configuration configuration = linear_configuration();
+        configuration.vpls.count = 256;
+        configuration.interleave = Interleave::eight;
+        configure(configuration);
+        const glm::uvec2 size{64, 48};
+        static_cast<void>(render(scene, size));
+        // Of the four rgba32f textures gathered irradiance, irradiance along rows, indirect irradiance and
+        // radiance, only two are in use at a time.
+        CHECK(renderer.report().memory.shared_by_aliasing_bytes == std::uint64_t{2} * size.x * size.y * 16);
+    }
+
     TEST_CASE_FIXTURE(VplGatherTests, "on a plane it is what all VPLs give, to rounding") {
         // A view so narrow that the light of a VPL is the same in the whole picture.
         Scene scene = cornell_box();
