@@ -12,8 +12,8 @@
 #include "renderer/passes/shading/transparent.hpp"
 #include "renderer/passes/surfaces/depth_prepass.hpp"
 #include "renderer/passes/surfaces/gbuffer.hpp"
+#include "renderer/passes/surfels/surfel_light.hpp"
 #include "renderer/passes/view/view_cull.hpp"
-#include "renderer/passes/vpls/surfel_light.hpp"
 #include "renderer/passes/vpls/vpl_maps.hpp"
 
 namespace candela {

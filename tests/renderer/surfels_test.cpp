@@ -13,7 +13,7 @@
 #include <random>
 #include <set>
 
-#include "renderer/passes/vpls/surfels.hpp"
+#include "renderer/passes/surfels/surfels.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/seed.hpp"

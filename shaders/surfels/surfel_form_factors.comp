@@ -3,7 +3,7 @@
 // columns.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
-#include "vpls/surfel.glsl"
+#include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 

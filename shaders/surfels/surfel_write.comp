@@ -1,6 +1,6 @@
 // Turns surfels into VPLs: each has the total flux that its cell reflects, and the position and width of the part of
 // the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
-#include "vpls/surfel.glsl"
+#include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 

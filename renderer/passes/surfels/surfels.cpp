@@ -1,4 +1,4 @@
-#include "renderer/passes/vpls/surfels.hpp"
+#include "renderer/passes/surfels/surfels.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "sampling.glsl"
-#include "vpls/surfel.glsl"
+#include "surfels/surfel.glsl"
 
 layout(local_size_x = COVER_PARTS) in;
 

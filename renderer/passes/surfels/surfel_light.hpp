@@ -5,7 +5,7 @@
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
-#include "renderer/passes/vpls/surfels.hpp"
+#include "renderer/passes/surfels/surfels.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
 
 namespace candela {
@@ -13,7 +13,8 @@ namespace candela {
 /// Visibility between surfels, and between a surfel and the points of its cell.
 struct SurfelVisibility {
     Surfels surfels;
-    /// Half floats, two per word, `surfel_columns` per surfel; 0 if hidden. Layout: shaders/vpls/surfel.glsl.
+    /// Half floats, two per word, `surfel_columns` per surfel; 0 if hidden. Layout:
+    /// shaders/surfels/surfel.glsl.
     BufferHandle<std::uint32_t> form_factors;
     /// By surfel: scale of its form factors, and the cosine-weighted share of its hemisphere in which no
     /// reflecting surface is visible.
@@ -32,9 +33,9 @@ struct SurfelColumns {
 /// Adds node `surfel-visibility` (compute). It finds the form factors between surfels, with one ray for each
 /// pair of surfels that face each other; the form factor is that of a disc (shaders/vpls/disc.glsl). Factors
 /// are then scaled, so that those of a surfel add up to the share of its hemisphere in which rays hit
-/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/vpls/surfel_rows.comp). It also finds which points
-/// of its cell a surfel sees. If something moves, only rays that pass through the changed boxes are traced
-/// again. Depends on surfels, BVH and motion, and on its own last result.
+/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/surfels/surfel_rows.comp). It also finds which
+/// points of its cell a surfel sees. If something moves, only rays that pass through the changed boxes are
+/// traced again. Depends on surfels, BVH and motion, and on its own last result.
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                                      const Surfels& surfels, ValueHandle<SceneMotion> motion);
 

@@ -2,7 +2,7 @@
 // be sent on from in front of it: that would leak through the wall. One invocation a cell point.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
-#include "vpls/surfel.glsl"
+#include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 

@@ -1,7 +1,7 @@
 // Sums up over all cells where the flux of the lights went: absorbed, escaped, or left after the last bounce; and
 // decides whether another bounce is worth gathering. See theory.md, "Flux account of surfels". One work group in all;
 // an invocation adds up every SURFEL_GROUP-th cell.
-#include "vpls/surfel.glsl"
+#include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 

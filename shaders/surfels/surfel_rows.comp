@@ -2,7 +2,7 @@
 // covered share cᵢ, from surfel_cover.comp. Other surfels then gather from it the share cᵢ of the flux that it sends
 // out. One round computes dᵢ ← √(dᵢ cᵢ / Σ Fᵢⱼ dⱼ) and halves the logarithm of the remaining error (after Sinkhorn and
 // Knopp, 1967). See theory.md, "Balanced form factors". One invocation a surfel.
-#include "vpls/surfel.glsl"
+#include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 

@@ -1,4 +1,4 @@
-#include "renderer/passes/vpls/surfel_light.hpp"
+#include "renderer/passes/surfels/surfel_light.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -40,7 +40,7 @@ struct KnownVisibility {
     }
 };
 
-/// Sets `surfel_count` and the uniforms that follow from it: shaders/vpls/surfel.glsl.
+/// Sets `surfel_count` and the uniforms that follow from it: shaders/surfels/surfel.glsl.
 void set_count(const gl::Program& program, std::uint32_t count) {
     const SurfelColumns columns = surfel_columns(count);
     program.set("surfel_count", count);
@@ -138,8 +138,8 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         pass.read(lights.table);
         pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
-        const gl::Program& lighter = gpu.program({"vpls/surfel_light.comp"});
-        const gl::Program& adder = gpu.program({"vpls/surfel_cells.comp"});
+        const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"});
+        const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const DirectLight out{
             .points =
                 pass.write(graph.buffer<gpu::DirectPoint>("directly lit points", 1, Lifetime::persistent),
@@ -181,10 +181,10 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         pass.read(motion);
         read_tracing(pass, tracing);
         pass.remembers();
-        const gl::Program& factors = gpu.program({"vpls/surfel_form_factors.comp"});
-        const gl::Program& cover = gpu.program({"vpls/surfel_cover.comp"});
-        const gl::Program& rows = gpu.program({"vpls/surfel_rows.comp"});
-        const gl::Program& seer = gpu.program({"vpls/surfel_points.comp"});
+        const gl::Program& factors = gpu.program({"surfels/surfel_form_factors.comp"});
+        const gl::Program& cover = gpu.program({"surfels/surfel_cover.comp"});
+        const gl::Program& rows = gpu.program({"surfels/surfel_rows.comp"});
+        const gl::Program& seer = gpu.program({"surfels/surfel_points.comp"});
         const SurfelVisibility out{
             .surfels = surfels,
             .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
@@ -247,10 +247,10 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
         pass.parameter(bounces);
-        const BouncePrograms programs{.first = &gpu.program({"vpls/surfel_bounce.comp"}, {"FIRST"}),
-                                      .further = &gpu.program({"vpls/surfel_bounce.comp"}),
-                                      .account = &gpu.program({"vpls/surfel_account.comp"})};
-        const gl::Program& writer = gpu.program({"vpls/surfel_write.comp"});
+        const BouncePrograms programs{.first = &gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
+                                      .further = &gpu.program({"surfels/surfel_bounce.comp"}),
+                                      .account = &gpu.program({"surfels/surfel_account.comp"})};
+        const gl::Program& writer = gpu.program({"surfels/surfel_write.comp"});
         [[maybe_unused]] const auto lit_cells =
             pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
         const auto bounced = pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent),
