@@ -28,7 +28,6 @@ from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 SUITES = ["matrix", "table", "growth", "gather", "placement", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
-RESULTS = scenes.ROOT / "tests" / "study" / "results"
 
 
 def names(text: str) -> list[str]:
@@ -38,11 +37,10 @@ def names(text: str) -> list[str]:
 
 def arguments() -> argparse.Namespace:
     parts = list(dict.fromkeys(SUITES + PROGRAM_PARTS))
-    where = "default: tests/study/results for a whole study, else build/study/results"
     parser = argparse.ArgumentParser(prog="tests/study/run", description="Charts Candela's speed against its accuracy.")
     parser.add_argument("--quick", action="store_true", help="a small matrix, and checks of what must hold anywhere")
     parser.add_argument("--scenes", metavar="A,B", type=names, help="only these")
-    parser.add_argument("--out", metavar="DIR", type=pathlib.Path, help=where)
+    parser.add_argument("--out", metavar="DIR", type=pathlib.Path, help="default: build/study/results")
     parser.add_argument("--part", metavar="A,B", type=names, help=f"only these of {', '.join(parts)}; default: all")
     given = parser.parse_args()
     if given.quick and given.part:
@@ -51,8 +49,7 @@ def arguments() -> argparse.Namespace:
     moving = [motion.scene_of(each, ANIMATIONS) for each in planned_motions(given.quick, given.part, None)]
     still = [group.scene for group in planned(given.quick, given.part, None)]
     require_known(parser, "--scenes", given.scenes, still + moving)
-    whole = not (given.quick or given.part or given.scenes)
-    given.out = (given.out or (RESULTS if whole else BUILD / "study" / "results")).resolve()
+    given.out = (given.out or BUILD / "study" / "results").resolve()
     return given
 
 
