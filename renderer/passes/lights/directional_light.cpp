@@ -1,8 +1,9 @@
-#include <candela/scene/components.hpp>
-#include <candela/scene/hierarchy.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "renderer/passes/lights/light_kind.hpp"
 
 // Directional lights; shaders/lights/directional_light.glsl is the other half.

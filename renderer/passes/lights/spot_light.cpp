@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <candela/scene/components.hpp>
-#include <candela/scene/hierarchy.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
 #include "renderer/passes/lights/light_kind.hpp"
 
 // Spot lights; shaders/lights/spot_light.glsl is the other half.

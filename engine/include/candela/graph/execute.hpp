@@ -262,7 +262,7 @@ class GraphRuntime {
     Backend& backend_;
     std::optional<CompiledGraph> graph_;
     detail::State state_;
-    std::vector<detail::Slot> free_pool_;  // free pool: objects of the previous graph
+    std::vector<detail::Slot> free_pool_;  // objects of the previous graph
     FrameRecord record_;
     std::uint64_t frame_ = 0;
     std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
