@@ -83,6 +83,9 @@ def scatter(axes: Axes, rows: Sequence[Row], time: str, error: str) -> None:
         chosen = [row for row in rows if row["path"] == path and family(row) == "paths"]
         style = {"color": colour, "marker": marker, "linestyle": "none", "markersize": 5, "markeredgewidth": 0}
         axes.plot([row[time] for row in chosen], [row[error] for row in chosen], label=path, **style)
+    surfels = sorted((row for row in rows if family(row) == "surfels"), key=lambda row: row["vpls"])
+    axes.plot([row[time] for row in surfels], [row[error] for row in surfels], "-", color=PINK, marker="v",
+              markersize=6, linewidth=1.3, label="surfels", zorder=4)
     kinds = [each for each in matrix.VISIBILITIES if each not in ("none", matrix.DEFAULT_VISIBILITY)]
     for kind, marker in zip(kinds, "<>dp"):
         chosen = [row for row in rows if family(row) == f"visibility: {kind}"]
