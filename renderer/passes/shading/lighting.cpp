@@ -83,6 +83,7 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
         read_light_lists(pass, *lighting.lists);
     }
     pass.parameter(lighting.show);
+    pass.parameter(lighting.most_vpls);
 }
 
 std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting) {

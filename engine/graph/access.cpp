@@ -1,0 +1,163 @@
+// Access to resources: of running passes, and of the host.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <candela/graph/execute.hpp>
+
+namespace candela {
+
+using detail::none;
+
+const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
+    if (!graph_) {
+        throw GraphError("there is no frame graph");
+    }
+    if (handle.graph != graph_->declared().id) {
+        throw GraphError("a handle is not of the current frame graph");
+    }
+    return graph_->declared().resources.at(handle.resource);
+}
+
+detail::Slot* GraphRuntime::import_slot(ResourceHandle handle) {
+    const detail::Resource& imported = resource(handle);
+    if (imported.lifetime != Lifetime::imported) {
+        throw GraphError(fmt::format("{} '{}' is not imported", to_string(imported.kind), imported.name));
+    }
+    return slot_of(handle.resource);
+}
+
+void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture,
+                        const BufferDesc& buffer) {
+    detail::Slot* const slot = import_slot(imported);
+    if (!slot) {
+        return;
+    }
+    slot->object = object;  // may be 0: the window's framebuffer
+    slot->texture = texture;
+    slot->buffer = buffer;
+    slot->filled = true;
+    touch(imported);
+}
+
+void GraphRuntime::touch(ResourceHandle imported) {
+    state_.versions[graph_->plan().version(imported.resource, 0)].stamp = ++clock_;
+}
+
+/// The slot of a resource or of a history. Until turn_over was called in a frame, a resource still holds its
+/// content from the end of the previous frame, so its own slot is the history.
+detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
+    const std::uint32_t past_of = graph_->declared().resources[index].history_of;
+    const std::uint32_t slot = graph_->plan().object[past_of == none ? index : past_of];
+    if (slot == none) {
+        return nullptr;
+    }
+    return &state_.slots[past_of != none && state_.turned[slot] ? slot + 1 : slot];
+}
+
+const void* GraphRuntime::content(ResourceHandle value) const {
+    const detail::Resource& held = resource(value);
+    const std::uint32_t slot = graph_->plan().object[value.resource];
+    if (slot == none || !state_.slots[slot].value) {
+        throw GraphError(fmt::format("value '{}' has not been set", held.name));
+    }
+    return state_.slots[slot].value.get();
+}
+
+ObjectId GraphRuntime::object(ResourceHandle handle) const {
+    (void)resource(handle);
+    const std::uint32_t slot = graph_->plan().object[handle.resource];
+    return slot == none ? 0 : state_.slots[slot].object;
+}
+
+detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
+    const detail::Resource& resource = runtime_.resource(handle);
+    const CompiledGraph& graph = *runtime_.graph_;
+    const std::uint32_t pass = graph.plan().order[position_];
+    for (const detail::Access& access : graph.declared().accesses_of(pass)) {
+        if (access.resource == handle.resource && (access.write || !write)) {
+            return *runtime_.slot_of(handle.resource);
+        }
+    }
+    throw GraphError(fmt::format("pass '{}' {} {} '{}' without having declared it",
+                                 graph.declared().passes[pass].name, write ? "writes" : "uses",
+                                 to_string(resource.kind), resource.name));
+}
+
+const void* Execution::content(ResourceHandle value) const {
+    (void)slot(value, false);
+    return runtime_.content(value);
+}
+
+bool Execution::changed(ResourceHandle read) const {
+    const detail::Resource& resource = runtime_.resource(read);
+    const detail::State& state = runtime_.state_;
+    const std::uint32_t version = runtime_.graph_->plan().version(read.resource, read.version);
+    const detail::Step& step = state.steps[position_];
+    for (const detail::Input& input : step.inputs) {
+        if (input.version == version) {
+            return has_no_result_ || state.versions[version].stamp != input.stamp;
+        }
+    }
+    throw GraphError(fmt::format("pass '{}' asks whether {} '{}' has changed without having declared it",
+                                 step.name, to_string(resource.kind), resource.name));
+}
+
+bool Execution::valid(ResourceHandle history) const {
+    const detail::Slot& past = slot(history, false);
+    const std::uint32_t present_of = runtime_.resource(history).history_of;
+    if (present_of == none) {
+        throw GraphError(
+            fmt::format("{} '{}' is not a history", to_string(past.kind), runtime_.resource(history).name));
+    }
+    const detail::Slot& present = *runtime_.slot_of(present_of);
+    return !runtime_.cut_ && past.filled && past.texture == present.texture && past.buffer == present.buffer;
+}
+
+detail::Slot& Execution::reservable(ResourceHandle handle) const {
+    detail::Slot& found = slot(handle, true);
+    const CompiledGraph& graph = *runtime_.graph_;
+    const std::uint32_t pass = graph.plan().order[position_];
+    const auto accesses = graph.declared().accesses_of(pass);
+    const bool from_start = std::any_of(accesses.begin(), accesses.end(), [&](const detail::Access& access) {
+        return access.write && access.resource == handle.resource && access.version == 1 &&
+               access.usage != Usage::colour_target && access.usage != Usage::depth_target;
+    });
+    const detail::Resource& resource = runtime_.resource(handle);
+    if (from_start && resource.lifetime == Lifetime::persistent) {
+        return found;
+    }
+    throw GraphError(
+        fmt::format("pass '{}' reserves {} '{}', but may only what is persistent and what it writes from "
+                    "version 0, not as a target",
+                    graph.declared().passes[pass].name, to_string(resource.kind), resource.name));
+}
+
+void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
+    detail::Slot& old = reservable(buffer);
+    if (count <= old.buffer.count) {
+        return;
+    }
+    detail::Slot grown = old;
+    grown.buffer.count = std::max(count, old.buffer.count + old.buffer.count / 2);
+    runtime_.create(grown, runtime_.resource(buffer).name);
+    runtime_.destroy(old);
+    old = grown;
+    runtime_.rebind(position_, buffer.resource);
+}
+
+void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
+    detail::Slot& old = reservable(texture);
+    if (desc == old.texture) {
+        return;
+    }
+    detail::Slot other = old;
+    other.texture = desc;
+    runtime_.create(other, runtime_.resource(texture).name);
+    runtime_.destroy(old);
+    old = other;
+    runtime_.rebind(position_, texture.resource);
+}
+
+}  // namespace candela
