@@ -90,6 +90,21 @@ const void* Execution::content(ResourceHandle value) const {
     return runtime_.content(value);
 }
 
+const void* Execution::previous_content(ResourceHandle value) const {
+    const detail::Slot& held = slot(value, true);
+    const CompiledGraph& graph = *runtime_.graph_;
+    const std::uint32_t pass = graph.plan().order[position_];
+    const auto updates = [&](const detail::Access& access) {
+        return access.resource == value.resource && access.update;
+    };
+    if (!std::ranges::any_of(graph.declared().accesses_of(pass), updates)) {
+        throw GraphError(
+            fmt::format("pass '{}' asks for the previous content of value '{}', but does not update it",
+                        graph.declared().passes[pass].name, runtime_.resource(value).name));
+    }
+    return runtime_.repeating_ ? nullptr : held.value.get();
+}
+
 bool Execution::changed(ResourceHandle read) const {
     const detail::Resource& resource = runtime_.resource(read);
     const detail::State& state = runtime_.state_;

@@ -105,7 +105,7 @@ std::string pass_text(const CompiledGraph& graph, std::uint32_t position) {
         line("world", read.name);
     }
     for (const Access& access : graph.declared().accesses_of(pass)) {
-        line(access.write ? "write" : "read", access_text(graph, access));
+        line(access.update ? "update" : access.write ? "write" : "read", access_text(graph, access));
     }
     return text;
 }
@@ -155,6 +155,9 @@ nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t posit
         const bool value = graph.declared().resources[access.resource].kind == ResourceKind::value;
         if (!value) {
             entry["usage"] = to_string(access.usage);
+        }
+        if (access.update) {
+            entry["update"] = true;
         }
         json[access.write ? "writes" : "reads"].push_back(std::move(entry));
     }

@@ -80,6 +80,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: what a pass did not declare it ma
             attempt([&] { (void)run.value(unset); });
             attempt([&] { run.reserve(a, colour); });
             attempt([&] { (void)run.history_valid(a); });
+            attempt([&] { (void)run.previous(unset); });
         });
     });
     switch_to();
@@ -90,7 +91,36 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: what a pass did not declare it ma
                                              "a handle is not of the current frame graph",
                                              "value 'unset' has not been set",
                                              "pass 'use' writes texture 'a' without having declared it",
-                                             "texture 'a' is not a history"});
+                                             "texture 'a' is not a history",
+                                             "pass 'use' asks for the previous content of value 'unset', "
+                                             "but does not update it"});
+}
+
+TEST_CASE_FIXTURE(GraphFixture, "graph access: an update finds the content of the previous frame") {
+    const auto step = graph.import_value<int>("step");
+    std::vector<int> found;
+    const auto sum = graph.add("sum", [&](Pass& pass) {
+        pass.remembers();
+        pass.read(step);
+        const auto out = pass.update(graph.value<int>("sum"));
+        pass.run([&found, step, out](Execution& run) {
+            const int* const before = run.previous(out);
+            found.push_back(before ? *before : -1);
+            run.set(out, (before ? *before : 0) + run.value(step));
+        });
+        return out;
+    });
+    graph.add("print", [&](Pass& pass) {
+        pass.read(sum);
+        pass.side_effect();
+    });
+    switch_to();
+    for (const int value : {5, 7, 9}) {
+        runtime.set(step, value);
+        (void)run();
+    }
+    CHECK(found == std::vector<int>{-1, 5, 12});
+    CHECK(runtime.value(sum) == 21);
 }
 
 TEST_CASE_FIXTURE(GraphFixture,

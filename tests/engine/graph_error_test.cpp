@@ -138,6 +138,29 @@ TEST_CASE("graph error: histories of what has none, and writes of what is read o
     CHECK(errors[3].message == "pass 'host' writes value 'number', which the host sets");
 }
 
+TEST_CASE("graph error: updates of what does not keep the previous frame's content") {
+    FrameGraph graph;
+    const TextureHandle remembered = graph.texture("remembered", colour);
+    (void)graph.history(remembered);
+    const TextureHandle kept = graph.texture("kept", colour, Lifetime::persistent);
+    graph.add("update", [&](Pass& pass) {
+        (void)pass.update(graph.texture("transient", colour), Usage::storage);
+        (void)pass.update(graph.buffer<int>("imported", 4, Lifetime::imported), Usage::storage);
+        (void)pass.update(remembered, Usage::storage);
+        (void)pass.update(pass.update(kept, Usage::storage), Usage::storage);
+    });
+    (void)graph.history(kept);
+    const std::vector<CompileError> errors = errors_of(graph);
+    REQUIRE(errors.size() == 5);
+    for (std::size_t index = 0; index < 4; ++index) {
+        CHECK(errors[index].code == ErrorCode::wrong_usage);
+    }
+    CHECK(errors[0].message ==
+          "pass 'update' updates texture 'transient': "
+          "only version 0 of what is persistent and has no history can be updated");
+    CHECK(errors[4].message == "texture 'kept' has no history: it is updated in place");
+}
+
 /// Whether a pass that accesses an imported texture or buffer with `access` is invalid.
 template <class Access>
 bool bad(const TextureDesc& desc, Access access) {

@@ -233,9 +233,9 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: memories are left alone, and wha
     const auto count = graph.add("count", [&](Pass& pass) {
         pass.remembers();
         pass.read(knob);
-        const auto written = pass.write(graph.value<int>("count"));
+        const auto written = pass.update(graph.value<int>("count"));
         pass.run([=](Execution& run) {
-            const int* const last = run.find(written);
+            const int* const last = run.previous(written);
             run.set(written, last ? *last + 1 : 1);
         });
         return written;
@@ -291,7 +291,7 @@ TEST_CASE_FIXTURE(VerifyFixture,
     const auto both = graph.add("pair", [&](Pass& pass) {
         pass.read(left);
         pass.read(right);
-        const auto written = pass.write(graph.buffer<int>("pair", 2, Lifetime::persistent), Usage::copy);
+        const auto written = pass.update(graph.buffer<int>("pair", 2, Lifetime::persistent), Usage::copy);
         pass.run([&, left, right, written](Execution& run) {
             std::uint64_t pair = content(run.object(written));
             if (run.changed(left)) {

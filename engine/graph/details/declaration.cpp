@@ -93,8 +93,10 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
         return {};
     }
     const Resource base = resources[of.resource];
-    if (base.lifetime == Lifetime::imported || base.history_of != none) {
-        const auto what = base.history_of != none ? "is a history itself" : "is imported";
+    if (base.lifetime == Lifetime::imported || base.history_of != none || base.updated) {
+        const auto what = base.updated              ? "is updated in place"
+                          : base.history_of != none ? "is a history itself"
+                                                    : "is imported";
         error(ErrorCode::wrong_usage,
               fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, what));
         return {id, of.resource, of.version};
@@ -177,7 +179,7 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Binding binding
                                                      name, to_string(kind), resource.name));
     }
     resource.reader = pass;
-    accesses.push_back({handle.resource, handle.version, binding.usage, false, binding.point});
+    accesses.push_back({handle.resource, handle.version, binding.usage, false, false, binding.point});
 }
 
 ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Binding binding) {
@@ -214,8 +216,27 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Bind
                                                   handle.version + 1, to_string(kind), resource.name));
     }
     resource.writer = pass;
-    accesses.push_back({handle.resource, ++resource.versions, binding.usage, true, binding.point});
+    accesses.push_back({handle.resource, ++resource.versions, binding.usage, true, false, binding.point});
     return {id, handle.resource, resource.versions};
+}
+
+ResourceHandle Declaration::update(ResourceHandle handle, ResourceKind kind, Binding binding) {
+    const std::size_t count = accesses.size();
+    const ResourceHandle written = write(handle, kind, binding);
+    if (accesses.size() == count) {
+        return written;  // the write is an error
+    }
+    accesses.back().update = true;
+    Resource& resource = resources[handle.resource];
+    resource.updated = true;
+    if (resource.lifetime != Lifetime::persistent || resource.history != none || handle.version != 0) {
+        error(
+            ErrorCode::wrong_usage,
+            fmt::format("pass '{}' updates {} '{}': only version 0 of what is persistent and has no history "
+                        "can be updated",
+                        passes.back().name, to_string(kind), resource.name));
+    }
+    return written;
 }
 
 void Declaration::check_binding(const Resource& resource, Binding binding, bool write) {

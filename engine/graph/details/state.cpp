@@ -276,7 +276,7 @@ class Heir {
     [[nodiscard]] bool same_access(const Access& a, std::uint32_t pass, const Access& b,
                                    std::uint32_t old) const {
         const Resource& resource = declared_.resources[a.resource];
-        if (a.usage != b.usage || a.point != b.point || a.write != b.write ||
+        if (a.usage != b.usage || a.point != b.point || a.write != b.write || a.update != b.update ||
             !alike(resource, old_declared_.resources[b.resource])) {
             return false;
         }

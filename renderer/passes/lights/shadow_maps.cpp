@@ -153,7 +153,7 @@ std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, c
         run, out.cubes, plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
     const bool keeps_maps =
         reserve(run, out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
-    const DrawnShadows* const last = run.find(out.drawn);
+    const DrawnShadows* const last = run.previous(out.drawn);
     if (last == nullptr || surfaces_changed) {
         return plan.views;
     }
@@ -267,11 +267,11 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                   {"MASKED", "SHADOW_MAP"})};
         const ShadowMaps out{
             .plan = plan,
-            .cubes = pass.write(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
+            .cubes = pass.update(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
+                                 Usage::layer_target),
+            .maps = pass.update(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
                                 Usage::layer_target),
-            .maps = pass.write(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
-                               Usage::layer_target),
-            .drawn = pass.write(graph.value<DrawnShadows>("drawn shadows"))};
+            .drawn = pass.update(graph.value<DrawnShadows>("drawn shadows"))};
         pass.run([=, &gpu](Execution& run) {
             const auto due = due_views(run, run.changed(surfaces), out, settings);
             draw_views(gpu, run, {scene, out, settings, programs}, due);

@@ -83,9 +83,10 @@ void upload_hierarchy(const Gpu& gpu, Execution& run, const Tracing& out, const 
 
 Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
     return graph.add("bvh", [&](Pass& pass) {
+        pass.remembers();  // a tree refitted to moved triangles differs from one that is built anew
         pass.read(scene.layout);
         pass.read(scene.placement);
-        const auto hierarchy = pass.write(graph.value<SceneHierarchy>("hierarchy"));
+        const auto hierarchy = pass.update(graph.value<SceneHierarchy>("hierarchy"));
         const Tracing out{
             .nodes =
                 pass.write(graph.buffer<gpu::BvhNode>("bvh nodes", 1, Lifetime::persistent), Usage::copy),
@@ -97,7 +98,7 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
         pass.run([=, &gpu, layout_handle = scene.layout, placement_handle = scene.placement](Execution& run) {
             const SceneLayout& layout = run.value(layout_handle);
             const WorldTriangles world = place_triangles(layout, run.value(placement_handle));
-            SceneHierarchy updated = update(run.find(hierarchy), layout, world.triangles);
+            SceneHierarchy updated = update(run.previous(hierarchy), layout, world.triangles);
             upload_hierarchy(gpu, run, out, updated.bvh, trace_triangles(layout, world, updated.bvh.order));
             run.set(out.metrics, measure(layout, world));
             run.set(hierarchy, std::move(updated));

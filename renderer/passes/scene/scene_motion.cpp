@@ -53,9 +53,9 @@ ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& sc
         pass.read(scene.layout);
         pass.read(scene.placement);
         pass.read(epoch);
-        const auto motion = pass.write(graph.value<SceneMotion>("scene motion"));
+        const auto motion = pass.update(graph.value<SceneMotion>("scene motion"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
-            const SceneMotion* const last = run.find(motion);
+            const SceneMotion* const last = run.previous(motion);
             SceneMotion now;
             now.epoch = run.value(epoch);
             now.geometry = run.value(layout).geometry;

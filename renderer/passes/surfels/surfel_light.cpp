@@ -180,22 +180,21 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(motion);
         read_tracing(pass, tracing);
-        pass.remembers();
         const gl::Program& factors = gpu.program({"surfels/surfel_form_factors.comp"});
         const gl::Program& cover = gpu.program({"surfels/surfel_cover.comp"});
         const gl::Program& rows = gpu.program({"surfels/surfel_rows.comp"});
         const gl::Program& seer = gpu.program({"surfels/surfel_points.comp"});
         const SurfelVisibility out{
             .surfels = surfels,
-            .form_factors = pass.write(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
-                                       {Usage::storage, BINDING_FORM_FACTORS}),
+            .form_factors = pass.update(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
+                                        {Usage::storage, BINDING_FORM_FACTORS}),
             .rows = pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent),
                                {Usage::storage, BINDING_SURFEL_ROWS}),
-            .seen_points = pass.write(graph.buffer<std::uint32_t>("seen points", 1, Lifetime::persistent),
-                                      {Usage::storage, BINDING_SEEN_POINTS})};
-        const auto hits = pass.write(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent),
-                                     {Usage::storage, BINDING_COVER});
-        const auto known = pass.write(graph.value<KnownVisibility>("known visibility"));
+            .seen_points = pass.update(graph.buffer<std::uint32_t>("seen points", 1, Lifetime::persistent),
+                                       {Usage::storage, BINDING_SEEN_POINTS})};
+        const auto hits = pass.update(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent),
+                                      {Usage::storage, BINDING_COVER});
+        const auto known = pass.update(graph.value<KnownVisibility>("known visibility"));
         pass.run([=, &gpu, &factors, &cover, &rows, &seer](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             run.reserve(out.form_factors,
@@ -210,7 +209,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
                                       .form_factors = run.object(out.form_factors),
                                       .hits = run.object(hits),
                                       .seen = run.object(out.seen_points)};
-            const KnownVisibility* const before = run.find(known);
+            const KnownVisibility* const before = run.previous(known);
             std::optional<std::vector<Box>> changed;
             if (before != nullptr && before->is_of(now)) {
                 changed = changed_boxes(run.value(motion), before->step);

@@ -363,12 +363,12 @@ ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
         pass.parameter(settings.seed);
         pass.parameter(settings.bounces > 0);
         pass.remembers();
-        const auto out = pass.write(graph.value<SpreadSurfels>("spread surfels"));
+        const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
             VplSettings of_set = settings;
             of_set.seed += refinement ? run.value(*refinement).surfel_set : 0;
             of_set.count = of_set.bounces > 0 ? of_set.count : 0;
-            run.set(out, spread(run.find(out), run.value(layout), run.value(placement), of_set));
+            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), of_set));
         });
         return out;
     });

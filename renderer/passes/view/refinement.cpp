@@ -14,9 +14,9 @@ ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<Refinement
         pass.read(scene.placement);
         pass.read(lights);
         pass.read(view);
-        const auto out = pass.write(graph.value<Refinement>("refinement"));
+        const auto out = pass.update(graph.value<Refinement>("refinement"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
-            const Refinement* const last = run.find(out);
+            const Refinement* const last = run.previous(out);
             const std::uint64_t epoch = run.value(clock).epoch;
             const bool moved =
                 run.changed(layout) || run.changed(placement) || run.changed(lights) || run.changed(view);

@@ -60,7 +60,7 @@ void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     const VplAtlas& atlas = run.value(node.common.atlas);
     run.reserve(node.depth, atlas_desc(atlas));
     DrawnAtlas target{.atlas = atlas, .object = run.object(node.depth)};
-    const DrawnAtlas* const before = run.find(node.drawn);
+    const DrawnAtlas* const before = run.previous(node.drawn);
     std::optional<std::vector<Box>> changed;
     if (node.vpls.motion) {
         const SceneMotion& motion = run.value(*node.vpls.motion);
@@ -89,14 +89,13 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
         pass.read(common.atlas);
         read_vpl_constants(pass, common);
         read_tracing(pass, tracing);
-        pass.remembers();
         const MapNode node{
             .tracing = tracing,
             .vpls = vpls,
             .common = common,
-            .depth = pass.write(graph.texture("vpl maps", atlas_desc({}), Lifetime::persistent),
-                                Usage::layer_target),
-            .drawn = pass.write(graph.value<DrawnAtlas>("drawn vpl atlas")),
+            .depth = pass.update(graph.texture("vpl maps", atlas_desc({}), Lifetime::persistent),
+                                 Usage::layer_target),
+            .drawn = pass.update(graph.value<DrawnAtlas>("drawn vpl atlas")),
             .program = &gpu.program({"vpls/vpl_maps.vert", "vpls/vpl_maps.geom", "vpls/vpl_maps.frag"})};
         pass.run([=, &gpu](Execution& run) { update_maps(gpu, run, node); });
         return node.depth;

@@ -56,11 +56,12 @@ class Execution {
         return *static_cast<const T*>(content(value));
     }
 
-    /// The current content of a value that the pass reads or writes; null if it was never set. A pass reads
-    /// its own previous result this way (see Pass::remembers). Valid until the value is set again.
+    /// The content of a value that the pass updates. Null if it was never set, and during verification, where
+    /// the pass has to compute its whole result. Valid until the value is set again. GraphError if the pass
+    /// has not declared the update.
     template <class T>
-    [[nodiscard]] const T* find(ValueHandle<T> value) const {
-        return static_cast<const T*>(slot(value, false).value.get());
+    [[nodiscard]] const T* previous(ValueHandle<T> value) const {
+        return static_cast<const T*>(previous_content(value));
     }
 
     /// Whether an input (a version that the pass reads or modifies in place) has changed since the pass last
@@ -106,6 +107,7 @@ class Execution {
 
     [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
     [[nodiscard]] const void* content(ResourceHandle value) const;
+    [[nodiscard]] const void* previous_content(ResourceHandle value) const;
     [[nodiscard]] bool valid(ResourceHandle history) const;
     void reserve_buffer(ResourceHandle buffer, std::uint64_t count);
     [[nodiscard]] detail::Slot& reservable(ResourceHandle handle) const;

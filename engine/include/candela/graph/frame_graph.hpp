@@ -28,6 +28,9 @@ struct CompileResult;
 /// modifies the content in place: the pass depends on that content and does not declare a read of it. Two
 /// passes may not write the same version.
 ///
+/// Version 0 of a persistent resource is its content at the end of the previous frame. `write` discards it,
+/// `update` modifies it in place, and `FrameGraph::history` gives a handle to read it.
+///
 /// No member throws on misuse; `compile` reports the errors.
 class Pass {
  public:
@@ -71,6 +74,20 @@ class Pass {
         return {declared_.write(value, ResourceKind::value, {})};
     }
 
+    /// The pass writes version 0 of a persistent resource, but may leave parts of the previous frame's
+    /// content as they are (see Execution::changed and Execution::previous). Returns the handle of version 1.
+    [[nodiscard]] TextureHandle update(TextureHandle texture, Binding binding) {
+        return {declared_.update(texture, ResourceKind::texture, binding)};
+    }
+    template <class T>
+    [[nodiscard]] BufferHandle<T> update(BufferHandle<T> buffer, Binding binding) {
+        return {declared_.update(buffer, ResourceKind::buffer, binding)};
+    }
+    template <class T>
+    [[nodiscard]] ValueHandle<T> update(ValueHandle<T> value) {
+        return {declared_.update(value, ResourceKind::value, {})};
+    }
+
     /// A constant on which the pass's result depends, for example one that the function captures.
     /// `GraphRuntime::switch_to` keeps the results of a pass only if its parameters are equal in both graphs.
     /// The graph owns the copy.
@@ -85,9 +102,9 @@ class Pass {
     /// The pass is never culled and runs in every frame.
     void side_effect() { declared_.passes.back().side_effect = true; }
 
-    /// The result depends on the pass's own previous result (`Execution::find`), so a second run with the
-    /// same inputs may give a different result. Implied for passes that read a history. Only verification
-    /// uses this: it does not run such passes again.
+    /// The result depends on what the pass updates: computed anew from the same inputs, it may be different.
+    /// Implied for passes that read a history. Only verification uses this: it does not run such passes
+    /// again.
     void remembers() { declared_.passes.back().remembers = true; }
 
     /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call

@@ -40,6 +40,7 @@ struct Resource {
     std::uint32_t writer = none;      // the pass with the last declared write
     std::uint32_t history_of = none;  // for a history: the resource whose history it is
     std::uint32_t history = none;     // the resource that is this one's history
+    bool updated = false;             // see Pass::update
 };
 
 struct Access {
@@ -47,6 +48,7 @@ struct Access {
     std::uint32_t version;  // the version read, or the one that the write produces
     Usage usage;            // not used for values
     bool write;
+    bool update;          // a write that may leave parts of the previous frame's content
     std::uint32_t point;  // see Binding
 };
 
@@ -126,6 +128,7 @@ class Declaration {
     void end_pass();
     void read(ResourceHandle handle, ResourceKind kind, Binding binding);
     ResourceHandle write(ResourceHandle handle, ResourceKind kind, Binding binding);
+    ResourceHandle update(ResourceHandle handle, ResourceKind kind, Binding binding);
 
     template <class T>
     T* store(T value) {
