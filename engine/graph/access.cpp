@@ -108,8 +108,17 @@ const void* Execution::previous_content(ResourceHandle value) const {
 bool Execution::changed(ResourceHandle read) const {
     const detail::Resource& resource = runtime_.resource(read);
     const detail::State& state = runtime_.state_;
-    const std::uint32_t version = runtime_.graph_->plan().version(read.resource, read.version);
+    const detail::Plan& plan = runtime_.graph_->plan();
     const detail::Step& step = state.steps[position_];
+    if (resource.first_part != none) {
+        (void)slot(read, false);
+        return has_no_result_ || std::ranges::any_of(step.inputs, [&](const detail::Input& input) {
+                   return runtime_.graph_->declared().resources[plan.resource(input.version)].part_of ==
+                              read.resource &&
+                          state.versions[input.version].stamp != input.stamp;
+               });
+    }
+    const std::uint32_t version = plan.version(read.resource, read.version);
     for (const detail::Input& input : step.inputs) {
         if (input.version == version) {
             return has_no_result_ || state.versions[version].stamp != input.stamp;

@@ -31,6 +31,9 @@ std::string storage_text(const CompiledGraph& graph, const Resource& resource) {
     if (desc.mips != 1) {
         text += fmt::format(", {} mips", desc.mips);
     }
+    if (resource.part_of != none) {
+        text += fmt::format(", part of {}", graph.declared().resources[resource.part_of].name);
+    }
     return text;
 }
 

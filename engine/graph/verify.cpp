@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -88,9 +87,7 @@ detail::Content GraphRuntime::content_of(const detail::Slot& slot) const {
 }
 
 void GraphRuntime::report_difference(const detail::Step& step, std::uint32_t version) const {
-    const auto& first = graph_->plan().first_version;
-    const auto index = std::distance(first.begin(), std::ranges::upper_bound(first, version)) - 1;
-    const detail::Resource& resource = graph_->declared().resources[static_cast<std::size_t>(index)];
+    const detail::Resource& resource = graph_->declared().resources[graph_->plan().resource(version)];
     throw GraphError(fmt::format(
         "pass '{}' has an undeclared input: run again while nothing that it declares has changed, "
         "it gives {} '{}' another content",

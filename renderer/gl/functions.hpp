@@ -51,6 +51,8 @@
     X(BindBufferBase, BINDBUFFERBASE) \
     /* textures */ \
     X(CreateTextures, CREATETEXTURES) \
+    X(GenTextures, GENTEXTURES) \
+    X(TextureView, TEXTUREVIEW) \
     X(DeleteTextures, DELETETEXTURES) \
     X(TextureStorage2D, TEXTURESTORAGE2D) \
     X(TextureStorage3D, TEXTURESTORAGE3D) \

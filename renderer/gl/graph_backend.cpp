@@ -48,6 +48,13 @@ ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& de
     return id;
 }
 
+ObjectId GraphBackend::create_view(std::string_view name, ObjectId whole, TexturePart part) {
+    Texture view(*device_, name, textures_.at(whole), part);
+    const ObjectId id = view.name();
+    textures_.emplace(id, std::move(view));
+    return id;
+}
+
 void GraphBackend::destroy_texture(ObjectId texture) {
     // A framebuffer would keep the storage alive, and a later texture may get the same name.
     std::erase_if(framebuffers_,

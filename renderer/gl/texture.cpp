@@ -87,6 +87,16 @@ GLuint create_texture(const Functions& gl, TextureShape shape) {
     return name;
 }
 
+GLuint create_view(const Functions& gl, const Texture& whole, TexturePart part) {
+    const TextureDesc desc = part_desc(whole.desc(), part);
+    const GLuint first_layer = part.layer == TexturePart::all_layers ? 0 : part.layer;
+    GLuint name = 0;
+    gl.GenTextures(1, &name);  // CreateTextures gives the name a target, which glTextureView does not accept
+    gl.TextureView(name, texture_target(desc.shape), whole.name(), format_info(desc.format).internal,
+                   part.mip, 1, first_layer, desc.layers);
+    return name;
+}
+
 }  // namespace
 
 FormatInfo format_info(Format format) {
@@ -145,10 +155,19 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     }
     if (gl().GetError() == GL_OUT_OF_MEMORY) fail("no memory");
     set_bytes(byte_size(desc));
+    set_sampling();
+}
 
-    gl().TextureParameteri(name(), GL_TEXTURE_MIN_FILTER, min_filter(desc));
+Texture::Texture(Device& device, std::string_view label, const Texture& whole, TexturePart part)
+    : Object(device, ObjectKind::texture, create_view(device.gl(), whole, part), label),
+      desc_(part_desc(whole.desc(), part)) {
+    set_sampling();
+}
+
+void Texture::set_sampling() {
+    gl().TextureParameteri(name(), GL_TEXTURE_MIN_FILTER, min_filter(desc_));
     gl().TextureParameteri(name(), GL_TEXTURE_MAG_FILTER,
-                           desc.format == Format::r32ui ? GL_NEAREST : GL_LINEAR);
+                           desc_.format == Format::r32ui ? GL_NEAREST : GL_LINEAR);
     gl().TextureParameteri(name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl().TextureParameteri(name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }

@@ -31,6 +31,9 @@ class Texture : public Object {
     /// the texture or there is not enough memory.
     Texture(Device& device, std::string_view label, const TextureDesc& desc);
 
+    /// A view of a part of `whole`, which shares its storage. Keeps the storage alive.
+    Texture(Device& device, std::string_view label, const Texture& whole, TexturePart part);
+
     [[nodiscard]] const TextureDesc& desc() const { return desc_; }
     [[nodiscard]] GLenum target() const { return texture_target(desc_.shape); }
     /// Size of a mip level in texels.
@@ -52,6 +55,7 @@ class Texture : public Object {
     void bind(GLuint unit) const;
 
  private:
+    void set_sampling();
     [[nodiscard]] std::size_t texels(std::uint32_t level) const;
     void require_layer(std::uint32_t level, std::uint32_t layer) const;
     void read_as(GLenum type, std::span<std::byte> texels, std::uint32_t level, std::uint32_t layer) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -93,12 +94,9 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
         return {};
     }
     const Resource base = resources[of.resource];
-    if (base.lifetime == Lifetime::imported || base.history_of != none || base.updated) {
-        const auto what = base.updated              ? "is updated in place"
-                          : base.history_of != none ? "is a history itself"
-                                                    : "is imported";
+    if (const std::string_view why = why_no_history(base); !why.empty()) {
         error(ErrorCode::wrong_usage,
-              fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, what));
+              fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, why));
         return {id, of.resource, of.version};
     }
     if (base.history != none) {
@@ -115,6 +113,76 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
     history.reader = history.writer = none;
     resources.push_back(history);
     return {id, past, 0};
+}
+
+/// Empty if the resource can have a history.
+std::string_view Declaration::why_no_history(const Resource& base) const {
+    if (base.lifetime == Lifetime::imported) {
+        return "is imported";
+    }
+    if (base.history_of != none) {
+        return "is a history itself";
+    }
+    if (base.updated) {
+        return "is updated in place";
+    }
+    return base.first_part != none || base.part_of != none ? "has parts or is one" : "";
+}
+
+ResourceHandle Declaration::add_part(ResourceHandle of, TexturePart part) {
+    if (!owns(of, ResourceKind::texture)) {
+        error(ErrorCode::foreign_handle,
+              fmt::format("part of a {} of another graph", to_string(ResourceKind::texture)));
+        return {};
+    }
+    const std::string_view whole = resources[of.resource].name;
+    for (std::uint32_t at = resources[of.resource].first_part; at != none; at = resources[at].next_part) {
+        if (resources[at].part == part) {
+            return {id, at, 0};
+        }
+    }
+    if (const std::string_view why = why_no_parts(resources[of.resource], part); !why.empty()) {
+        error(ErrorCode::wrong_usage, fmt::format("texture '{}' has no {}: {}", whole, to_string(part), why));
+        return {id, of.resource, of.version};
+    }
+    const TextureDesc desc = part_desc(texture(resources[of.resource]), part);
+    const ResourceHandle handle =
+        add_texture(fmt::format("{} {}", whole, to_string(part)), desc, Lifetime::persistent);
+    Resource& added = resources[handle.resource];
+    Resource& parent = resources[of.resource];
+    added.part_of = of.resource;
+    added.part = part;
+    added.next_part = std::exchange(parent.first_part, handle.resource);
+    parent.lifetime = Lifetime::persistent;
+    return handle;
+}
+
+/// Empty if the texture can have the part.
+std::string_view Declaration::why_no_parts(const Resource& whole, TexturePart part) const {
+    if (whole.lifetime == Lifetime::imported) {
+        return "it is imported";
+    }
+    if (whole.history != none || whole.history_of != none || whole.part_of != none) {
+        return "it has a history, is one, or is a part itself";
+    }
+    if (whole.versions > 0 || whole.reader != none) {
+        return "a pass accesses it as a whole";
+    }
+    const TextureDesc& desc = texture(whole);
+    const bool has_layer = part.layer == TexturePart::all_layers ||
+                           (part.layer < desc.layers && desc.shape != TextureShape::flat);
+    if (part.mip >= desc.mips || !has_layer) {
+        return "there are fewer";
+    }
+    for (std::uint32_t at = whole.first_part; at != none; at = resources[at].next_part) {
+        const TexturePart other = resources[at].part;
+        const bool one_is_whole_mip =
+            part.layer == TexturePart::all_layers || other.layer == TexturePart::all_layers;
+        if (part.mip == other.mip && one_is_whole_mip) {
+            return "it overlaps another part";
+        }
+    }
+    return "";
 }
 
 void Declaration::begin_pass(std::string_view name) {
@@ -173,7 +241,11 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Binding binding
         }
         return;
     }
-    const bool given = resource.lifetime == Lifetime::imported || resource.history_of != none;
+    for (std::uint32_t part = resource.first_part; part != none; part = resources[part].next_part) {
+        read({id, part, resources[part].versions}, kind, binding.usage);
+    }
+    const bool given =
+        resource.lifetime == Lifetime::imported || resource.history_of != none || resource.first_part != none;
     if (handle.version == 0 && !given) {
         error(ErrorCode::unwritten_read, fmt::format("pass '{}' reads {} '{}', which nobody has written",
                                                      name, to_string(kind), resource.name));
@@ -200,6 +272,12 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Bind
     if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {
         error(ErrorCode::wrong_usage,
               fmt::format("pass '{}' writes value '{}', which the host sets", name, resource.name));
+        return handle;
+    }
+    if (resource.first_part != none) {
+        error(ErrorCode::wrong_usage,
+              fmt::format("pass '{}' writes texture '{}', which has parts: only they can be written", name,
+                          resource.name));
         return handle;
     }
     check_binding(resource, binding, true);

@@ -40,6 +40,9 @@ class Objects {
         if (plan_.object[index] != none) {
             return;
         }
+        if (resource.part_of != none) {
+            give(resource.part_of);  // first, as it must be created first
+        }
         if (resource.lifetime == Lifetime::transient) {
             std::uint32_t& free = free_list(resource);
             plan_.object[index] = free != none ? take(free) : create(index);

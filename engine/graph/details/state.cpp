@@ -113,9 +113,11 @@ class StateMaker {
             if (slot.kind == ResourceKind::buffer) {
                 slot.buffer = declared_.buffer(resource);
             }
+            slot.view = resource.part_of != none;
             if (slot.owned && resource.lifetime == Lifetime::persistent) {
-                slot.kept_as =
-                    fmt::format("{} {} {}", resource.name, describe(slot.texture), describe(slot.buffer));
+                const TextureDesc& whole =
+                    slot.view ? declared_.texture(declared_.resources[resource.part_of]) : slot.texture;
+                slot.kept_as = fmt::format("{} {} {}", resource.name, describe(whole), describe(slot.buffer));
             }
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
@@ -164,7 +166,13 @@ class Heir {
     [[nodiscard]] bool alike(const Resource& resource, const Resource& old) const {
         if (resource.kind != old.kind || resource.lifetime != old.lifetime || resource.name != old.name ||
             (resource.history == none) != (old.history == none) ||
-            (resource.history_of == none) != (old.history_of == none)) {
+            (resource.history_of == none) != (old.history_of == none) ||
+            (resource.part_of == none) != (old.part_of == none)) {
+            return false;
+        }
+        if (resource.part_of != none &&
+            (resource.part != old.part ||
+             !alike(declared_.resources[resource.part_of], old_declared_.resources[old.part_of]))) {
             return false;
         }
         switch (resource.kind) {

@@ -121,7 +121,13 @@ void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& st
             if (slot.object != 0) {
                 continue;
             }
-            create(slot, graph.declared().resources[graph.plan().owner[object]].name);
+            const detail::Resource& resource = graph.declared().resources[graph.plan().owner[object]];
+            if (slot.view) {
+                const detail::Slot& whole = state.slots[graph.plan().object[resource.part_of]];
+                slot.object = backend_.create_view(resource.name, whole.object, resource.part);
+            } else {
+                create(slot, resource.name);
+            }
             made.push_back(object);
         }
     } catch (...) {
@@ -158,6 +164,9 @@ void GraphRuntime::trim() {
 MemoryUse GraphRuntime::memory() const {
     MemoryUse use;
     const auto bytes = [](const detail::Slot& slot) {
+        if (slot.view) {
+            return std::uint64_t{0};
+        }
         return slot.kind == ResourceKind::texture ? byte_size(slot.texture) : byte_size(slot.buffer);
     };
     const auto add = [&](const detail::Slot& slot) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -36,6 +37,11 @@ struct Plan {
 
     [[nodiscard]] std::uint32_t version(std::uint32_t resource, std::uint32_t number) const {
         return first_version[resource] + number;
+    }
+    /// The resource of a version id.
+    [[nodiscard]] std::uint32_t resource(std::uint32_t version_id) const {
+        const auto next = std::ranges::upper_bound(first_version, version_id);
+        return static_cast<std::uint32_t>(next - first_version.begin()) - 1;
     }
 };
 

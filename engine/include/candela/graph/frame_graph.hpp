@@ -138,6 +138,21 @@ class FrameGraph {
         return {declared_.add_texture(name, desc, lifetime)};
     }
 
+    /// A part of a texture as a resource of its own, with its own versions: one mip level (of all layers), or
+    /// one layer (of one mip level). Passes write and read it like a texture of its size, for example to fill
+    /// a chain of mip levels one from the other. Its name is the texture's and "mip 2", "layer 3" or "layer 3
+    /// mip 1". Asking for the same part again gives the same handle.
+    ///
+    /// A texture with parts is written only through them. A read of the texture reads the newest versions of
+    /// all its parts. Makes the texture persistent. Parts may not overlap. Imported textures and textures
+    /// with a history have no parts.
+    [[nodiscard]] TextureHandle mip(TextureHandle texture, std::uint32_t level) {
+        return {declared_.add_part(texture, {level, TexturePart::all_layers})};
+    }
+    [[nodiscard]] TextureHandle layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip = 0) {
+        return {declared_.add_part(texture, {mip, layer})};
+    }
+
     /// A buffer of `count` elements of type `T`, sizeof(T) bytes apart.
     template <class T>
     [[nodiscard]] BufferHandle<T> buffer(std::string_view name, std::uint64_t count,

@@ -41,6 +41,10 @@ struct Resource {
     std::uint32_t history_of = none;  // for a history: the resource whose history it is
     std::uint32_t history = none;     // the resource that is this one's history
     bool updated = false;             // see Pass::update
+    std::uint32_t part_of = none;     // for a part: the texture
+    TexturePart part;                 // and which part of it
+    std::uint32_t first_part = none;  // the parts of a texture are a linked list
+    std::uint32_t next_part = none;
 };
 
 struct Access {
@@ -123,6 +127,7 @@ class Declaration {
     ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime);
     ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
     ResourceHandle add_history(ResourceHandle of, ResourceKind kind);
+    ResourceHandle add_part(ResourceHandle of, TexturePart part);
 
     void begin_pass(std::string_view name);
     void end_pass();
@@ -174,6 +179,8 @@ class Declaration {
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
     void error(ErrorCode code, std::string message) { errors.push_back({code, std::move(message)}); }
+    [[nodiscard]] std::string_view why_no_parts(const Resource& whole, TexturePart part) const;
+    [[nodiscard]] std::string_view why_no_history(const Resource& base) const;
     void check_binding(const Resource& resource, Binding binding, bool write);
     void check_attachments();
 

@@ -25,6 +25,7 @@ using Stamp = std::uint64_t;
 /// The current state of one object: a texture, a buffer or a value.
 struct Slot {
     ResourceKind kind = ResourceKind::value;
+    bool view = false;     // a part of another slot's texture, without storage of its own
     bool owned = false;    // created by the runtime; false for imports and for values
     bool changed = false;  // a value: the running pass may have changed the content of its version
     bool filled = false;   // written since it was created, or bound by the host
