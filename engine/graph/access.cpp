@@ -48,12 +48,12 @@ void GraphRuntime::touch(ResourceHandle imported) {
 /// The slot of a resource or of a history. Until turn_over was called in a frame, a resource still holds its
 /// content from the end of the previous frame, so its own slot is the history.
 detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
-    const std::uint32_t past_of = graph_->declared().resources[index].history_of;
-    const std::uint32_t slot = graph_->plan().object[past_of == none ? index : past_of];
+    const std::uint32_t base = graph_->declared().resources[index].history_of;
+    const std::uint32_t slot = graph_->plan().object[base == none ? index : base];
     if (slot == none) {
         return nullptr;
     }
-    return &state_.slots[past_of != none && state_.turned[slot] ? slot + 1 : slot];
+    return &state_.slots[base != none && state_.turned[slot] ? slot + 1 : slot];
 }
 
 const void* GraphRuntime::content(ResourceHandle value) const {
@@ -129,14 +129,15 @@ bool Execution::changed(ResourceHandle read) const {
 }
 
 bool Execution::valid(ResourceHandle history) const {
-    const detail::Slot& past = slot(history, false);
+    const detail::Slot& previous = slot(history, false);
     const std::uint32_t present_of = runtime_.resource(history).history_of;
     if (present_of == none) {
-        throw GraphError(
-            fmt::format("{} '{}' is not a history", to_string(past.kind), runtime_.resource(history).name));
+        throw GraphError(fmt::format("{} '{}' is not a history", to_string(previous.kind),
+                                     runtime_.resource(history).name));
     }
     const detail::Slot& present = *runtime_.slot_of(present_of);
-    return !runtime_.cut_ && past.filled && past.texture == present.texture && past.buffer == present.buffer;
+    return !runtime_.cut_ && previous.filled && previous.texture == present.texture &&
+           previous.buffer == present.buffer;
 }
 
 detail::Slot& Execution::reservable(ResourceHandle handle) const {

@@ -39,7 +39,7 @@ void check_resources(const Declaration& declared, std::vector<CompileError>& err
         const Resource& resource = resources[index];
         if (resource.history != none && resource.versions == 0) {
             errors.push_back(
-                {ErrorCode::unwritten_read, fmt::format("{} '{}' has a history, but nobody writes it",
+                {ErrorCode::unwritten_read, fmt::format("{} '{}' has a history, but no pass writes it",
                                                         to_string(resource.kind), resource.name)});
         }
         if (!known(resource)) {
@@ -107,10 +107,10 @@ std::vector<std::uint8_t> needed_passes(const Declaration& declared, const Plan&
         const std::uint32_t pass = open.back();
         open.pop_back();
         for (const Access& access : declared.accesses_of(pass)) {
-            const std::uint32_t past_of = declared.resources[access.resource].history_of;
+            const std::uint32_t base = declared.resources[access.resource].history_of;
             const std::uint32_t version =
-                past_of == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
-                                : plan.version(past_of, declared.resources[past_of].versions);
+                base == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
+                             : plan.version(base, declared.resources[base].versions);
             need(plan.writer[version]);
         }
     }

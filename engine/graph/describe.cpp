@@ -73,8 +73,8 @@ std::vector<std::uint32_t> culled_passes(const CompiledGraph& graph) {
 std::vector<std::uint32_t> used_resources(const CompiledGraph& graph) {
     std::vector<std::uint32_t> used;
     for (std::uint32_t index = 0; index < graph.declared().resources.size(); ++index) {
-        const bool past = graph.declared().resources[index].history_of != none;
-        if (!past && graph.plan().object[index] != none) {
+        const bool previous = graph.declared().resources[index].history_of != none;
+        if (!previous && graph.plan().object[index] != none) {
             used.push_back(index);
         }
     }
@@ -199,17 +199,17 @@ std::string describe_dot(const CompiledGraph& graph) {
     for (const std::uint32_t pass : plan.order) {
         const std::string to = dot_name(declared.passes[pass].name);
         for (const Access& access : declared.accesses_of(pass)) {
-            const std::uint32_t past_of = declared.resources[access.resource].history_of;
+            const std::uint32_t base = declared.resources[access.resource].history_of;
             const std::uint32_t version =
-                past_of == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
-                                : plan.version(past_of, declared.resources[past_of].versions);
+                base == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
+                             : plan.version(base, declared.resources[base].versions);
             const std::uint32_t writer = plan.writer[version];
-            if (writer == none || (writer == pass && past_of == none)) {
+            if (writer == none || (writer == pass && base == none)) {
                 continue;
             }
-            text += fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[writer].name), to,
-                                dot_name(name_of(graph, access.resource)),
-                                past_of == none ? "" : ", style=dashed");
+            text +=
+                fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[writer].name), to,
+                            dot_name(name_of(graph, access.resource)), base == none ? "" : ", style=dashed");
         }
     }
     return text + "}\n";

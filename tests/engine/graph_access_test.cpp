@@ -16,16 +16,16 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, a
     const auto wanted = graph.import_value<std::uint64_t>("wanted");
     const auto blank = graph.buffer<float>("vpls", 100, Lifetime::persistent);
     const TextureHandle map = texture("map");
-    const TextureHandle past = graph.history(map);
+    const TextureHandle previous = graph.history(map);
     std::vector<bool> valid;
     std::uint64_t room = 0;
     graph.add("trace", [&](Pass& pass) {
         pass.read(wanted);
-        pass.read(past, Usage::sampled);
+        pass.read(previous, Usage::sampled);
         const auto vpls = pass.write(blank, Usage::storage);
         const auto drawn = pass.write(map, Usage::layer_target);
         pass.side_effect();
-        pass.run([&, wanted, vpls, drawn, past](Execution& run) {
+        pass.run([&, wanted, vpls, drawn, previous](Execution& run) {
             const std::uint64_t count = run.value(wanted);
             run.reserve(vpls, count);
             const TextureDesc desc{{static_cast<std::uint32_t>(count), 1}};
@@ -35,7 +35,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, a
             CHECK(backend.objects.at(run.object(vpls)).buffer_desc ==
                   BufferDesc{run.count(vpls), sizeof(float)});
             room = run.count(vpls);
-            valid.push_back(run.history_valid(past));
+            valid.push_back(run.history_valid(previous));
         });
     });
     switch_to();

@@ -65,7 +65,7 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
                 if (resource.kind == ResourceKind::value) {
                     continue;
                 }
-                const std::size_t turn = resource.remembered ? (frame + (access.past ? 1 : 0)) % 2 : 0;
+                const std::size_t turn = resource.remembered ? (frame + (access.previous ? 1 : 0)) % 2 : 0;
                 events.push_back({frame * count + position,
                                   first_object[access.resource] + static_cast<std::uint32_t>(turn),
                                   bit_of(resource.kind, access.usage), access.write,

@@ -83,14 +83,14 @@ TEST_SUITE("graph: binding") {
 
     TEST_CASE_FIXTURE(Binds, "a history is bound as the object that holds the last frame") {
         const TextureHandle blank = texture("mean", Lifetime::persistent);
-        const TextureHandle past = graph.history(blank);
+        const TextureHandle previous = graph.history(blank);
         ObjectId written = 0;
         graph.add("accumulate", [&](Pass& pass) {
-            pass.read(past, {Usage::sampled, 0});
+            pass.read(previous, {Usage::sampled, 0});
             const TextureHandle mean = pass.write(blank, Usage::colour_target);
             pass.side_effect();
             pass.run([=, this, &written](Execution& run) {
-                CHECK(bound(Usage::sampled, 0) == run.object(past));
+                CHECK(bound(Usage::sampled, 0) == run.object(previous));
                 if (written != 0) CHECK(bound(Usage::sampled, 0) == written);
                 written = run.object(mean);
             });

@@ -135,14 +135,14 @@ resources
 TEST_CASE("graph description: history has an object of its own and keeps its writer") {
     FrameGraph graph;
     const TextureHandle blank = graph.texture("accumulated", colour);
-    const TextureHandle past = graph.history(blank);
+    const TextureHandle previous = graph.history(blank);
     const TextureHandle mixed = graph.add("mix", [&](Pass& pass) {
-        pass.read(past, Usage::sampled);
+        pass.read(previous, Usage::sampled);
         return pass.write(blank, Usage::colour_target);
     });
     (void)mixed;
     graph.add("compare", [&](Pass& pass) {
-        pass.read(past, Usage::sampled);
+        pass.read(previous, Usage::sampled);
         pass.side_effect();
     });
     CHECK(text_of(graph) == R"(

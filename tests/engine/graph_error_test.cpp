@@ -94,16 +94,16 @@ TEST_CASE("graph error: reads of what nobody writes") {
     const std::vector<CompileError> errors = errors_of(graph);
     REQUIRE(errors.size() == 3);
     CHECK(errors[0] == CompileError{ErrorCode::unwritten_read,
-                                    "pass 'show' reads texture 'image', which nobody has written"});
-    CHECK(errors[1].message == "pass 'show kept' reads texture 'kept', which nobody has written");
-    CHECK(errors[2].message == "pass 'use' reads value 'number', which nobody has written");
+                                    "pass 'show' reads texture 'image', which no pass has written"});
+    CHECK(errors[1].message == "pass 'show kept' reads texture 'kept', which no pass has written");
+    CHECK(errors[2].message == "pass 'use' reads value 'number', which no pass has written");
 }
 
 TEST_CASE("graph error: a history of what nobody writes") {
     FrameGraph graph;
     add_read(graph, "show", graph.history(graph.texture("image", colour)));
     CHECK(error_of(graph) ==
-          CompileError{ErrorCode::unwritten_read, "texture 'image' has a history, but nobody writes it"});
+          CompileError{ErrorCode::unwritten_read, "texture 'image' has a history, but no pass writes it"});
 }
 
 TEST_CASE("graph: what is imported and what is remembered may be read before it is written") {
@@ -114,7 +114,7 @@ TEST_CASE("graph: what is imported and what is remembered may be read before it 
         pass.side_effect();
     });
     const TextureHandle blank = graph.texture("image", colour);
-    add_read(graph, "past", graph.history(blank));
+    add_read(graph, "previous", graph.history(blank));
     (void)add_draw(graph, "draw", blank);
     CHECK(compile(std::move(graph)).errors.empty());
 }
@@ -292,7 +292,7 @@ TEST_CASE("graph error: all errors are found at once, and taking the graph tells
     CHECK(result.errors.size() == 3);
     CHECK_THROWS_WITH_AS((void)std::move(result).take(), R"(the frame graph does not compile:
   pass 'show' reads a texture of another graph
-  pass 'show' reads texture 'image', which nobody has written
+  pass 'show' reads texture 'image', which no pass has written
   two passes are called 'show')",
                          GraphError);
 }

@@ -62,7 +62,7 @@ inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& ord
     }
     for (const std::uint32_t pass : order) {
         const Content hash = evaluate(graph, pass, host.number, [&](const Access& access) {
-            if (access.past) {
+            if (access.previous) {
                 return before ? before->versions[access.resource].back() : 0;
             }
             return now.versions[access.resource][access.version - (access.write ? 1 : 0)];
@@ -154,8 +154,8 @@ class Machine {
     void compute(Execution& run, std::size_t pass, const Handles& handles) {
         const Content hash = evaluate(graph_, pass, run.world().get<Number>(entity_).value,
                                       [&](const Access& access) -> Content {
-                                          if (access.past) {
-                                              return past(run, access, handles);
+                                          if (access.previous) {
+                                              return previous(run, access, handles);
                                           }
                                           return read(run, access.resource, handles.newest[access.resource]);
                                       });
@@ -177,8 +177,8 @@ class Machine {
                    : run.object(BufferHandle<float>{handle});
     }
 
-    Content past(Execution& run, const Access& access, const Handles& handles) const {
-        const ResourceHandle handle = handles.past.at(access.resource);
+    Content previous(Execution& run, const Access& access, const Handles& handles) const {
+        const ResourceHandle handle = handles.previous.at(access.resource);
         const bool valid = graph_.resources[access.resource].kind == ResourceKind::texture
                                ? run.history_valid(TextureHandle{handle})
                                : run.history_valid(BufferHandle<float>{handle});

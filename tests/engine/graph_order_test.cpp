@@ -19,7 +19,7 @@ using Precedence = std::vector<std::vector<bool>>;
 bool must_precede(const Graph& graph, std::size_t a, std::size_t b) {
     for (const random_graph::Access& first : graph.passes[a].accesses) {
         for (const random_graph::Access& second : graph.passes[b].accesses) {
-            if (a == b || first.resource != second.resource || first.past || second.past) {
+            if (a == b || first.resource != second.resource || first.previous || second.previous) {
                 continue;
             }
             const bool hands_over = first.write && !second.write && first.version == second.version;
@@ -61,7 +61,7 @@ bool feeds(const Graph& graph, std::size_t writer, std::size_t reader) {
                 continue;
             }
             const bool last = made.version == graph.resources[made.resource].versions;
-            if (used.past ? last : made.version == used.version - (used.write ? 1 : 0)) {
+            if (used.previous ? last : made.version == used.version - (used.write ? 1 : 0)) {
                 return true;
             }
         }

@@ -158,7 +158,7 @@ TEST_SUITE("graph parts") {
                   "texture 'layers mip 1' has no mip 0: it has a history, is one, or is a part itself",
                   "texture 'layers' has no history: it has parts or is one",
                   "pass 'write' writes texture 'layers', which has parts: only they can be written",
-                  "pass 'show' reads texture 'layers mip 1', which nobody has written"});
+                  "pass 'show' reads texture 'layers mip 1', which no pass has written"});
     }
 
     TEST_CASE_FIXTURE(Parts, "a pass may not write a part of what it reads as a whole") {

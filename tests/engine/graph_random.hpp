@@ -32,7 +32,7 @@ struct Access {
     std::uint32_t version = 0;  // that is read or written
     Usage usage = Usage::sampled;
     bool write = false;
-    bool past = false;
+    bool previous = false;
 };
 
 struct Pass {
@@ -109,13 +109,13 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
         access.version = ++resource.versions;
         access.usage = gpu ? write_usage(resource.kind) : Usage{};
     } else {
-        access.past = options.histories && gpu && !imported && resource.versions > 0 && one_in(3);
+        access.previous = options.histories && gpu && !imported && resource.versions > 0 && one_in(3);
         if (resource.versions == 0 && !imported) {
             return;
         }
-        access.version = access.past ? 0 : resource.versions;
+        access.version = access.previous ? 0 : resource.versions;
         access.usage = gpu ? read_usage(resource.kind) : Usage{};
-        if (access.past) {
+        if (access.previous) {
             resource.remembered = true;
             resource.lifetime = Lifetime::persistent;
         }
@@ -143,7 +143,7 @@ inline Graph make(const Options& options) {
 /// Handles of a declared graph, by resource: the newest version, and the history.
 struct Handles {
     std::vector<ResourceHandle> newest;
-    std::map<std::size_t, ResourceHandle> past;
+    std::map<std::size_t, ResourceHandle> previous;
 };
 
 inline TextureDesc texture_desc(bool deep) {
@@ -169,7 +169,8 @@ inline ResourceHandle declare(FrameGraph& frame, const Resource& resource, const
 }
 
 inline void declare(candela::Pass& pass, const Resource& resource, const Access& access, Handles& handles) {
-    ResourceHandle& handle = access.past ? handles.past.at(access.resource) : handles.newest[access.resource];
+    ResourceHandle& handle =
+        access.previous ? handles.previous.at(access.resource) : handles.newest[access.resource];
     const TextureHandle texture{handle};
     const BufferHandle<float> buffer{handle};
     const ValueHandle<int> value{handle};
@@ -206,8 +207,8 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
             continue;
         }
         const bool texture = resource.kind == ResourceKind::texture;
-        handles.past[index] = texture ? ResourceHandle(frame.history(TextureHandle{handle}))
-                                      : ResourceHandle(frame.history(BufferHandle<float>{handle}));
+        handles.previous[index] = texture ? ResourceHandle(frame.history(TextureHandle{handle}))
+                                          : ResourceHandle(frame.history(BufferHandle<float>{handle}));
     }
     for (std::size_t index = 0; index < graph.passes.size(); ++index) {
         const Pass& pass = graph.passes[index];

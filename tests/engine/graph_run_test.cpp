@@ -237,14 +237,15 @@ TEST_CASE_FIXTURE(GraphFixture,
     std::vector<std::uint64_t> seen;
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle blank = texture("accumulated");
-    const TextureHandle past = graph.history(blank);
+    const TextureHandle previous = graph.history(blank);
     const TextureHandle mixed = graph.add("mix", [&](Pass& pass) {
-        pass.read(past, Usage::sampled);
+        pass.read(previous, Usage::sampled);
         pass.read(knob);
         const TextureHandle written = pass.write(blank, Usage::colour_target);
-        pass.run([&, past, knob, written](Execution& run) {
-            CHECK(run.object(past) != run.object(written));
-            seen.push_back(run.history_valid(past) ? backend.objects.at(run.object(past)).content : 0);
+        pass.run([&, previous, knob, written](Execution& run) {
+            CHECK(run.object(previous) != run.object(written));
+            seen.push_back(run.history_valid(previous) ? backend.objects.at(run.object(previous)).content
+                                                       : 0);
             backend.objects.at(run.object(written)).content = static_cast<std::uint64_t>(run.value(knob));
         });
         return written;

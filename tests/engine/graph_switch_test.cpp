@@ -235,12 +235,13 @@ TEST_CASE("graph switch: history survives, and so does what it remembers") {
         FrameGraph graph;
         graph.add("mix", [&](Pass& pass) {
             const TextureHandle blank = graph.texture("mixed", colour);
-            const TextureHandle past = graph.history(blank);
-            pass.read(past, Usage::sampled);
+            const TextureHandle previous = graph.history(blank);
+            pass.read(previous, Usage::sampled);
             pass.side_effect();
             const TextureHandle mixed = pass.write(blank, Usage::storage);
-            pass.run([&, frame, past, mixed](Execution& run) {
-                seen.push_back(run.history_valid(past) ? backend.objects.at(run.object(past)).content : 0);
+            pass.run([&, frame, previous, mixed](Execution& run) {
+                seen.push_back(run.history_valid(previous) ? backend.objects.at(run.object(previous)).content
+                                                           : 0);
                 backend.objects.at(run.object(mixed)).content = frame;
             });
         });

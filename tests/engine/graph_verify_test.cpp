@@ -219,13 +219,13 @@ TEST_CASE_FIXTURE(VerifyFixture,
 TEST_CASE_FIXTURE(VerifyFixture, "graph verify: memories are left alone, and what they hold stays") {
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle blank = texture("sum");
-    const TextureHandle past = graph.history(blank);
+    const TextureHandle previous = graph.history(blank);
     const TextureHandle sum = graph.add("accumulate", [&](Pass& pass) {
-        pass.read(past, Usage::sampled);
+        pass.read(previous, Usage::sampled);
         pass.read(knob);
         const TextureHandle written = pass.write(blank, Usage::storage);
-        pass.run([&, past, knob, written](Execution& run) {
-            const std::uint64_t before = run.history_valid(past) ? content(run.object(past)) : 0;
+        pass.run([&, previous, knob, written](Execution& run) {
+            const std::uint64_t before = run.history_valid(previous) ? content(run.object(previous)) : 0;
             content(run.object(written)) = before + static_cast<std::uint64_t>(run.value(knob));
         });
         return written;

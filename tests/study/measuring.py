@@ -42,15 +42,15 @@ def noise_of(study: Study, group: Group) -> dict[str, float]:
 def trace_baseline(study: Study, group: Group) -> None:
     started, lines = time.monotonic(), []
     study.bar.show(f"{group.name}: path tracer")
-    fault = program.trace_baseline(
+    error = program.trace_baseline(
         str(STUDY), study.scene(group), study.reference(group), group.tracer_samples, lines.append
     )
     units = progress.tracer_units(group, sum(group.tracer_samples))
     study.forecast.record("tracer", units, time.monotonic() - started)
-    if fault:
+    if error:
         study.bar.clear()
-        print(f"study: {group.name}: the path tracer's own points failed: {fault}", file=sys.stderr)
-    kind = {"kind": "failed", "message": fault} if fault else {"kind": "tracer", "lines": lines}
+        print(f"study: {group.name}: the path tracer's own points failed: {error}", file=sys.stderr)
+    kind = {"kind": "failed", "message": error} if error else {"kind": "tracer", "lines": lines}
     study.note({"key": study.keys(group)["tracer"], "group": group.name, "id": "tracer", **kind})
 
 
@@ -109,18 +109,18 @@ def play(study: Study, motion: Motion, take: Take) -> None:
         lines.append(line)
         study.bar.show(f"{motion.name} {take.id}")
 
-    fault = program.animate(
+    error = program.animate(
         str(STUDY), study.script(motion), study.frame_references(motion), motion, take, listen
     )
-    study.note({"key": study.motion_key(motion, take), "group": motion.name, "id": take.id, **told(lines, fault)})
+    study.note({"key": study.motion_key(motion, take), "group": motion.name, "id": take.id, **told(lines, error)})
 
 
-def told(lines: list[dict[str, Any]], fault: str) -> dict[str, Any]:
+def told(lines: list[dict[str, Any]], error: str) -> dict[str, Any]:
     """The result of a take: its frames and flicker, or the error."""
     of_kind = {kind: [line for line in lines if line["kind"] == kind] for kind in ("frame", "flicker", "failed")}
-    if fault or of_kind["failed"] or not of_kind["flicker"]:
+    if error or of_kind["failed"] or not of_kind["flicker"]:
         words = [line["message"] for line in of_kind["failed"]]
-        return {"kind": "failed", "message": fault or (words + ["was not measured"])[0]}
+        return {"kind": "failed", "message": error or (words + ["was not measured"])[0]}
     return {"kind": "motion", "frames": of_kind["frame"], "flicker": of_kind["flicker"][0]}
 
 

@@ -22,9 +22,9 @@ SILENCE = 600.0
 
 @dataclass(frozen=True)
 class End:
-    """How the program ended: `fault` is empty on success; `crashed` distinguishes a crash from a reported error."""
+    """How the program ended: `error` is empty on success; `crashed` distinguishes a crash from a reported error."""
 
-    fault: str
+    error: str
     crashed: bool
 
 
@@ -76,8 +76,8 @@ def make_reference(program: str, scene: pathlib.Path, group: Group, folder: path
     options = ["--size", size, "--samples", str(wanted.samples), "--seed", str(wanted.seed), *bounces]
     folder.parent.mkdir(parents=True, exist_ok=True)
     end = stream([program, "reference", str(scene), *options, "--out", str(folder)], lambda line: None)
-    if end.fault:
-        raise RuntimeError(f"no reference for {group.name}: {end.fault}")
+    if end.error:
+        raise RuntimeError(f"no reference for {group.name}: {end.error}")
 
 
 def trace_baseline(
@@ -90,8 +90,8 @@ def trace_baseline(
     for counts, rounds in ((few, 3), (many, 1)):
         listed = ",".join(str(count) for count in counts)
         end = stream([*command, "--samples", listed, "--rounds", str(rounds)], on_line) if counts else End("", False)
-        if end.fault:
-            return end.fault
+        if end.error:
+            return end.error
     return ""
 
 
@@ -107,7 +107,7 @@ def animate(
         json.dump([{"id": take.id, "config": take.config, "fresh_seeds": take.fresh_seeds}], points)
         points.flush()
         command = [program, "animate", str(script), "--reference-dir", str(references), "--points", points.name]
-        return stream([*command, *options, "--frames", str(motion.frames)], on_line).fault
+        return stream([*command, *options, "--frames", str(motion.frames)], on_line).error
 
 
 def running(order: Sequence[str], lines: Sequence[Line]) -> str:
@@ -159,5 +159,5 @@ def measure(
             culprit = running([one.id for one in waiting], seen)
             lost = [one for one in waiting if one.id == culprit]
         for one in lost:
-            on_line({"id": one.id, "kind": "failed", "message": end.fault or "was not measured"})
+            on_line({"id": one.id, "kind": "failed", "message": end.error or "was not measured"})
         waiting = [one for one in left if one not in lost]

@@ -103,16 +103,16 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
         return {id, base.history, 0};
     }
 
-    const auto past = size_of(resources);
+    const auto previous = size_of(resources);
     resources[of.resource].lifetime = Lifetime::persistent;
-    resources[of.resource].history = past;
+    resources[of.resource].history = previous;
     Resource history = resources[of.resource];
     history.history = none;
     history.history_of = of.resource;
     history.versions = 0;
     history.reader = history.writer = none;
     resources.push_back(history);
-    return {id, past, 0};
+    return {id, previous, 0};
 }
 
 /// Empty if the resource can have a history.
@@ -247,7 +247,7 @@ void Declaration::read(ResourceHandle handle, ResourceKind kind, Binding binding
     const bool given =
         resource.lifetime == Lifetime::imported || resource.history_of != none || resource.first_part != none;
     if (handle.version == 0 && !given) {
-        error(ErrorCode::unwritten_read, fmt::format("pass '{}' reads {} '{}', which nobody has written",
+        error(ErrorCode::unwritten_read, fmt::format("pass '{}' reads {} '{}', which no pass has written",
                                                      name, to_string(kind), resource.name));
     }
     resource.reader = pass;

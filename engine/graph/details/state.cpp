@@ -73,8 +73,8 @@ class StateMaker {
     }
 
     void add_input(Step& step, const Access& access, std::uint32_t pass) const {
-        const bool past = declared_.resources[access.resource].history_of != none;
-        if (past || (access.write && access.version == 1)) {
+        const bool previous = declared_.resources[access.resource].history_of != none;
+        if (previous || (access.write && access.version == 1)) {
             return;
         }
         const std::uint32_t version = plan_.version(access.resource, access.version - (access.write ? 1 : 0));
@@ -134,9 +134,10 @@ class StateMaker {
 };
 
 /// Transfers state from an old graph to a new one (see inherit).
-class Heir {
+class StateTransfer {
  public:
-    Heir(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before, const State& before)
+    StateTransfer(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
+                  const State& before)
         : declared_(graph.declared()),
           plan_(graph.plan()),
           state_(state),
@@ -335,7 +336,7 @@ State make_state(const CompiledGraph& graph) {
 
 std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
                                   const State& before) {
-    return Heir(graph, state, graph_before, before).inherit();
+    return StateTransfer(graph, state, graph_before, before).inherit();
 }
 
 }  // namespace candela::detail

@@ -16,10 +16,10 @@ bool alike(const detail::Slot& a, const detail::Slot& b) {
     return a.kind == b.kind && a.texture == b.texture && a.buffer == b.buffer;
 }
 
-/// Unused objects that slots can take. A slot of the stock whose object was taken has object 0.
-class Stock {
+/// Unused objects that slots can take. A slot whose object was taken has object 0.
+class UnusedObjects {
  public:
-    explicit Stock(std::vector<detail::Slot>& slots) : slots_(slots) {
+    explicit UnusedObjects(std::vector<detail::Slot>& slots) : slots_(slots) {
         for (std::size_t index = 0; index < slots.size(); ++index) {
             if (slots[index].kept_as.empty()) {
                 by_hash_.emplace(hash_of(slots[index]), index);
@@ -77,38 +77,38 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     if (verifying_) {
         state.contents.resize(state.versions.size());
     }
-    std::vector<detail::Slot> stock = free_pool_;
+    std::vector<detail::Slot> unused = free_pool_;
     if (graph_) {
         const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, state_);
         for (std::size_t index = 0; index < taken.size(); ++index) {
             if (!taken[index] && state_.slots[index].owned) {
-                stock.push_back(state_.slots[index]);
+                unused.push_back(state_.slots[index]);
             }
         }
     }
-    provide_objects(graph, state, stock);
+    provide_objects(graph, state, unused);
 
     // Nothing fails from here on. Unused objects of the previous graph go to the free pool; the objects that
     // were in it before are destroyed, unless they were taken.
-    const auto pooled = stock.begin() + static_cast<std::ptrdiff_t>(free_pool_.size());
-    std::for_each(stock.begin(), pooled, [this](const detail::Slot& slot) { destroy(slot); });
-    stock.erase(stock.begin(), pooled);
-    std::erase_if(stock, [](const detail::Slot& slot) { return slot.object == 0; });
+    const auto pooled = unused.begin() + static_cast<std::ptrdiff_t>(free_pool_.size());
+    std::for_each(unused.begin(), pooled, [this](const detail::Slot& slot) { destroy(slot); });
+    unused.erase(unused.begin(), pooled);
+    std::erase_if(unused, [](const detail::Slot& slot) { return slot.object == 0; });
     // The planned barriers of the new graph do not cover the writes of the previous one.
     if (graph_) {
         pending_barriers_ = all_barriers;
     }
-    free_pool_ = std::move(stock);
+    free_pool_ = std::move(unused);
     state_ = std::move(state);
     graph_ = std::move(graph);
     record_.passes = std::move(passes);
 }
 
-/// Gives each owned slot without an object one from the stock, or creates one. If the back end throws,
+/// Gives each owned slot without an object an unused one, or creates one. If the back end throws,
 /// destroys what was created.
 void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& state,
-                                   std::vector<detail::Slot>& stock) {
-    Stock available(stock);
+                                   std::vector<detail::Slot>& unused) {
+    UnusedObjects available(unused);
     std::vector<std::uint32_t> made;
     made.reserve(state.slots.size());
     try {

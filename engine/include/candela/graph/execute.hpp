@@ -250,7 +250,7 @@ class GraphRuntime {
     void release(std::uint32_t slot);
     void turn_over(std::uint32_t slot);
 
-    void provide_objects(const CompiledGraph& graph, detail::State& state, std::vector<detail::Slot>& stock);
+    void provide_objects(const CompiledGraph& graph, detail::State& state, std::vector<detail::Slot>& unused);
     void create(detail::Slot& slot, std::string_view name);
     void destroy(const detail::Slot& slot);
 
