@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -12,6 +13,25 @@
 #include "renderer/gl/texture.hpp"
 
 namespace candela {
+
+/// Number of work groups of `a_group` invocations that cover `count`.
+[[nodiscard]] constexpr std::uint32_t groups(std::uint32_t count, std::uint32_t a_group) {
+    return (count + a_group - 1) / a_group;
+}
+
+/// Calls `dispatch(first)` for first = 0, `most`, 2 `most`, ... below `count`, at least once, with a barrier
+/// in between. Bounds the loops of an invocation: software drivers silently stop all of them after 65,535
+/// iterations in total.
+template <class Dispatch>
+void in_parts(const gl::Functions& gl, std::uint32_t count, std::uint32_t most, GLbitfield barrier,
+              Dispatch dispatch) {
+    for (std::uint32_t first = 0; first == 0 || first < count; first += most) {
+        if (first > 0) {
+            gl.MemoryBarrier(barrier);
+        }
+        dispatch(first);
+    }
+}
 
 /// Throws gl::GlError that names the first limit that is too low for the renderer's shaders.
 void require_limits(const gl::Limits& limits);

@@ -29,11 +29,6 @@ BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, Valu
     });
 }
 
-/// Number of blocks of pixels that cover `pixels` along an edge.
-std::uint32_t blocks(std::uint32_t pixels) {
-    return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
-}
-
 /// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
 void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::uvec2 size,
@@ -43,13 +38,10 @@ void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::u
     const std::uint32_t share = (vpl_count + classes - 1) / classes;
     program.set("asked_now", most);
     program.use();
-    for (std::uint32_t asked = 0; asked == 0 || asked < share; asked += most) {
-        if (asked > 0) {
-            gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-        }
-        program.set("asked_before", asked);
-        gl.DispatchCompute(blocks(of_class.x), blocks(of_class.y), classes);
-    }
+    in_parts(gl, share, most, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, [&](std::uint32_t first) {
+        program.set("asked_before", first);
+        gl.DispatchCompute(groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes);
+    });
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ void read_pixels(Pass& pass, const Pixels& pixels) {
 }
 
 std::uint32_t groups_of_row(glm::uvec2 size) {
-    return (size.x + RECONSTRUCT_GROUP - 1) / RECONSTRUCT_GROUP;
+    return groups(size.x, RECONSTRUCT_GROUP);
 }
 
 void dispatch(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) {
@@ -94,13 +94,10 @@ void dispatch_fill(const gl::Functions& gl, const gl::Program& program, std::uin
                    std::uint32_t most) {
     program.set("asked_now", most);
     program.use();
-    for (std::uint32_t asked = 0; asked == 0 || 2 * asked < vpl_count; asked += most) {
-        if (asked > 0) {
-            gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-        }
-        program.set("asked_before", asked);
+    in_parts(gl, (vpl_count + 1) / 2, most, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, [&](std::uint32_t first) {
+        program.set("asked_before", first);
         gl.DispatchComputeIndirect(0);
-    }
+    });
 }
 
 TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,

@@ -87,13 +87,10 @@ void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const
     }
     program.set("culled_now", most);
     program.use();
-    for (std::uint32_t culled = 0; culled == 0 || culled < longest; culled += most) {
-        if (culled > 0) {
-            gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-        }
-        program.set("culled_before", culled);
-        gl.DispatchCompute((bins.grid.cells() + cells_a_group - 1) / cells_a_group, 1, 1);
-    }
+    in_parts(gl, longest, most, GL_SHADER_STORAGE_BARRIER_BIT, [&](std::uint32_t first) {
+        program.set("culled_before", first);
+        gl.DispatchCompute(groups(bins.grid.cells(), cells_a_group), 1, 1);
+    });
 }
 
 /// What is culled: bins, and for tiles perhaps the depths that bound them.
@@ -213,7 +210,6 @@ LightLists add_light_clusters(FrameGraph& graph, Gpu& gpu, const ListInputs& inp
 }
 
 void read_light_lists(Pass& pass, const LightLists& lists) {
-    read_view(pass, lists.inputs.view);
     read_light_grid(pass, lists.inputs.grid);
     pass.read(lists.first, {Usage::storage, BINDING_LIST_FIRST});
     pass.read(lists.count, {Usage::storage, BINDING_LIST_COUNT});

@@ -4,13 +4,6 @@
 #include "shaders/bindings.glsl"
 
 namespace candela {
-namespace {
-
-std::uint32_t blocks(std::uint32_t pixels) {
-    return (pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
-}
-
-}  // namespace
 
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
                            const FrameView& view) {
@@ -31,7 +24,7 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
                     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
                 }
                 begin_lighting_part(program, part);
-                gl.DispatchCompute(blocks(view.size.x), blocks(view.size.y), 1);
+                gl.DispatchCompute(groups(view.size.x, PIXEL_BLOCK), groups(view.size.y, PIXEL_BLOCK), 1);
             }
         });
         return radiance;

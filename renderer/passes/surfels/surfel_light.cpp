@@ -15,10 +15,6 @@ struct DirectLight {
     BufferHandle<gpu::CellLight> cells;
 };
 
-std::uint32_t groups(std::uint32_t count) {
-    return (count + SURFEL_GROUP - 1) / SURFEL_GROUP;
-}
-
 std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
     return run.value(surfels.plan).vpl_count;
 }
@@ -51,14 +47,14 @@ void set_count(const gl::Program& program, std::uint32_t count) {
 void dispatch_surfels(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
     set_count(program, count);
     program.use();
-    gl.DispatchCompute(groups(count), 1, 1);
+    gl.DispatchCompute(groups(count, SURFEL_GROUP), 1, 1);
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void find_form_factors(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
     set_count(program, count);
     program.use();
-    gl.DispatchCompute(groups(count), surfel_columns(count).count / 2, 1);
+    gl.DispatchCompute(groups(count, SURFEL_GROUP), surfel_columns(count).count / 2, 1);
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -120,11 +116,11 @@ void light_points(const gl::Functions& gl, const gl::Program& program, std::uint
     program.set("light_count", lights);
     program.set("lights_now", most_shadow_rays);
     program.use();
-    for (std::uint32_t lit = 0; lit == 0 || lit < lights; lit += most_shadow_rays) {
-        program.set("lights_before", lit);
-        gl.DispatchCompute(groups(points), 1, 1);
-        gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    }
+    in_parts(gl, lights, most_shadow_rays, GL_SHADER_STORAGE_BARRIER_BIT, [&](std::uint32_t first) {
+        program.set("lights_before", first);
+        gl.DispatchCompute(groups(points, SURFEL_GROUP), 1, 1);
+    });
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
@@ -228,7 +224,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             scale_rows(gpu.gl(), rows, count);
             seer.set("point_count", points);
             seer.use();
-            gpu.gl().DispatchCompute(groups(points), 1, 1);
+            gpu.gl().DispatchCompute(groups(points, SURFEL_GROUP), 1, 1);
         });
         return out;
     });

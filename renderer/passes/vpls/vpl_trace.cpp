@@ -26,10 +26,6 @@ float edge_reach(float area, std::uint32_t vpl_count) {
     return 4.0F * std::sqrt(area / static_cast<float>(vpl_count));
 }
 
-std::uint32_t groups(std::uint32_t count, std::uint32_t a_group) {
-    return (count + a_group - 1) / a_group;
-}
-
 /// Traces one segment per dispatch. A longer loop would reach the number of iterations after which software
 /// drivers silently stop all loops of an invocation.
 void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
