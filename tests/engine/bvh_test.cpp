@@ -169,7 +169,7 @@ Shape check_build(std::span<const Triangle> triangles) {
     return check_layout(bvh, triangles.size());
 }
 
-TEST_CASE("bvh: no triangles make no nodes and no hits") {
+TEST_CASE("bvh: without triangles there are no nodes and no hits") {
     Bvh bvh = build_bvh({});
     CHECK(bvh.nodes.empty());
     CHECK(bvh.order.empty());
@@ -274,7 +274,7 @@ TEST_CASE("bvh: axis-parallel rays hit the edges of boxes") {
     CHECK_FALSE(any_hit(bvh, triangles, {{0.5F, 0.5F, 0.5F}, {0, 0, 0}}));
 }
 
-TEST_CASE("bvh: of duplicates the lowest index is hit from every side") {
+TEST_CASE("bvh: of duplicate triangles the one with the lowest index is hit") {
     Random random(4);
     const Triangles originals = soup(50, 0.3F, random);
     Triangles triangles;
@@ -292,7 +292,7 @@ TEST_CASE("bvh: of duplicates the lowest index is hit from every side") {
     CHECK(disagreements(bvh, triangles, 1000, random) == 0);
 }
 
-TEST_CASE("bvh: equal centroids are split into small leaves of little depth") {
+TEST_CASE("bvh: triangles with equal centroids are split into small leaves of a shallow tree") {
     Random random(5);
     Triangles triangles;
     for (int i = 0; i < 1000; ++i) {
@@ -345,7 +345,7 @@ TEST_CASE("bvh: no input exceeds the bounds on depth and nodes") {
     check_build(nested);
 }
 
-TEST_CASE("bvh: what is not a number neither hangs nor hides the rest") {
+TEST_CASE("bvh: NaN and infinite vertices do not hang the build and do not hide other triangles") {
     Random random(7);
     Triangles triangles = soup(200, 0.2F, random);
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
@@ -361,7 +361,7 @@ TEST_CASE("bvh: what is not a number neither hangs nor hides the rest") {
     check_layout(build_bvh(Triangles(100, triangles[0])), 100);
 }
 
-TEST_CASE("bvh: refitting follows any motion") {
+TEST_CASE("bvh: after refitting, boxes and hits are correct, whatever has moved") {
     Random random(8);
     Triangles triangles = soup(600, 0.1F, random);
     Bvh bvh = build_bvh(triangles);
@@ -395,7 +395,7 @@ TEST_CASE("bvh: refitting to the same triangles changes nothing") {
     }
 }
 
-TEST_CASE("bvh: the cost of a split is that of its boxes") {
+TEST_CASE("bvh: the cost of a split follows from the surface areas of its boxes") {
     // Boxes of 1 × 1 × 0 (half area 1) at both ends of a box of 1 × 1 × 10 (half area 21): the root costs 1,
     // each leaf costs its one triangle times 1/21.
     const Triangles triangles{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 10}, {1, 0, 10}, {0, 1, 10}}};

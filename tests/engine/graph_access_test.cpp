@@ -12,7 +12,8 @@ namespace {
 
 using namespace candela;
 
-TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, and loses history") {
+TEST_CASE_FIXTURE(GraphFixture,
+                  "graph access: reserve() grows a buffer, resizes a texture, and invalidates its history") {
     const auto wanted = graph.import_value<std::uint64_t>("wanted");
     const auto blank = graph.buffer<float>("vpls", 100, Lifetime::persistent);
     const TextureHandle map = texture("map");
@@ -54,7 +55,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: reserving makes room, keeps it, a
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph access: what a pass did not declare it may not touch") {
+TEST_CASE_FIXTURE(GraphFixture, "graph access: a pass may only access what it has declared") {
     const TextureHandle a = draw("draw", {}, texture("a"));
     const TextureHandle blank = texture("b");
     const auto number = graph.import_value<int>("number");
@@ -124,7 +125,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: an update finds the content of th
 }
 
 TEST_CASE_FIXTURE(GraphFixture,
-                  "graph access: only what is persistent may be reserved, and not what is attached") {
+                  "graph access: only persistent resources that are not attachments may be reserved") {
     int refused = 0;
     const auto attempt = [&](Execution& run, auto resource, auto extent) {
         try {

@@ -76,7 +76,7 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
     return events;
 }
 
-TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and none that no pair needs" *
+TEST_CASE("graph: exactly those barriers are planned that some pair of accesses needs" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({});
@@ -114,7 +114,7 @@ TEST_CASE("graph: every barrier that a pair of accesses needs is planned, and no
     }));
 }
 
-TEST_CASE("graph: a barrier serves all that was written before it") {
+TEST_CASE("graph: one barrier covers all writes before it") {
     FrameGraph graph;
     const auto write = [&](std::string_view name) {
         return graph.add(name,

@@ -48,7 +48,7 @@ TEST_SUITE("graph: binding") {
         CHECK(backend.misuse.empty());
     }
 
-    TEST_CASE_FIXTURE(Binds, "a plain usage binds nothing") {
+    TEST_CASE_FIXTURE(Binds, "a usage without a binding point binds nothing") {
         const TextureHandle picture = draw("picture", {}, texture("picture"));
         graph.add("reader", [&](Pass& pass) {
             pass.read(picture, Usage::sampled);
@@ -81,7 +81,7 @@ TEST_SUITE("graph: binding") {
         CHECK(backend.misuse.empty());
     }
 
-    TEST_CASE_FIXTURE(Binds, "a history is bound as the object that holds the last frame") {
+    TEST_CASE_FIXTURE(Binds, "a history is bound as the object that was written in the previous frame") {
         const TextureHandle blank = texture("mean", Lifetime::persistent);
         const TextureHandle previous = graph.history(blank);
         ObjectId written = 0;
@@ -99,7 +99,7 @@ TEST_SUITE("graph: binding") {
         for (int frame = 0; frame < 3; ++frame) run();
     }
 
-    TEST_CASE_FIXTURE(Binds, "a point for what shaders do not find at points is an error") {
+    TEST_CASE_FIXTURE(Binds, "a binding point for a usage that has none is an error") {
         graph.add("draws", [&](Pass& pass) {
             static_cast<void>(pass.write(texture("picture"), {Usage::colour_target, 1}));
             pass.side_effect();

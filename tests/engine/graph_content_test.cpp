@@ -61,7 +61,7 @@ std::set<std::size_t> made_anew(const Graph& graph, const std::vector<std::uint3
     return passes;
 }
 
-TEST_CASE("graph: running what is dirty gives what the declaration means, in any legal order" *
+TEST_CASE("graph: running only the dirty passes gives the same results as running all, in any valid order" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false});
@@ -80,7 +80,7 @@ TEST_CASE("graph: running what is dirty gives what the declaration means, in any
     }));
 }
 
-TEST_CASE("graph: frames that remember the last give what the declaration means, in any legal order" *
+TEST_CASE("graph: with histories, results are those of a plain evaluation, in any valid order" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20});
@@ -110,10 +110,8 @@ bool stays(const Graph& graph, const std::vector<std::uint32_t>& objects,
            std::ranges::count(objects, objects[result.resource]) == 1;
 }
 
-TEST_CASE(
-    "graph: when nothing has changed, only those run that always do or read what those make, and those whose "
-    "results another has taken the place of" *
-    doctest::test_suite("random")) {
+TEST_CASE("graph: without changes, only passes that always run, their readers and overwritten ones run" *
+          doctest::test_suite("random")) {
     // In a small graph most passes run in every frame, which would test nothing.
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 60, .histories = false});

@@ -47,7 +47,7 @@ std::string text_of(FrameGraph& graph, CompileOptions options = {}) {
     return "\n" + describe_text(compile(std::move(graph), options).take());
 }
 
-TEST_CASE("graph description: a chain shares objects between transients that do not meet") {
+TEST_CASE("graph description: in a chain, transients with disjoint lifetimes share objects") {
     FrameGraph graph;
     const TextureHandle a = add_draw(graph, "draw", "a");
     const TextureHandle b = add_filter(graph, "blur", a, "b");
@@ -104,7 +104,7 @@ resources
 )");
 }
 
-TEST_CASE("graph description: a branch that nobody needs is culled, a side effect and its inputs are not") {
+TEST_CASE("graph description: an unneeded branch is culled, a side effect and its inputs are kept") {
     FrameGraph graph;
     const TextureHandle a = add_draw(graph, "draw", "a");
     const TextureHandle unseen = add_filter(graph, "unseen", a, "u");
@@ -132,7 +132,7 @@ resources
 )");
 }
 
-TEST_CASE("graph description: history has an object of its own and keeps its writer") {
+TEST_CASE("graph description: a history has an object of its own, and its writer is not culled") {
     FrameGraph graph;
     const TextureHandle blank = graph.texture("accumulated", colour);
     const TextureHandle previous = graph.history(blank);
@@ -223,7 +223,7 @@ FrameGraph remembering() {
     return graph;
 }
 
-TEST_CASE("graph description: DOT escapes names and dashes memories") {
+TEST_CASE("graph description: DOT escapes names and draws histories as dashed arrows") {
     CHECK("\n" + describe_dot(compile(remembering()).take()) == R"(
 digraph frame {
     rankdir=LR;
@@ -236,7 +236,7 @@ digraph frame {
 )");
 }
 
-TEST_CASE("graph description: JSON tells what the text tells") {
+TEST_CASE("graph description: JSON has the same content as the text") {
     const auto json = nlohmann::json::parse(describe_json(compile(remembering()).take()));
     CHECK(json["passes"].size() == 2);
     CHECK(json["passes"][0]["name"] == "draw \"it\"");

@@ -38,7 +38,7 @@ void add_read(FrameGraph& graph, std::string_view pass_name, TextureHandle sourc
     });
 }
 
-TEST_CASE("graph error: handles of no graph, of another, of another kind") {
+TEST_CASE("graph error: handles without a graph, of another graph, of another kind") {
     FrameGraph other;
     const TextureHandle foreign = other.texture("elsewhere", colour);
 
@@ -65,7 +65,7 @@ TEST_CASE("graph error: handles of no graph, of another, of another kind") {
     CHECK(errors[6].message == "history of a texture of another graph");
 }
 
-TEST_CASE("graph error: a read of a version since overwritten names both passes") {
+TEST_CASE("graph error: reading an overwritten version names both passes") {
     FrameGraph graph;
     const TextureHandle first = add_draw(graph, "draw", graph.texture("image", colour));
     const TextureHandle second = add_draw(graph, "overdraw", first);
@@ -86,7 +86,7 @@ TEST_CASE("graph error: two writers of one version") {
                                           "texture 'image'"});
 }
 
-TEST_CASE("graph error: reads of what nobody writes") {
+TEST_CASE("graph error: reads of resources that no pass writes") {
     FrameGraph graph;
     add_read(graph, "show", graph.texture("image", colour));
     add_read(graph, "show kept", graph.texture("kept", colour, Lifetime::persistent));
@@ -99,14 +99,14 @@ TEST_CASE("graph error: reads of what nobody writes") {
     CHECK(errors[2].message == "pass 'use' reads value 'number', which no pass has written");
 }
 
-TEST_CASE("graph error: a history of what nobody writes") {
+TEST_CASE("graph error: a history of a resource that no pass writes") {
     FrameGraph graph;
     add_read(graph, "show", graph.history(graph.texture("image", colour)));
     CHECK(error_of(graph) ==
           CompileError{ErrorCode::unwritten_read, "texture 'image' has a history, but no pass writes it"});
 }
 
-TEST_CASE("graph: what is imported and what is remembered may be read before it is written") {
+TEST_CASE("graph: imported resources and histories may be read before they are written") {
     FrameGraph graph;
     add_read(graph, "environment", graph.texture("sky", colour, Lifetime::imported));
     graph.add("exposure", [&](Pass& pass) {
@@ -119,7 +119,7 @@ TEST_CASE("graph: what is imported and what is remembered may be read before it 
     CHECK(compile(std::move(graph)).errors.empty());
 }
 
-TEST_CASE("graph error: histories of what has none, and writes of what is read only") {
+TEST_CASE("graph error: histories of resources that have none, and writes of read-only resources") {
     FrameGraph graph;
     const TextureHandle sky = graph.texture("sky", colour, Lifetime::imported);
     const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
@@ -138,7 +138,7 @@ TEST_CASE("graph error: histories of what has none, and writes of what is read o
     CHECK(errors[3].message == "pass 'host' writes value 'number', which the host sets");
 }
 
-TEST_CASE("graph error: updates of what does not keep the previous frame's content") {
+TEST_CASE("graph error: updates of resources that do not keep the previous frame's content") {
     FrameGraph graph;
     const TextureHandle remembered = graph.texture("remembered", colour);
     (void)graph.history(remembered);
@@ -171,7 +171,7 @@ bool bad(const TextureDesc& desc, Access access) {
     return !errors_of(graph).empty();
 }
 
-TEST_CASE("graph error: each usage that a kind of resource or a direction does not allow") {
+TEST_CASE("graph error: each usage that reads or writes of textures or buffers do not allow") {
     using enum Usage;
     const auto one_of = [](Usage usage, std::initializer_list<Usage> usages) {
         return std::find(usages.begin(), usages.end(), usage) != usages.end();
@@ -210,7 +210,7 @@ TEST_CASE("graph error: wrong usage and wrong format are named") {
                        "pass 'draw' writes texture 'albedo' as depth target, but its format is rgba16f"});
 }
 
-TEST_CASE("graph error: a pass reads what it overwrites, in either order of declaring") {
+TEST_CASE("graph error: a pass reads what it overwrites, in either order of declaration") {
     for (const bool read_first : {true, false}) {
         FrameGraph graph;
         const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
@@ -283,7 +283,7 @@ TEST_CASE("graph error: a pass inside a pass") {
           CompileError{ErrorCode::nested_pass, "pass 'inner' is declared inside pass 'outer'"});
 }
 
-TEST_CASE("graph error: all errors are found at once, and taking the graph tells them") {
+TEST_CASE("graph error: all errors are found at once, and take() throws them") {
     FrameGraph graph;
     add_read(graph, "show", {});
     add_read(graph, "show", graph.texture("image", colour));

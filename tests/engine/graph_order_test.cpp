@@ -155,7 +155,7 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
     }
 }
 
-TEST_CASE("graph: random graphs are culled, ordered and given objects as a slow check says" *
+TEST_CASE("graph: culling, order and shared objects of random graphs agree with a slow check" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({});
@@ -165,7 +165,7 @@ TEST_CASE("graph: random graphs are culled, ordered and given objects as a slow 
     }));
 }
 
-TEST_CASE("graph: shuffled orders are legal, and declaration order holds where it is" *
+TEST_CASE("graph: shuffled orders are valid, and the default is the order of declaration" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({});
@@ -214,7 +214,7 @@ double seconds_to_compile(std::size_t count, std::size_t reads) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-TEST_CASE("graph: ten thousand passes compile in an instant, also where paths double from pass to pass") {
+TEST_CASE("graph: 10,000 passes compile in seconds, even if each pass doubles the number of paths") {
     // Quadratic time would take minutes, and following all paths, whose number doubles with each pass, would
     // never end. The limit leaves a margin for sanitizers.
     CHECK(seconds_to_compile(10'000, 1) < 5.0);

@@ -33,7 +33,7 @@ struct Parts : GraphFixture {
 };
 
 TEST_SUITE("graph parts") {
-    TEST_CASE_FIXTURE(Parts, "a chain of mips is drawn one from the other, and read as a whole") {
+    TEST_CASE_FIXTURE(Parts, "each mip is drawn from the previous one, and all are read as one texture") {
         const TextureHandle bloom = graph.texture("bloom", chain);
         const auto light = graph.import_value<int>("light");
         TextureHandle level = fill("bright", graph.mip(bloom, 0), light);
@@ -54,7 +54,7 @@ TEST_SUITE("graph parts") {
         CHECK(backend.misuse.empty());
     }
 
-    TEST_CASE_FIXTURE(Parts, "a part that changes makes only its readers and those of the whole run") {
+    TEST_CASE_FIXTURE(Parts, "if a part changes, only its readers and readers of the whole texture run") {
         const TextureHandle shadows = graph.texture("shadows", stack);
         const auto sun = graph.import_value<int>("sun");
         const auto lamp = graph.import_value<int>("lamp");
@@ -84,7 +84,7 @@ TEST_SUITE("graph parts") {
         CHECK(changed == std::vector<bool>{true, true, true});
     }
 
-    TEST_CASE_FIXTURE(Parts, "incoherent writes of parts are visible to readers of the whole") {
+    TEST_CASE_FIXTURE(Parts, "incoherent writes of parts are visible to readers of the whole texture") {
         const TextureHandle whole = graph.texture("whole", chain);
         graph.add("write", [&](Pass& pass) { (void)pass.write(graph.mip(whole, 1), Usage::storage); });
         show(whole);
@@ -95,7 +95,7 @@ TEST_SUITE("graph parts") {
         CHECK(*std::prev(shown) == "barrier texture fetch");
     }
 
-    TEST_CASE_FIXTURE(Parts, "a switch keeps a texture with its parts, and a new size makes both anew") {
+    TEST_CASE_FIXTURE(Parts, "a switch keeps a texture with its parts, and a new size creates new ones") {
         const auto declare = [&](const TextureDesc& desc) {
             graph = FrameGraph();
             const TextureHandle whole = graph.texture("whole", desc);
@@ -118,7 +118,7 @@ TEST_SUITE("graph parts") {
         CHECK(backend.objects.size() == 2);
     }
 
-    TEST_CASE_FIXTURE(Parts, "a switch that fails while it makes parts leaves the graph as it was") {
+    TEST_CASE_FIXTURE(Parts, "a switch that fails while it creates parts leaves the graph unchanged") {
         show(draw("draw", {}, texture("drawn")));
         switch_to();
         const std::size_t before = backend.objects.size();
@@ -131,7 +131,7 @@ TEST_SUITE("graph parts") {
         CHECK(run() == "draw show");
     }
 
-    TEST_CASE_FIXTURE(Parts, "invalid parts are named") {
+    TEST_CASE_FIXTURE(Parts, "errors name invalid parts") {
         const TextureHandle sky = graph.texture("sky", chain, Lifetime::imported);
         const TextureHandle flat = graph.texture("flat", chain);
         const TextureHandle layers = graph.texture("layers", stack);
@@ -161,7 +161,7 @@ TEST_SUITE("graph parts") {
                   "pass 'show' reads texture 'layers mip 1', which no pass has written"});
     }
 
-    TEST_CASE_FIXTURE(Parts, "a pass may not write a part of what it reads as a whole") {
+    TEST_CASE_FIXTURE(Parts, "a pass may not write a part of a texture that it reads as a whole") {
         const TextureHandle whole = graph.texture("whole", chain);
         const TextureHandle drawn = draw("draw", {}, graph.mip(whole, 0));
         graph.add("both", [&](Pass& pass) {

@@ -21,7 +21,9 @@ struct Name {
     std::string text;
 };
 
-TEST_CASE_FIXTURE(GraphFixture, "graph run: a component pool that changes dirties its readers and theirs") {
+TEST_CASE_FIXTURE(
+    GraphFixture,
+    "graph run: if a component pool changes, its readers and the readers of their results run") {
     const Entity entity = world.create();
     world.set(entity, Light{1});
     const auto power = graph.add("gather", [&](Pass& pass) {
@@ -52,17 +54,17 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a component pool that changes dirtie
         world.set(entity, Light{2});
         CHECK(run() == "gather show");
     }
-    SUBCASE("another world is another world") {
+    SUBCASE("a copy of the world counts as changed") {
         const World copy = world;
         CHECK(ran(runtime.run(copy)) == "gather show");
     }
-    SUBCASE("all runs after invalidating") {
+    SUBCASE("all passes run after invalidate()") {
         runtime.invalidate();
         CHECK(run() == "gather light show");
     }
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph run: what only culled passes read the host need not provide") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: the host need not provide imports that only culled passes read") {
     const auto exposure = graph.import_value<float>("exposure");
     const TextureHandle sky = texture("sky", Lifetime::imported);
     graph.add("unseen", [&](Pass& pass) {
@@ -78,7 +80,9 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: what only culled passes read the hos
     CHECK(run() == "print");
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph run: an imported value is needed once, an imported object too") {
+TEST_CASE_FIXTURE(
+    GraphFixture,
+    "graph run: imported values and objects must be provided before the first frame, and are kept") {
     const auto exposure = graph.import_value<float>("exposure");
     const TextureHandle target = texture("target", Lifetime::imported);
     const TextureHandle mapped = graph.add("tone-map", [&](Pass& pass) {
@@ -106,7 +110,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: an imported value is needed once, an
                          "a handle is not of the current frame graph", GraphError);
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph run: a bind is new content to the readers") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: binding an import counts as new content") {
     const TextureHandle sky = texture("sky", Lifetime::imported);
     const TextureHandle blurred = draw("blur", {sky}, texture("blurred"));
     graph.add("show", [&](Pass& pass) {
@@ -121,8 +125,9 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: a bind is new content to the readers
     CHECK(run() == "blur show");
 }
 
-TEST_CASE_FIXTURE(GraphFixture,
-                  "graph run: what shares an object is made again for a reader, and only for that") {
+TEST_CASE_FIXTURE(
+    GraphFixture,
+    "graph run: a result overwritten in a shared object is not made again if no running pass reads it") {
     // "a" and "c" share an object, which holds "c" after a frame.
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle a = draw("draw a", {}, texture("a"));
@@ -158,7 +163,7 @@ TEST_CASE_FIXTURE(GraphFixture,
 
 TEST_CASE_FIXTURE(
     GraphFixture,
-    "graph run: whoever changes what is there has its maker run first, and keeps later readers clean") {
+    "graph run: before a pass modifies a result in place, the pass that made the result runs again") {
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle lit = draw("opaque", {}, texture("lit"));
     const TextureHandle both = graph.add("transparent", [&](Pass& pass) {
@@ -179,7 +184,7 @@ TEST_CASE_FIXTURE(
 }
 
 TEST_CASE_FIXTURE(GraphFixture,
-                  "graph run: a pass that only brings back a result leaves the other readers clean") {
+                  "graph run: a pass that runs only to restore a result leaves its other readers clean") {
     // "peek" reads the first version of "lit", which "transparent" has overwritten.
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle lit = draw("opaque", {}, texture("lit"));
@@ -205,7 +210,7 @@ TEST_CASE_FIXTURE(GraphFixture,
 }
 
 TEST_CASE_FIXTURE(GraphFixture,
-                  "graph run: what is changed in place is not made again for who turns out to be clean") {
+                  "graph run: a result is not restored for an in-place pass that turns out to be clean") {
     const auto knob = graph.import_value<int>("knob");
     const auto half = graph.add("halve", [&](Pass& pass) {
         pass.read(knob);
@@ -233,7 +238,7 @@ TEST_CASE_FIXTURE(GraphFixture,
 }
 
 TEST_CASE_FIXTURE(GraphFixture,
-                  "graph run: history is what the last frame left, and invalid until there is some") {
+                  "graph run: a history holds what was written last, and is invalid before the first write") {
     std::vector<std::uint64_t> seen;
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle blank = texture("accumulated");
@@ -274,7 +279,7 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(seen == std::vector<std::uint64_t>{0, 1, 2, 0, 4});
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph run: what a pass throws leaves a runtime that goes on") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: the runtime still works after a pass has thrown") {
     bool fail = false;
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle a = draw("draw", {}, texture("a", Lifetime::persistent));
@@ -307,8 +312,9 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: what a pass throws leaves a runtime 
     CHECK(runtime.run(world).frame == 3);  // counts successful frames only
 }
 
-TEST_CASE_FIXTURE(GraphFixture,
-                  "graph run: the back end hears passes, their targets, and the barriers of passes skipped") {
+TEST_CASE_FIXTURE(
+    GraphFixture,
+    "graph run: the back end is told passes, their targets, and also barriers of skipped passes") {
     const auto knob = graph.import_value<int>("knob");
     const auto traced = graph.add("trace", [&](Pass& pass) {
         pass.read(knob);
@@ -340,7 +346,7 @@ TEST_CASE_FIXTURE(GraphFixture,
     CHECK(backend.log == std::vector<std::string>{"barrier storage", "begin show", "end"});
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph run: time is taken where asked for") {
+TEST_CASE_FIXTURE(GraphFixture, "graph run: CPU time is measured only if requested") {
     graph.add("work", [&](Pass& pass) {
         pass.side_effect();
         pass.run([](Execution&) {

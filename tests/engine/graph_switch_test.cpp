@@ -109,8 +109,7 @@ struct Fixture {
     }
 };
 
-TEST_CASE_FIXTURE(Fixture,
-                  "graph switch: another path finds the shadow maps done and the host's values set") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: another shading path keeps the shadow maps and the host's values") {
     start();
     const ObjectId map = runtime.object(handles.shadow_map);
     switch_to({.deferred = true});
@@ -122,7 +121,7 @@ TEST_CASE_FIXTURE(Fixture,
     CHECK(run() == "gather casters shadow-maps deferred tone-map");
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph switch: another parameter has its pass run, the same again does not") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: a pass runs if its parameter has changed, but not if it is equal") {
     start();
     switch_to({.bias = 2});
     CHECK(run() == "casters shadow-maps forward tone-map");  // the result of "casters" is transient
@@ -130,7 +129,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: another parameter has its pass run, th
     CHECK(run() == "forward tone-map");  // so is the result of "forward"
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph switch: another description is another resource") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: a resource with another description is a new resource") {
     start();
     switch_to({.map_size = 16});
     CHECK(backend.objects.at(runtime.object(handles.shadow_map)).texture_desc.size == glm::uvec2(16));
@@ -145,7 +144,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: changes of the world between two graph
 }
 
 TEST_CASE_FIXTURE(Fixture,
-                  "graph switch: an imported object must be bound anew, its old handle is of no use") {
+                  "graph switch: an imported object must be bound again, and not with its old handle") {
     start();
     const TextureHandle old_target = handles.target;
     Declared declared = declare({});
@@ -155,7 +154,7 @@ TEST_CASE_FIXTURE(Fixture,
                          GraphError);
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph switch: what does not compile leaves the running graph as it is") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: a graph that does not compile leaves the running graph unchanged") {
     start();
     const std::size_t objects = backend.objects.size();
     const CompileResult result = compile(declare({.deferred = true, .bad = true}).graph);
@@ -164,7 +163,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: what does not compile leaves the runni
     CHECK(backend.objects.size() == objects);
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph switch: a back end that fails leaves the running graph as it is") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: a back end that fails leaves the running graph unchanged") {
     start();
     const std::size_t objects = backend.objects.size();
     for (std::size_t creations = 0; creations < 3; ++creations) {
@@ -199,7 +198,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: switching back and forth creates nothi
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE_FIXTURE(Fixture, "graph switch: 200 sizes leave as many objects as one") {
+TEST_CASE_FIXTURE(Fixture, "graph switch: after 200 target sizes there are as many objects as after one") {
     start();
     runtime.trim();
     const std::size_t objects = backend.objects.size();
@@ -214,7 +213,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: 200 sizes leave as many objects as one
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE("graph switch: a runtime leaves nothing behind") {
+TEST_CASE("graph switch: a destroyed runtime leaves no objects") {
     RecordingBackend backend;
     {
         GraphRuntime runtime(backend);
@@ -226,7 +225,7 @@ TEST_CASE("graph switch: a runtime leaves nothing behind") {
     CHECK(backend.misuse.empty());
 }
 
-TEST_CASE("graph switch: history survives, and so does what it remembers") {
+TEST_CASE("graph switch: histories keep their objects and their content") {
     RecordingBackend backend;
     GraphRuntime runtime(backend);
     const World world;
@@ -252,7 +251,7 @@ TEST_CASE("graph switch: history survives, and so does what it remembers") {
     CHECK(backend.created == 2);
 }
 
-TEST_CASE("graph memory: what is shared, and what is pooled, is told") {
+TEST_CASE("graph memory: bytes saved by sharing and bytes in the free pool are reported") {
     RecordingBackend backend;
     GraphRuntime runtime(backend);
     const auto chain = [](std::size_t length) {

@@ -95,7 +95,8 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: a captured variable is an undecl
     CHECK(frame() == "show | light");
 }
 
-TEST_CASE_FIXTURE(VerifyFixture, "graph verify: a component read without saying so is an undeclared input") {
+TEST_CASE_FIXTURE(VerifyFixture,
+                  "graph verify: a component that is read without a declaration is an undeclared input") {
     const Entity entity = world.create();
     world.set(entity, Light{1});
     const auto power = graph.add("gather", [&](Pass& pass) {
@@ -136,8 +137,9 @@ TEST_CASE_FIXTURE(VerifyFixture,
         GraphError);
 }
 
-TEST_CASE_FIXTURE(VerifyFixture,
-                  "graph verify: each version of what is changed in place is compared by itself") {
+TEST_CASE_FIXTURE(
+    VerifyFixture,
+    "graph verify: each version of a resource that is modified in place is compared separately") {
     const auto knob = graph.import_value<int>("knob");
     std::uint64_t captured = 1;
     const TextureHandle first = fill("opaque", texture("lit"), [&](Execution&) { return captured; });
@@ -154,7 +156,8 @@ TEST_CASE_FIXTURE(VerifyFixture,
     CHECK(throws<GraphError>([&] { static_cast<void>(frame()); }, "pass 'opaque' has an undeclared input"));
 }
 
-TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what shares an object with others is compared all the same") {
+TEST_CASE_FIXTURE(VerifyFixture,
+                  "graph verify: resources that share an object with others are compared, too") {
     std::uint64_t captured = 1;
     const TextureHandle a = fill("draw a", texture("a"), [&](Execution&) { return captured; });
     const TextureHandle b = draw("draw b", {a}, texture("b"));
@@ -168,7 +171,8 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what shares an object with other
     CHECK(throws<GraphError>([&] { static_cast<void>(frame()); }, "pass 'draw a' has an undeclared input"));
 }
 
-TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what was captured shows across a switch of graphs") {
+TEST_CASE_FIXTURE(VerifyFixture,
+                  "graph verify: a captured variable is also found if it changes with a switch of graphs") {
     const auto declare = [&](std::uint64_t captured, const TextureDesc& other) {
         graph = FrameGraph();
         const TextureHandle kept =
@@ -190,7 +194,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what was captured shows across a
 }
 
 TEST_CASE_FIXTURE(VerifyFixture,
-                  "graph verify: reserved room stays, and values that do not compare are not compared") {
+                  "graph verify: reserved objects stay, and values without operator== are not compared") {
     struct Opaque {
         int number = 0;
     };
@@ -216,7 +220,8 @@ TEST_CASE_FIXTURE(VerifyFixture,
     CHECK(calls == 3);
 }
 
-TEST_CASE_FIXTURE(VerifyFixture, "graph verify: memories are left alone, and what they hold stays") {
+TEST_CASE_FIXTURE(VerifyFixture,
+                  "graph verify: passes that remember are not run again and keep their results") {
     const auto knob = graph.import_value<int>("knob");
     const TextureHandle blank = texture("sum");
     const TextureHandle previous = graph.history(blank);
@@ -255,7 +260,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: memories are left alone, and wha
     CHECK(runtime.value(count) == 3);
 }
 
-TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what passes with side effects have made is not overwritten") {
+TEST_CASE_FIXTURE(VerifyFixture, "graph verify: results of passes with side effects are not overwritten") {
     unsigned prints = 0;
     const TextureHandle first =
         fill("draw", texture("page", Lifetime::persistent), [](Execution&) { return 1U; });
@@ -274,7 +279,8 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: what passes with side effects ha
     CHECK(content(runtime.object(printed)) == 21);
 }
 
-TEST_CASE_FIXTURE(VerifyFixture, "graph verify: an import is not read after the graph has written it") {
+TEST_CASE_FIXTURE(VerifyFixture,
+                  "graph verify: a pass is not run again if the import that it has read was overwritten") {
     const TextureHandle target = texture("target", Lifetime::imported);
     const TextureHandle copied = draw("copy", {target}, texture("copied", Lifetime::persistent));
     target_ = draw("show", {copied}, target);
@@ -283,7 +289,7 @@ TEST_CASE_FIXTURE(VerifyFixture, "graph verify: an import is not read after the 
 }
 
 TEST_CASE_FIXTURE(VerifyFixture,
-                  "graph verify: passes that keep parts of their result are asked for the whole") {
+                  "graph verify: passes that usually update parts of their result must compute all of it") {
     const auto left = graph.import_value<int>("left");
     const auto right = graph.import_value<int>("right");
     std::string made;
@@ -336,7 +342,8 @@ TEST_CASE_FIXTURE(VerifyFixture,
                              "pass 'pair' has an undeclared input"));
 }
 
-TEST_CASE_FIXTURE(GraphFixture, "graph verify: off, it reads nothing back, and asks for being switched on") {
+TEST_CASE_FIXTURE(GraphFixture,
+                  "graph verify: when it is off, nothing is read back, and verify() is an error") {
     draw("draw", {}, texture("drawn"));
     graph.add("print", [&](Pass& pass) { pass.side_effect(); });
     switch_to();
@@ -347,7 +354,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph verify: off, it reads nothing back, and a
                          GraphError);
 }
 
-TEST_CASE("graph verify: random graphs give the same under verification, and none is found at error" *
+TEST_CASE("graph verify: correct random graphs pass, and verifying does not change their results" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false});
@@ -366,8 +373,7 @@ TEST_CASE("graph verify: random graphs give the same under verification, and non
     }));
 }
 
-TEST_CASE("graph verify: random graphs with memories are not found at error" *
-          doctest::test_suite("random")) {
+TEST_CASE("graph verify: correct random graphs with histories pass" * doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20});
         Host host{0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
@@ -434,7 +440,7 @@ bool is_named(const std::string& message, std::size_t pass) {
     return message.starts_with("pass '" + random_graph::pass_name(pass) + "' has an undeclared input");
 }
 
-TEST_CASE("graph verify: of two passes the one with an undeclared input is named") {
+TEST_CASE("graph verify: the error names the pass with the undeclared input, not its reader") {
     const random_graph::Access writes{.version = 1, .usage = Usage::storage, .write = true};
     const random_graph::Access reads{.version = 1, .usage = Usage::sampled};
     const Graph graph{.resources = {{.versions = 1}},
@@ -445,7 +451,7 @@ TEST_CASE("graph verify: of two passes the one with an undeclared input is named
     CHECK(message_about(graph, 1).empty());
 }
 
-TEST_CASE("graph verify: of random graphs the pass with an undeclared input is named" *
+TEST_CASE("graph verify: in random graphs the error names the pass with the undeclared input" *
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false});

@@ -94,7 +94,7 @@ TEST_SUITE("hierarchy") {
         CHECK(world_matrix(world, root) == local_matrix(turned));
     }
 
-    TEST_CASE("what has no Transform sits in the world as it is") {
+    TEST_CASE("an entity without a Transform has the identity as its world matrix") {
         World world;
         const Entity bare = world.create();
         CHECK(world_matrix(world, bare) == glm::mat4(1.0F));

@@ -46,7 +46,7 @@ std::vector<WorldTriangle> triangles_of(const World& world, Entity entity) {
 }  // namespace
 
 TEST_SUITE("glTF files") {
-    TEST_CASE("a buffer may be embedded, beside the file, or the .glb's own") {
+    TEST_CASE("a buffer may be a data URI, an external file or the .glb's binary chunk") {
         const TemporaryDirectory directory;
         GltfBuilder file = right_triangle();
         std::filesystem::path path = directory / "scene.gltf";
@@ -60,7 +60,7 @@ TEST_SUITE("glTF files") {
             file.document["buffers"].push_back(file.buffer("a%20buffer.bin"));
             write_file(path, to_bytes(file.document.dump()));
         }
-        SUBCASE(".glb, known by its first bytes alone") {
+        SUBCASE(".glb, recognised by its first bytes only") {
             path = directory / "scene.model";
             write_file(path, file.glb());
         }

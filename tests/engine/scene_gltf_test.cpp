@@ -50,7 +50,7 @@ std::vector<glm::vec2> texture_coordinates(const std::vector<T>& values, int com
 }  // namespace
 
 TEST_SUITE("glTF geometry") {
-    TEST_CASE("the least of files: a triangle") {
+    TEST_CASE("a minimal file: one triangle") {
         const Imported imported(right_triangle());
         CHECK(imported.positions() == right_corners);
         CHECK(imported.report.triangles == 1);
@@ -67,7 +67,7 @@ TEST_SUITE("glTF geometry") {
         }
     }
 
-    TEST_CASE("indices of every type say the same") {
+    TEST_CASE("indices of every type give the same triangles") {
         const Points expected{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
         GltfBuilder file = square();
         SUBCASE("unsigned bytes") {
@@ -91,7 +91,7 @@ TEST_SUITE("glTF geometry") {
 
     TEST_CASE("strips and fans are wound as the specification says") {
         GltfBuilder file = square();
-        SUBCASE("strip: every second triangle is turned round") {
+        SUBCASE("strip: every second triangle is flipped") {
             file.primitive()["mode"] = 5;
             CHECK(Imported(file).positions() ==
                   Points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -148,7 +148,7 @@ TEST_SUITE("glTF geometry") {
                                                               {{0, 1, 0}, {1, 0, 0}, {-2.0F, 7.0F}}});
     }
 
-    TEST_CASE("texture coordinates come as floats or as normalised integers") {
+    TEST_CASE("texture coordinates may be floats or normalised integers") {
         using Coordinates = std::vector<glm::vec2>;
         CHECK(texture_coordinates<float>({0, 1, 0.5F, 2, -1, 0}, 5126, false) ==
               Coordinates{{0, 1}, {0.5F, 2}, {-1, 0}});
@@ -173,7 +173,7 @@ TEST_SUITE("glTF geometry") {
         CHECK(Imported(file).positions() == Points{{0, 0, 5}, {0, 0, 0}, {0, 1, 5}});
     }
 
-    TEST_CASE("missing normals are the faces', so vertices are not shared") {
+    TEST_CASE("missing normals become the normals of the faces, so vertices are not shared") {
         GltfBuilder file;
         // Two faces of a roof that share a ridge along z.
         file.add_primitive({-1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 0})["indices"] = 1;
@@ -186,7 +186,7 @@ TEST_SUITE("glTF geometry") {
         }
     }
 
-    TEST_CASE("a normal of length zero becomes the face's") {
+    TEST_CASE("a normal of length zero becomes the normal of the face") {
         GltfBuilder file = right_triangle();
         file.primitive()["attributes"]["NORMAL"] = file.add_vectors({0, 0, 0, 1, 0, 0, 1e-30F, 0, 0});
         const std::vector<Vertex> corners = Imported(file).corners();
@@ -195,7 +195,7 @@ TEST_SUITE("glTF geometry") {
         CHECK(corners[2].normal == glm::vec3(1, 0, 0));  // short, but not zero
     }
 
-    TEST_CASE("triangles without area are dropped, however small or large the others") {
+    TEST_CASE("triangles without area are dropped, very small and very large ones are kept") {
         GltfBuilder file;
         file.add_primitive({0, 0, 0, 1,      0, 0, 2, 0,      0,  //
                             0, 0, 0, 1e-30F, 0, 0, 0, 1e-30F, 0,  //
@@ -241,7 +241,7 @@ TEST_SUITE("glTF scenes") {
         CHECK(glm::distance(origin, glm::vec3(10, 10, 7)) < 1e-5F);  // a few roundings of numbers near 10
     }
 
-    TEST_CASE("only the default scene is imported, the first where none is named") {
+    TEST_CASE("only the default scene is imported, or the first if there is no default") {
         GltfBuilder file = right_triangle();
         file.document["nodes"] = Json::parse(R"([{"name": "a"}, {"name": "b"}])");
         file.document["scenes"] = Json::parse(R"([{"nodes": [0]}, {"nodes": [1]}])");
@@ -265,7 +265,7 @@ TEST_SUITE("glTF scenes") {
         CHECK(imported.report.triangles == 4);
     }
 
-    TEST_CASE("what the world held before stays") {
+    TEST_CASE("the previous content of the world stays") {
         World world;
         const Entity before = world.create();
         world.set(before, Name{"before"});
@@ -328,7 +328,7 @@ TEST_SUITE("glTF scenes") {
               imported.report.entities[2]);  // a node without a name gets that of its camera
     }
 
-    TEST_CASE("extensions that are merely used are reported once each") {
+    TEST_CASE("unsupported extensions that are used but not required are reported once each") {
         GltfBuilder file = right_triangle();
         file.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_lights_punctual",
                                            "KHR_materials_unlit"};

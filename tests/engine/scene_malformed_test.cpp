@@ -40,12 +40,12 @@ void check(const std::vector<Defect>& defects) {
 }  // namespace
 
 TEST_SUITE("malformed glTF") {
-    TEST_CASE("the complete scene itself is sound") {
+    TEST_CASE("the complete scene itself is valid") {
         CHECK(error_of(complete_scene()) == "imported");
         CHECK(error_of(complete_scene().glb()) == "imported");
     }
 
-    TEST_CASE("references to what does not exist, negative ones included") {
+    TEST_CASE("references to missing elements, including negative ones") {
         check({
             {"/nodes/0/mesh", "1", "nodes[0].mesh is 1, but there are 1 meshes"},
             {"/nodes/0/mesh", "-1", "nodes[0].mesh is -1, but there are 1 meshes"},
@@ -210,7 +210,7 @@ TEST_SUITE("malformed glTF") {
         });
     }
 
-    TEST_CASE("hierarchies that are no trees") {
+    TEST_CASE("hierarchies that are not trees") {
         check({
             {"/nodes/1/children", "[2]", "node 2 has two parents, nodes 0 and 1"},
             {"/nodes/0/children", "[1, 1]", "node 1 has two parents, nodes 0 and 0"},
@@ -228,7 +228,7 @@ TEST_SUITE("malformed glTF") {
         CHECK(error_of(file) == "it has no scene");
     }
 
-    TEST_CASE("lights and cameras out of their limits") {
+    TEST_CASE("lights and cameras with values out of range") {
         check({
             {"/extensions/KHR_lights_punctual/lights/0/intensity", "-1",
              "extensions.KHR_lights_punctual.lights[0].intensity is -1, which is out of range"},
@@ -288,7 +288,7 @@ TEST_SUITE("malformed glTF") {
         });
     }
 
-    TEST_CASE("a picture that promises more pixels than its bytes can hold is not allocated") {
+    TEST_CASE("an image that declares more pixels than its bytes can hold is not allocated") {
         const Bytes png{0x89, 'P', 'N',  'G', 13,  10,   26,  10,  0, 0, 0, 13, 'I',
                         'H',  'D', 'R',  0,   0,   0x40, 0,                         //
                         0,    0,   0x40, 0,   8,   6,    0,   0,   0, 0, 0, 0,  0,  // and data of 0 bytes
@@ -333,7 +333,7 @@ TEST_SUITE("malformed glTF") {
         });
     }
 
-    TEST_CASE("what is no glTF at all") {
+    TEST_CASE("files that are not glTF") {
         CHECK(error_of(Bytes{}) == "the file is empty");
         CHECK(error_of(to_bytes("{")).starts_with("invalid JSON: parse error"));
         CHECK(error_of(to_bytes("gl")).starts_with("invalid JSON: parse error"));
@@ -351,7 +351,7 @@ TEST_SUITE("malformed glTF") {
         CHECK_THROWS_WITH_AS((void)import_gltf("/", world), "/: the file is not a file", SceneError);
     }
 
-    TEST_CASE("a .glb cut off anywhere, and with wrong headers") {
+    TEST_CASE("a .glb that is cut off at any byte, or has wrong headers") {
         const Bytes whole = complete_scene().glb();
         for (std::size_t size = 0; size < whole.size(); ++size) {
             CAPTURE(size);
@@ -375,7 +375,7 @@ TEST_SUITE("malformed glTF") {
         CHECK(with_u32(binary + 4, 0) == "the .glb lacks its BIN chunk");
     }
 
-    TEST_CASE("a file's own strings do not break the message's one line") {
+    TEST_CASE("strings from the file do not break the error message into several lines") {
         GltfBuilder file = complete_scene();
         file.document["extensionsRequired"] = {"EXT_\n\r\x7F" + std::string(10'000, 'x')};
         CHECK(error_of(file).starts_with("it requires the extension EXT_"));

@@ -126,12 +126,12 @@ TEST_SUITE("glTF materials") {
         }
     }
 
-    TEST_CASE("sixteen bits a channel become eight") {
+    TEST_CASE("16 bits per channel become 8") {
         const Imported imported(textured({{"uri", sixteen_bit_png}}));
         CHECK(texture_of(imported).texels == Texels{{0xFF, 0x80, 0x00, 0xFF}, {0x12, 0x00, 0xAB, 0xFF}});
     }
 
-    TEST_CASE("textures share an image where image and wrapping agree") {
+    TEST_CASE("textures share an image if their source and wrapping are equal") {
         GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
         file.document["samplers"] = Json::parse(R"([{"wrapS": 33071, "wrapT": 33648}, {}])");
         file.document["textures"] =
@@ -151,7 +151,7 @@ TEST_SUITE("glTF materials") {
         CHECK(image(1) == image(2));
     }
 
-    TEST_CASE("what is not supported is reported") {
+    TEST_CASE("unsupported features are reported") {
         GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
         SUBCASE("a second set of texture coordinates") {
             file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
@@ -159,7 +159,7 @@ TEST_SUITE("glTF materials") {
                   std::vector<std::string>{
                       "material 0: its texture uses coordinate set 1; only set 0 is read; ignored"});
         }
-        SUBCASE("a texture whose image is an extension's") {
+        SUBCASE("a texture whose image comes from an extension") {
             file.document["textures"][0].erase("source");
             CHECK(Imported(file).report.warnings ==
                   std::vector<std::string>{"material 0: its texture has no PNG or JPEG image; ignored"});

@@ -71,10 +71,10 @@ TEST_SUITE("random") {
     TEST_CASE("mutated glTF: the Cornell box") {
         check_edited(read(cornell), test_seed(1), 1500);
     }
-    TEST_CASE("mutated glTF: everything at once, as text") {
+    TEST_CASE("mutated glTF: a scene with all features, as text") {
         check_edited(complete_scene().gltf(), test_seed(2), 1500);
     }
-    TEST_CASE("mutated glTF: everything at once, as binary") {
+    TEST_CASE("mutated glTF: a scene with all features, as binary") {
         check_edited(complete_scene().glb(), test_seed(3), 3000);
     }
 }

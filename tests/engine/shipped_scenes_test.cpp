@@ -167,7 +167,7 @@ double mean_reaching(const Loaded& scene, const glm::vec3& corner, const glm::ve
 }  // namespace
 
 TEST_SUITE("shipped scenes") {
-    TEST_CASE("each holds what figures are quoted on") {
+    TEST_CASE("each has the expected numbers of triangles and lights, and bounds") {
         const std::vector<Facts> facts_of_all{
             {"cornell", 34, 1, 0, 0, {-1, 0, -1}, {1, 2, 1}},
             {"corner", 6, 0, 1, 0, {0, 0, 0}, {2, 2, 2}},
@@ -203,7 +203,7 @@ TEST_SUITE("shipped scenes") {
         }
     }
 
-    TEST_CASE("normals lie on the front of their triangles") {
+    TEST_CASE("normals point to the front of their triangles") {
         for (const fs::path& path : shipped_files()) {
             CAPTURE(path.filename().string());
             const Loaded scene(path);
@@ -238,14 +238,14 @@ TEST_SUITE("shipped scenes") {
         }
     }
 
-    TEST_CASE("the furnace is of one albedo, a half") {
+    TEST_CASE("the furnace has one albedo, 0.5") {
         const Loaded scene(shipped("furnace"));
         CHECK(count<MeshInstance>(scene) == 1);
         const MeshInstance& room = scene.world.get<MeshInstance>(scene.called("room").at(0));
         CHECK(room.mesh->primitives.at(0).material->base_colour == glm::vec4(0.5F, 0.5F, 0.5F, 1.0F));
     }
 
-    TEST_CASE("the spot of the corner shines into it from nearby") {
+    TEST_CASE("the spot light of the corner scene shines into the corner from nearby") {
         const Loaded scene(shipped("corner"));
         const glm::mat4 spot = world_matrix(scene.world, scene.called("spot").at(0));
         const glm::vec3 to_corner = -glm::vec3(spot[3]);
@@ -253,7 +253,7 @@ TEST_SUITE("shipped scenes") {
         CHECK(glm::dot(glm::normalize(to_corner), -glm::vec3(spot[2])) > 0.999F);
     }
 
-    TEST_CASE("light passes the door of the two rooms only while it is open") {
+    TEST_CASE("light passes through the door of two-rooms only while it is open") {
         Loaded scene(shipped("two-rooms"));
         const Entity door = scene.called("door").at(0);
         const glm::vec3 lamp = scene.position(scene.called("lamp").at(0));
@@ -277,7 +277,7 @@ TEST_SUITE("shipped scenes") {
         CHECK(lit_beyond() == 0);
     }
 
-    TEST_CASE("a few lights reach each point of the halls and of the slope") {
+    TEST_CASE("a few lights reach each point of the floors of the halls and the fins scene") {
         const TemporaryDirectory directory;
         generate(directory / "", "hall --lights 64");
         // The halls must agree, otherwise another number of lights would change more than the size. There is
@@ -297,7 +297,7 @@ TEST_SUITE("shipped scenes") {
         CHECK(reaching < 8.0);
     }
 
-    TEST_CASE("tiles of the fins span many depths") {
+    TEST_CASE("most tiles of the fins scene span a wide range of depths") {
         const Loaded scene(shipped("fins"));
         const Target target{all_triangles(scene)};
         const glm::ivec2 size(640, 480);
@@ -323,7 +323,7 @@ TEST_SUITE("shipped scenes") {
         CHECK(spread > tiles / 2);
     }
 
-    TEST_CASE("the glass scene has panes one behind the other, one double-sided, and a cut-out") {
+    TEST_CASE("the glass scene has panes behind each other, one of them double-sided, and a cut-out") {
         const Loaded scene(shipped("glass"));
         std::vector<std::vector<Triangle>> panes;
         int double_sided = 0;

@@ -73,7 +73,7 @@ TEST_CASE("world: an entity is alive from creation to destruction") {
     CHECK(world.size() == 1);
 }
 
-TEST_CASE("world: a slot's next tenant is another entity") {
+TEST_CASE("world: a slot that is used again holds another entity") {
     World world;
     const Entity old = world.create();
     world.set(old, Height{1});
@@ -85,7 +85,7 @@ TEST_CASE("world: a slot's next tenant is another entity") {
     CHECK_FALSE(world.has<Height>(tenant));
 }
 
-TEST_CASE("world: null and stale and made-up entities are refused by everything") {
+TEST_CASE("world: all functions refuse null, stale and made-up entities") {
     World world;
     const Entity stale = world.create();
     world.destroy(stale);
@@ -119,7 +119,7 @@ TEST_CASE("world: errors name the entity and the component") {
           "the null entity is not alive, so it has no Height");
 }
 
-TEST_CASE("world: a change is stamped on the component and on its pool only") {
+TEST_CASE("world: a change updates only the ticks of its component and its pool") {
     World world;
     const Entity a = world.create();
     const Entity b = world.create();
@@ -139,7 +139,7 @@ TEST_CASE("world: a change is stamped on the component and on its pool only") {
     CHECK(world.changed<Height>(b) == 0);
 }
 
-TEST_CASE("world: an equal value does not stamp but one that cannot be compared does") {
+TEST_CASE("world: setting an equal value is no change, unless its type cannot be compared") {
     World world;
     const Entity entity = world.create();
     world.set(entity, Height{1});
@@ -168,7 +168,7 @@ TEST_CASE("world: an edit that throws changes nothing") {
     CHECK(world.revision<Height>() == 1);
 }
 
-TEST_CASE("world: destruction stamps the pools that lose a component and no other") {
+TEST_CASE("world: destroying an entity updates only the revisions of the pools that lose a component") {
     World world;
     const Entity entity = world.create();
     const Entity other = world.create();
@@ -214,7 +214,7 @@ TEST_CASE("world: views give references to the components themselves") {
     }
 }
 
-TEST_CASE("world: a copy keeps entities and ticks and goes its own way") {
+TEST_CASE("world: a copy keeps entities and ticks, and is independent of the original") {
     World world;
     const Entity entity = world.create();
     world.set(entity, Label{"original"});
@@ -387,7 +387,8 @@ void step(const Edit& edit, World& world, Model& model) {
     }
 }
 
-TEST_CASE("world: random edits leave what a plain map holds" * doctest::test_suite("random")) {
+TEST_CASE("world: after random edits it has the same content as a plain map" *
+          doctest::test_suite("random")) {
     using Raw = std::tuple<std::uint8_t, std::uint8_t, std::uint8_t>;
     CHECK(rc::check("world equals model", [](const std::vector<Raw>& script) {
         World world;
