@@ -54,15 +54,15 @@ class BoundedWork : public PathFixture {
 }  // namespace
 
 TEST_SUITE("bounded work") {
-    TEST_CASE_FIXTURE(BoundedWork, "any number of VPLs is asked in whole") {
+    TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs, however many there are") {
         const Scene scene = patch_of_wall();
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
         configuration.vpls.placement = VplPlacement::paths;
-        SUBCASE("beyond the bound by themselves") {
+        SUBCASE("so many that they exceed the bound") {
             configuration.vpls.count = 100'000;
         }
-        SUBCASE("by rays, each of which walks through a tree") {
+        SUBCASE("with visibility rays, each of which traverses a tree") {
             configuration.visibility.method = VplVisibility::rays;
             configuration.vpls.count = 8192;
         }
@@ -82,14 +82,14 @@ TEST_SUITE("bounded work") {
         }
     }
 
-    TEST_CASE_FIXTURE(BoundedWork, "any number of lights is visited in whole, by every path") {
+    TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however many there are") {
         constexpr std::uint32_t lights = 70'000;
         constexpr std::uint32_t part = 7'000;
         float range = 0.0F;
-        SUBCASE("without a range, by every surface") {
+        SUBCASE("without a range, so that they light every surface") {
             range = std::numeric_limits<float>::infinity();
         }
-        SUBCASE("in lists that are as long") {
+        SUBCASE("with a range, in lists that are as long") {
             range = 16.0F;
         }
         std::vector<Picture> parts;
@@ -109,7 +109,8 @@ TEST_SUITE("bounded work") {
         }
     }
 
-    TEST_CASE_FIXTURE(BoundedWork, "blended surfaces are shaded at once, by as many lights as are possible") {
+    TEST_CASE_FIXTURE(BoundedWork,
+                      "with blended surfaces up to 16,384 lights are possible, and more are an error") {
         constexpr std::uint32_t most = 16'384;
         constexpr float range = std::numeric_limits<float>::infinity();
         const auto behind_a_pane = [&](Scene scene) {
@@ -135,8 +136,9 @@ TEST_SUITE("bounded work") {
                              gl::GlError);
     }
 
-    TEST_CASE_FIXTURE(BoundedWork,
-                      "paths lose no flux among triangles that nearly every ray has to be tested against") {
+    TEST_CASE_FIXTURE(
+        BoundedWork,
+        "paths lose no flux even if nearly every ray must be tested against nearly all triangles") {
         Scene scene = furnace_box(0.5F);
         add(scene.world, at({0, 0, 0}), MeshInstance{soup(3000, 1, 1.5F)});
         Configuration configuration = linear_configuration();

@@ -34,8 +34,7 @@ void move(World& world, Entity entity, glm::vec3 by) {
 }  // namespace
 
 TEST_SUITE("changes") {
-    TEST_CASE_FIXTURE(RenderFixture,
-                      "every change shows in the same frame, as in a renderer that starts with it") {
+    TEST_CASE_FIXTURE(RenderFixture, "every change is visible in the same frame, as in a new renderer") {
         Configuration unlimited = linear_configuration();
         configure(unlimited);
         Scene scene = cornell_box();
@@ -101,7 +100,7 @@ TEST_SUITE("changes") {
         }
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "the seed chooses other VPLs; the same seed the same ones") {
+    TEST_CASE_FIXTURE(RenderFixture, "another seed gives other VPLs, the same seed gives the same ones") {
         const Scene scene = cornell_box();
         Configuration configuration = linear_configuration();
         configure(configuration);
@@ -115,7 +114,7 @@ TEST_SUITE("changes") {
         CHECK(fresh_picture(scene, size) == first);
     }
 
-    TEST_CASE("VPLs keep their places while lights move and change a little") {
+    TEST_CASE("most VPL paths stay the same while lights move and change a little") {
         LightTable lights;
         for (std::uint32_t i = 0; i < 5; ++i) {
             lights.entries.push_back(

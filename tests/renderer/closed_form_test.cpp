@@ -75,7 +75,7 @@ TEST_SUITE("closed forms") {
         }
     }
 
-    TEST_CASE_FIXTURE(ClosedForm, "a point light's range") {
+    TEST_CASE_FIXTURE(ClosedForm, "a plane under a point light with a range") {
         Scene scene = ground();
         scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));
         scene.world.set(scene.light, PointLight{.intensity = 3.0F, .range = 1.5F});
@@ -120,7 +120,7 @@ TEST_SUITE("closed forms") {
         }
     }
 
-    TEST_CASE_FIXTURE(ClosedForm, "several lights add up, each in its colour") {
+    TEST_CASE_FIXTURE(ClosedForm, "lights of several colours add up") {
         Scene scene = ground();
         scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));
         scene.world.set(scene.light, PointLight{.colour = {1, 0, 0}, .intensity = 3.0F});
@@ -139,7 +139,7 @@ TEST_SUITE("closed forms") {
         CHECK(worst_error(render(scene, size), expected, 1e-6) < tolerance);
     }
 
-    TEST_CASE_FIXTURE(ClosedForm, "an orthographic camera") {
+    TEST_CASE_FIXTURE(ClosedForm, "a plane seen by an orthographic camera") {
         Scene scene = ground();
         scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
                                              .half_height = 1.0F,
@@ -192,7 +192,7 @@ TEST_SUITE("closed forms") {
         }
     }
 
-    TEST_CASE_FIXTURE(ClosedForm, "images are decoded from sRGB and lie as glTF says") {
+    TEST_CASE_FIXTURE(ClosedForm, "images are decoded from sRGB and oriented as glTF specifies") {
         // Blocks of 4 × 4 texels, so that filtering does not reach their middles.
         constexpr std::uint32_t texels = 16;
         constexpr float half = 2.0F;

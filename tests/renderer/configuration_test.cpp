@@ -39,7 +39,7 @@ Configuration unusual() {
 }  // namespace
 
 TEST_SUITE("configuration") {
-    TEST_CASE("what is written reads back as it was") {
+    TEST_CASE("a configuration that is written and read again is unchanged") {
         CHECK(read_configuration(write_configuration({})).configuration == Configuration{});
         CHECK(read_configuration(write_configuration(unusual())).configuration == unusual());
         for (const NamedConfiguration& named : named_configurations()) {
@@ -57,7 +57,7 @@ TEST_SUITE("configuration") {
         CHECK(read_configuration(R"({"vpls": {"count": 9}})", unusual()).configuration == wanted);
     }
 
-    TEST_CASE("every error is named by its place") {
+    TEST_CASE("every error names its member") {
         CHECK(errors_of("") == GraphErrors{"not valid JSON"});
         CHECK(errors_of("{\"path\": ") == GraphErrors{"not valid JSON"});
         CHECK(errors_of("[]") == GraphErrors{"not a JSON object"});
@@ -105,7 +105,7 @@ TEST_SUITE("configuration") {
         CHECK(several[4] == "extra: is unknown");
     }
 
-    TEST_CASE("values out of range are found, and so is what is not a number") {
+    TEST_CASE("values out of range and NaN are errors") {
         Configuration c;
         c.vpls.placement = VplPlacement::paths;
         c.vpls.count = (1U << 20U) + 1;
@@ -122,7 +122,7 @@ TEST_SUITE("configuration") {
         CHECK(errors[4].starts_with("tone_map.exposure_ev: "));
     }
 
-    TEST_CASE("of surfels fewer are possible than of VPLs on paths") {
+    TEST_CASE("the largest number of surfels is lower than that of VPLs on paths") {
         Configuration c;
         c.vpls = {.placement = VplPlacement::surfels, .count = 65536};
         CHECK(validate(c).empty());
@@ -133,7 +133,7 @@ TEST_SUITE("configuration") {
         CHECK(validate(c).empty());
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "a bad configuration leaves the present one running") {
+    TEST_CASE_FIXTURE(RenderFixture, "an invalid configuration leaves the current one in use") {
         const Scene scene = cornell_box();
         configure(linear_configuration(ShadingPath::forward));
         const Picture before = render(scene, {20, 15});
@@ -145,7 +145,7 @@ TEST_SUITE("configuration") {
         CHECK_FALSE(ran("forward"));
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "the described graph lists the passes of each path in their order") {
+    TEST_CASE_FIXTURE(RenderFixture, "the graph's description lists the passes of each path in their order") {
         const auto passes_of = [&](ShadingPath path, bool indirect) {
             Configuration configuration = linear_configuration(path);
             configuration.indirect = indirect;
@@ -176,8 +176,9 @@ TEST_SUITE("configuration") {
         CHECK(passes_of(ShadingPath::deferred, false) == scene + "gbuffer deferred transparent tone-map");
     }
 
-    TEST_CASE_FIXTURE(RenderFixture,
-                      "barriers stand before the readers of what shaders store, and nowhere else") {
+    TEST_CASE_FIXTURE(
+        RenderFixture,
+        "there are barriers only before passes that read or overwrite what shaders have stored") {
         const auto barriers_of = [&](ShadingPath path) {
             configure(linear_configuration(path));
             std::istringstream text(renderer.describe(GraphFormat::text));
@@ -200,7 +201,7 @@ TEST_SUITE("configuration") {
               "surfel-light: storage\nsurfel-bounce: storage\nforward: storage\n");
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "the graph is described for Graphviz and as JSON, too") {
+    TEST_CASE_FIXTURE(RenderFixture, "the graph's description is also available for Graphviz and as JSON") {
         CHECK(renderer.describe(GraphFormat::dot).starts_with("digraph"));
         CHECK(nlohmann::json::accept(renderer.describe(GraphFormat::json)));
     }

@@ -64,7 +64,7 @@ Shown show(ContextKind kind) {
 }  // namespace
 
 TEST_SUITE("contexts agree") {
-    TEST_CASE("EGL and OSMesa give the same pictures, bit for bit, where they are one driver") {
+    TEST_CASE("EGL and OSMesa give the same pictures, bit for bit, if they use the same driver") {
         if (!HeadlessContext::is_built(ContextKind::osmesa)) {
             MESSAGE("nothing to compare: this build is without OSMesa");
             return;

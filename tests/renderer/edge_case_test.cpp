@@ -73,20 +73,20 @@ class EdgeCases : public RenderFixture {
 }  // namespace
 
 TEST_SUITE("edge cases") {
-    TEST_CASE_FIXTURE(EdgeCases, "an empty world, then things come and go") {
+    TEST_CASE_FIXTURE(EdgeCases, "an empty world, also with lights only or surfaces only") {
         Scene scene;
         scene.camera = add(scene.world, Transform{}, Camera{});
         CHECK(is_black(render_both(scene)));
         CHECK(renderer.report().triangles == 0);
 
-        SUBCASE("lights of every kind and no surface") {
+        SUBCASE("lights of every kind, no surfaces") {
             add(scene.world, Transform{}, PointLight{});
             add(scene.world, Transform{}, SpotLight{});
             add(scene.world, Transform{}, DirectionalLight{});
             CHECK(is_black(render_both(scene)));
             CHECK(renderer.report().lights.count == 3);
         }
-        SUBCASE("surfaces and no light") {
+        SUBCASE("surfaces, no lights") {
             add(scene.world, Transform{}, MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
             CHECK(is_black(render_both(scene)));
             CHECK(renderer.report().lights.count == 0);
@@ -101,7 +101,7 @@ TEST_SUITE("edge cases") {
         }
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "no VPLs and no bounces are the direct light") {
+    TEST_CASE_FIXTURE(EdgeCases, "without VPLs or without bounces the picture is the direct light") {
         const Scene scene = cornell_box();
         Configuration configuration = linear_configuration();
         configuration.show = Show::direct;
@@ -132,7 +132,7 @@ TEST_SUITE("edge cases") {
     }
 
     TEST_CASE_FIXTURE(EdgeCases,
-                      "a light outside of a closed box leaves it dark, direct light and VPLs alike") {
+                      "a light outside a closed box leaves the inside dark, with direct light and VPLs") {
         Scene scene = furnace_box(0.5F);
         scene.world.set(scene.light, at({0.3F, 1.5F, 0.2F}));
         Configuration configuration = linear_configuration();
@@ -150,7 +150,7 @@ TEST_SUITE("edge cases") {
         CHECK(is_dark_inside(scene, render_both(scene, configuration)));
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "targets of one pixel and of one row") {
+    TEST_CASE_FIXTURE(EdgeCases, "targets of one pixel, one row and one column") {
         Scene scene = cornell_box();
         for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
             configure(linear_configuration(path));
@@ -169,7 +169,7 @@ TEST_SUITE("edge cases") {
         }
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "impossible targets are refused, and the next frame is as ever") {
+    TEST_CASE_FIXTURE(EdgeCases, "invalid targets are refused, and the next frame is correct") {
         const Scene scene = cornell_box();
         configure(linear_configuration());
         const Picture before = render(scene, size);
@@ -180,7 +180,7 @@ TEST_SUITE("edge cases") {
         CHECK(render(scene, size) == before);
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "lights that emit nothing are as good as none") {
+    TEST_CASE_FIXTURE(EdgeCases, "lights that emit nothing change nothing") {
         Scene scene = cornell_box();
         const Picture one = render_both(scene);
         add(scene.world, Transform{}, PointLight{.intensity = 0.0F});
@@ -198,7 +198,7 @@ TEST_SUITE("edge cases") {
         CHECK(render_both(scene) == with);
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "tiny and huge scenes look like any other") {
+    TEST_CASE_FIXTURE(EdgeCases, "tiny and huge scenes look the same as a scene of usual size") {
         const Picture usual = render_both(scaled_cornell_box(1.0F));
         for (const float factor : {0.01F, 1000.0F}) {
             CAPTURE(factor);
@@ -216,7 +216,7 @@ TEST_SUITE("edge cases") {
         }
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "brightness is linear up to huge intensities, and tone-maps to white") {
+    TEST_CASE_FIXTURE(EdgeCases, "brightness is linear up to huge intensities, which tone-map to white") {
         Scene scene = cornell_box();
         const Picture usual = render_both(scene);
         Picture lit = usual;
@@ -236,7 +236,8 @@ TEST_SUITE("edge cases") {
         }
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "a camera that is none is an EntityError, and the renderer goes on") {
+    TEST_CASE_FIXTURE(EdgeCases,
+                      "an entity that is not a camera is an EntityError, and the renderer still works") {
         Scene scene = cornell_box();
         configure(linear_configuration());
         const Picture before = render(scene, size);
@@ -250,7 +251,7 @@ TEST_SUITE("edge cases") {
         CHECK(renderer.take_frames(true).size() == 2);
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "a hierarchy that is none is a SceneError, and the renderer goes on") {
+    TEST_CASE_FIXTURE(EdgeCases, "a cycle in the hierarchy is a SceneError, and the renderer still works") {
         Scene scene = cornell_box();
         configure(linear_configuration());
         const Picture before = render(scene, size);
@@ -264,7 +265,7 @@ TEST_SUITE("edge cases") {
     }
 
     TEST_CASE_FIXTURE(EdgeCases,
-                      "the strongest lights get the shadows that fit the budget; the rest are counted") {
+                      "shadows are limited by the memory budget, and lights without one are counted") {
         Scene scene = cornell_box();
         add(scene.world, looking({0, 1.5F, 1}, {0, 0, 0}), SpotLight{.intensity = 0.5F});
         add(scene.world, looking({0, 1.5F, 1}, {0, 0, 0}),
@@ -291,7 +292,7 @@ TEST_SUITE("edge cases") {
         CHECK(renderer.report().lights.without_shadow == 0);
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "hundreds of lights: none is dropped") {
+    TEST_CASE_FIXTURE(EdgeCases, "hundreds of lights all contribute, even those without a shadow") {
         Scene scene = ground();
         scene.world.set(scene.light, at({0.4F, 1.0F, -0.2F}));
         scene.world.set(scene.light, PointLight{.intensity = 1.0F});

@@ -224,7 +224,7 @@ class EditTable : public RenderFixture {
 }  // namespace
 
 TEST_SUITE("edits") {
-    TEST_CASE_FIXTURE(EditTable, "after each edit those passes run that it concerns, by every path") {
+    TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run, on every path") {
         const Scene scene = scene_;
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
@@ -238,13 +238,13 @@ TEST_SUITE("edits") {
         CHECK(checked_.size() == rows_.size());
     }
 
-    TEST_CASE_FIXTURE(EditTable, "after each edit those passes of surfels run that it concerns") {
+    TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run, with surfels") {
         configuration_.vpls.placement = VplPlacement::surfels;
         check_all();
         CHECK(checked_.size() == rows_.size());
     }
 
-    TEST_CASE_FIXTURE(EditTable, "a target of another size and the same shape has lists of its own") {
+    TEST_CASE_FIXTURE(EditTable, "a target of twice the size gets its own light lists") {
         add_ranged_lights(scene_.world, 40, 0.8F);
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));

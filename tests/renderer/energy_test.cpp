@@ -56,7 +56,7 @@ Scene open_scene() {
 }  // namespace
 
 TEST_SUITE("energy") {
-    TEST_CASE_FIXTURE(Energy, "all that is emitted into a closed box is absorbed or truncated") {
+    TEST_CASE_FIXTURE(Energy, "all flux that is emitted into a closed box is absorbed or truncated") {
         for (const float albedo : {0.3F, 0.8F}) {
             for (const std::uint32_t bounces : {1U, 2U, 5U}) {
                 CAPTURE(albedo);
@@ -77,7 +77,7 @@ TEST_SUITE("energy") {
         }
     }
 
-    TEST_CASE_FIXTURE(Energy, "what leaves an open scene counts as escaped") {
+    TEST_CASE_FIXTURE(Energy, "flux that leaves an open scene counts as escaped") {
         // Half of a light's rays hit an infinite plane. A plane 8 m wide, 0.1 m away, gets all but 0.6 % of
         // that half.
         Scene scene = ground();
@@ -96,7 +96,7 @@ TEST_SUITE("energy") {
         CHECK(relative_error(flux.absorbed, 0.5 * met * flux.emitted) < 3e-3);
     }
 
-    TEST_CASE_FIXTURE(Energy, "a range holds light back") {
+    TEST_CASE_FIXTURE(Energy, "a light with a range does not light surfaces beyond it") {
         Scene scene = furnace_box(0.5F);
         scene.world.set(scene.light, at({0, 0, 0}));
         scene.world.set(scene.light, PointLight{.range = 0.9F});  // the walls are at least 1 m away
@@ -104,7 +104,7 @@ TEST_SUITE("energy") {
         CHECK(relative_error(flux.escaped, flux.emitted) < 1e-4);
     }
 
-    TEST_CASE_FIXTURE(Energy, "lights of every kind emit their flux") {
+    TEST_CASE_FIXTURE(Energy, "spot and directional lights emit their analytic flux") {
         Scene scene = furnace_box(0.5F);
         scene.world.remove<PointLight>(scene.light);
         SUBCASE("spot") {
@@ -124,7 +124,7 @@ TEST_SUITE("energy") {
         }
     }
 
-    TEST_CASE_FIXTURE(Energy, "uneven scenes lose nothing but to roulette, within its standard error") {
+    TEST_CASE_FIXTURE(Energy, "uneven scenes lose flux only to roulette, within its standard error") {
         for (const std::uint32_t seed : {0U, 1U, 2U}) {
             for (const std::uint32_t count : {64U, 1024U}) {
                 for (const bool many_lights : {false, true}) {
@@ -143,7 +143,7 @@ TEST_SUITE("energy") {
         }
     }
 
-    TEST_CASE_FIXTURE(Energy, "no more VPLs are placed than were asked for, and almost as many") {
+    TEST_CASE_FIXTURE(Energy, "at most the requested number of VPLs is placed, and more than half of it") {
         const Scene scene = cornell_box();
         for (const std::uint32_t count : {0U, 1U, 2U, 3U, 7U, 64U, 255U, 1000U}) {
             for (const std::uint32_t bounces : {0U, 1U, 2U, 64U}) {

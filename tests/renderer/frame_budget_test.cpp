@@ -55,7 +55,7 @@ class FrameBudgetTests : public PathFixture {
 }  // namespace
 
 TEST_SUITE("frame budget") {
-    TEST_CASE("a frame's cost is told apart by what it depends on") {
+    TEST_CASE("a frame's cost is split by what it depends on") {
         const FrameReport frame{.index = 0,
                                 .cpu_ms = 20.0,
                                 .gpu_ms = 30.0,
@@ -70,7 +70,7 @@ TEST_SUITE("frame budget") {
         CHECK(cost.rest == 9.0);
     }
 
-    TEST_CASE_FIXTURE(FrameBudgetTests, "the passes that it names are those of frames") {
+    TEST_CASE_FIXTURE(FrameBudgetTests, "the passes that the budget names exist in the graphs") {
         std::string graphs;
         Configuration configuration = few_vpls();
         configuration.refinement.enabled = true;
@@ -86,7 +86,7 @@ TEST_SUITE("frame budget") {
         }
     }
 
-    TEST_CASE("what a frame would take follows its pixels, and the VPLs that each asks") {
+    TEST_CASE("the predicted time scales with the pixels, and with the VPLs per pixel") {
         const FrameCost cost{.gather = 16.0, .pixels = 8.0, .rest = 5.0};
         CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 4}) == 29.0);
         CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 8}) == 5.0 + 8.0 + 4.0);
@@ -94,7 +94,7 @@ TEST_SUITE("frame budget") {
         CHECK(expected_ms(cost, {0.5F, 8}, {1.0F, 4}) == 5.0 + 32.0 + 256.0);
     }
 
-    TEST_CASE("the best quality is taken that keeps to the budget") {
+    TEST_CASE("the best quality that keeps to the budget is chosen") {
         const FrameCost cost{.gather = 160.0, .pixels = 80.0, .rest = 10.0};
         const Quality whole{1.0F, 1};
         CHECK(choose_quality(cost, whole, 1, 1000.0) == whole);
@@ -107,7 +107,7 @@ TEST_SUITE("frame budget") {
         CHECK(choose_quality(cost, {1.0F, 8}, 8, 150.0).scale < 1.0F);
     }
 
-    TEST_CASE("a better quality is not taken that would be left again at once") {
+    TEST_CASE("a better quality that would be left again at once is not chosen") {
         // Judging by the cost at half the sides, 65 % would fit, but with little margin.
         const FrameCost cost{.gather = 0.0, .pixels = 48.0, .rest = 0.0};
         CHECK(expected_ms(cost, {0.5F, 8}, {0.65F, 8}) == doctest::Approx(81.12));
@@ -118,14 +118,14 @@ TEST_SUITE("frame budget") {
         CHECK(choose_quality(there, {0.65F, 8}, 1, 100.0) == Quality{0.65F, 8});
     }
 
-    TEST_CASE("at least a pixel is rendered") {
+    TEST_CASE("at least one pixel is rendered") {
         CHECK(rendered_size({1280, 720}, {0.375F, 8}) == glm::uvec2(480, 270));
         CHECK(rendered_size({1, 2}, {0.25F, 8}) == glm::uvec2(1, 1));
         CHECK(rendered_size({511, 513}, {}) == glm::uvec2(511, 513));
     }
 
     TEST_CASE_FIXTURE(FrameBudgetTests,
-                      "while something moves frames keep to the budget, and at rest they are whole") {
+                      "frames have a lower quality while something moves, and full quality at rest") {
         start(1e-3F);
         const Picture coarse = moving();
         CHECK(renderer.report().rendered_size == size / 4U);
@@ -143,7 +143,7 @@ TEST_SUITE("frame budget") {
         CHECK(renderer.report().rendered_size == size / 4U);
     }
 
-    TEST_CASE_FIXTURE(FrameBudgetTests, "with time enough, or without a budget, every frame is whole") {
+    TEST_CASE_FIXTURE(FrameBudgetTests, "with a large budget, or without one, every frame has full quality") {
         for (const float budget : {1e6F, 0.0F}) {
             CAPTURE(budget);
             start(budget);
@@ -153,7 +153,7 @@ TEST_SUITE("frame budget") {
         }
     }
 
-    TEST_CASE_FIXTURE(FrameBudgetTests, "refinement goes on at rest, from the whole frame") {
+    TEST_CASE_FIXTURE(FrameBudgetTests, "refinement continues at rest, at full quality") {
         start(1e-3F);
         Configuration configuration = renderer.configuration();
         configuration.refinement = {.enabled = true, .frames = 4};

@@ -87,8 +87,7 @@ TEST_SUITE("furnace") {
         }
     }
 
-    TEST_CASE_FIXTURE(Furnace,
-                      "what arrives at the walls of a closed box is emitted light times 1 / (1 - albedo)") {
+    TEST_CASE_FIXTURE(Furnace, "the walls of a closed box receive the emitted flux times 1 / (1 - albedo)") {
         for (const double albedo : {0.5, 0.8}) {
             CAPTURE(albedo);
             Scene scene = furnace_box(static_cast<float>(albedo));

@@ -62,7 +62,7 @@ void check_that_places_keep_apart(const std::vector<ContextKind>& kinds) {
 }  // namespace
 
 TEST_SUITE("gl context") {
-    TEST_CASE("a context says what it is") {
+    TEST_CASE("a context describes its kind") {
         const auto context = HeadlessContext::create(tested_context());
         const std::string start = tested_context() == ContextKind::egl ? "EGL " : "OSMesa";
         CHECK(context->description().starts_with(start));
@@ -77,11 +77,11 @@ TEST_SUITE("gl context") {
         CHECK(profile == GL_CONTEXT_CORE_PROFILE_BIT);
     }
 
-    TEST_CASE("two contexts of one kind keep apart") {
+    TEST_CASE("two contexts of one kind do not affect each other") {
         check_that_places_keep_apart({tested_context(), tested_context()});
     }
 
-    TEST_CASE("EGL and OSMesa keep apart in one process") {
+    TEST_CASE("EGL and OSMesa contexts in one process do not affect each other") {
         if (!HeadlessContext::is_built(ContextKind::osmesa)) {
             MESSAGE("nothing to keep apart: this build is without OSMesa");
             return;
@@ -91,7 +91,7 @@ TEST_SUITE("gl context") {
             {ContextKind::egl, ContextKind::osmesa, ContextKind::egl, ContextKind::osmesa, ContextKind::egl});
     }
 
-    TEST_CASE("a destroyed context leaves no other disturbed") {
+    TEST_CASE("destroying a context does not affect the others") {
         Place stays(tested_context(), 7);
         for (const ContextKind kind : {ContextKind::egl, ContextKind::osmesa}) {
             if (!HeadlessContext::is_built(kind)) continue;
@@ -103,7 +103,7 @@ TEST_SUITE("gl context") {
         CHECK(stays.device->take_messages().empty());
     }
 
-    TEST_CASE("a library or function that is missing is named") {
+    TEST_CASE("errors name a missing library or function") {
         CHECK(throws<ContextError>(
             [&] {
                 static_cast<void>(Library({"libnowhere.so.1", "libneither.so.2"}));

@@ -73,7 +73,7 @@ void* debug_user(const gl::Functions& gl) {
 }  // namespace
 
 TEST_SUITE("gl device") {
-    TEST_CASE_FIXTURE(GlFixture, "a device knows its driver") {
+    TEST_CASE_FIXTURE(GlFixture, "a device reports its driver, limits and extensions") {
         CHECK_FALSE(device.renderer().empty());
         CHECK_FALSE(device.version().empty());
         // The minimum values of the OpenGL 4.5 core specification, tables 23.53 and following.
@@ -89,7 +89,7 @@ TEST_SUITE("gl device") {
         CHECK(device.live() == gl::ObjectCounts{});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a missing function is named") {
+    TEST_CASE_FIXTURE(GlFixture, "the error names a missing function") {
         const auto lacking = [proc = context->get_proc()](const char* name) {
             return std::strcmp(name, "glDispatchCompute") == 0 ? nullptr : proc(name);
         };
@@ -97,7 +97,7 @@ TEST_SUITE("gl device") {
         CHECK_THROWS_AS(static_cast<void>(gl::load_functions(lacking)), gl::GlError);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a limit that is too low is named") {
+    TEST_CASE_FIXTURE(GlFixture, "the error names a limit that is too low") {
         CHECK_NOTHROW(require_limits(device.limits()));
         gl::Limits limits = device.limits();
         limits.storage_blocks = 8;
@@ -109,14 +109,14 @@ TEST_SUITE("gl device") {
                              gl::GlError);
     }
 
-    TEST_CASE("a driver that is too old, or no context, is refused by name") {
+    TEST_CASE("errors say that the driver is too old, or that no context is current") {
         CHECK(message_of(old_proc) == "OpenGL 4.5 is needed; Old Faithful offers 3.3 Geyser");
         CHECK(message_of(proc_without_context) == "no OpenGL context is current");
         CHECK(message_of([](const char*) -> Proc { return nullptr; }) ==
               "the host's function look-up knows no glGetString or glGetIntegerv");
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "the debug log holds errors until they are taken") {
+    TEST_CASE_FIXTURE(GlFixture, "the debug log keeps errors until they are taken") {
         provoke_error(device);
         provoke_error(device);
         const auto messages = device.take_messages();
@@ -128,7 +128,7 @@ TEST_SUITE("gl device") {
         CHECK(device.take_messages().empty());
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "what is said in passing is no error, and notifications are not kept") {
+    TEST_CASE_FIXTURE(GlFixture, "performance messages are no errors, and notifications are not kept") {
         const auto say = [&](GLenum type, GLuint id, GLenum severity) {
             device.gl().DebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, type, id, severity, -1, "word");
         };
@@ -144,7 +144,7 @@ TEST_SUITE("gl device") {
         CHECK(messages[2].text == "word");
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "the host's own listener hears everything and is put back") {
+    TEST_CASE_FIXTURE(GlFixture, "the host's own debug callback gets all messages and is restored") {
         HostLog host;
         device.gl().DebugMessageCallback(&HostLog::receive, &host);
         device.gl().Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
@@ -163,7 +163,7 @@ TEST_SUITE("gl device") {
         device.gl().DebugMessageCallback(nullptr, nullptr);
     }
 
-    TEST_CASE("devices of one context may end in any order") {
+    TEST_CASE("devices of one context may be destroyed in any order") {
         const auto context = make_current_context();
         const gl::Functions gl = gl::load_functions(context->get_proc());
         HostLog host;

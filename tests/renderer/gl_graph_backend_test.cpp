@@ -28,7 +28,7 @@ void clear_pass(const Device& device, GraphBackend& backend, const PassTargets& 
 }  // namespace
 
 TEST_SUITE("gl graph backend") {
-    TEST_CASE_FIXTURE(GlFixture, "resources get objects of their description, and give them back") {
+    TEST_CASE_FIXTURE(GlFixture, "objects are created as described and released") {
         GraphBackend backend(device);
         const ObjectCounts before = device.live();
         const ObjectId texture =
@@ -44,7 +44,7 @@ TEST_SUITE("gl graph backend") {
         CHECK(device.live() == before);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "objects are bound where shaders find them") {
+    TEST_CASE_FIXTURE(GlFixture, "objects are bound at their binding points") {
         GraphBackend backend(device);
         const TextureDesc colour{.size = {8, 4}, .format = Format::rgba16f};
         const TextureDesc depth{.size = {8, 4}, .format = Format::depth32f};
@@ -113,7 +113,7 @@ TEST_SUITE("gl graph backend") {
         CHECK(backend.texture(depth).read_floats() == std::vector<float>(8, 0.5F));
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "parts of a texture share its storage, and may outlive it") {
+    TEST_CASE_FIXTURE(GlFixture, "views of parts of a texture share its storage, and may outlive it") {
         GraphBackend backend(device);
         const ObjectCounts before = device.live();
         const ObjectId chain =
@@ -138,7 +138,7 @@ TEST_SUITE("gl graph backend") {
         CHECK(device.live() == before);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "framebuffers are made once, and go with their attachments") {
+    TEST_CASE_FIXTURE(GlFixture, "framebuffers are created once, and destroyed with their attachments") {
         GraphBackend backend(device);
         const TextureDesc desc{.size = {4, 4}, .format = Format::r32f};
         std::array target = {backend.create_texture("target", desc)};
@@ -156,7 +156,7 @@ TEST_SUITE("gl graph backend") {
         CHECK(backend.texture(target[0]).read_floats() == std::vector<float>(16, 2.0F));
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a digest tells every layer, level and byte of an object") {
+    TEST_CASE_FIXTURE(GlFixture, "a digest depends on every layer, level and byte of an object") {
         GraphBackend backend(device);
         const auto fill = [&](ObjectId texture, std::uint32_t level, std::uint32_t layer, float value) {
             Framebuffer target(device, "layer");
@@ -202,7 +202,7 @@ TEST_SUITE("gl graph backend") {
         CHECK(digest() == before);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "after blending with a second source a pass may have several targets") {
+    TEST_CASE_FIXTURE(GlFixture, "a pass resets dual-source blending, so that it may have several targets") {
         GraphBackend backend(device);
         const std::array colours = {backend.create_texture("a", {.size = {4, 2}, .format = Format::r32f}),
                                     backend.create_texture("b", {.size = {4, 2}, .format = Format::r32f})};
@@ -234,7 +234,7 @@ TEST_SUITE("gl graph backend") {
         CHECK(times[0].passes[0].pass == 5);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "barriers are the GL's, bit for bit") {
+    TEST_CASE_FIXTURE(GlFixture, "each barrier has the bits that GL defines") {
         CHECK(barrier_bits(Barrier::none) == 0);
         CHECK(barrier_bits(Barrier::storage | Barrier::command) ==
               (GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT));

@@ -31,7 +31,7 @@ std::vector<std::byte> ramp(std::size_t count) {
 }  // namespace
 
 TEST_SUITE("gl objects") {
-    TEST_CASE_FIXTURE(GlFixture, "every kind of object is counted while it lives, and labelled") {
+    TEST_CASE_FIXTURE(GlFixture, "every kind of object is counted while it exists, and labelled") {
         const auto check = [&](const Object& object, ObjectKind kind, GLenum space) {
             CHECK(alive(device, kind) == 1);
             std::array<char, 64> label{};
@@ -47,7 +47,7 @@ TEST_SUITE("gl objects") {
         CHECK(device.live() == ObjectCounts{});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "an object is owned by one at a time") {
+    TEST_CASE_FIXTURE(GlFixture, "moving an object transfers its ownership") {
         Buffer first(device, "first", 16);
         const GLuint name = first.name();
         Buffer second = std::move(first);
@@ -71,12 +71,12 @@ TEST_SUITE("gl objects") {
         CHECK(device.live() == ObjectCounts{});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a label longer than the driver takes is cut") {
+    TEST_CASE_FIXTURE(GlFixture, "a label that is too long for the driver is cut off") {
         const Buffer buffer(device, std::string(1000, 'x'), 4);
         CHECK(buffer);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a buffer gives back what was uploaded") {
+    TEST_CASE_FIXTURE(GlFixture, "a buffer returns what was uploaded") {
         Buffer buffer(device, "numbers", std::vector<std::uint32_t>{1, 2, 3, 4});
         buffer.upload(std::uint32_t{30}, 8);
         buffer.upload(std::array<std::uint32_t, 1>{40}, 12);
@@ -93,7 +93,7 @@ TEST_SUITE("gl objects") {
         CHECK(buffer.download<float>().empty());
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a buffer that no memory holds is refused, and nothing is left of it") {
+    TEST_CASE_FIXTURE(GlFixture, "a buffer that is too large is refused, and no object is left") {
         CHECK(throws<GlError>([&] { static_cast<void>(Buffer(device, "huge", ~std::uint64_t{0})); },
                               "buffer \"huge\""));
         CHECK(throws<GlError>([&] { static_cast<void>(Buffer(device, "huge", std::uint64_t{1} << 50U)); },
@@ -102,7 +102,7 @@ TEST_SUITE("gl objects") {
         CHECK(device.live() == ObjectCounts{});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "textures of every format give back what was uploaded") {
+    TEST_CASE_FIXTURE(GlFixture, "textures of every format return what was uploaded") {
         for (const Format format :
              {Format::rgba8, Format::srgb8_alpha8, Format::rgba16f, Format::rgba32f, Format::rg32f,
               Format::r32f, Format::rg16f, Format::r16f, Format::r32ui}) {
@@ -118,7 +118,7 @@ TEST_SUITE("gl objects") {
         CHECK(depth.read_floats() == std::vector{0.25F, 1.0F});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "the format that the driver made is the one that was asked for") {
+    TEST_CASE_FIXTURE(GlFixture, "a texture has the requested format, size and number of bytes") {
         const Texture texture(device, "texture", {.size = {8, 4}, .format = Format::rg16f, .mips = 4});
         const auto parameter = [&](GLint level, GLenum name) {
             GLint value = 0;
@@ -134,7 +134,7 @@ TEST_SUITE("gl objects") {
         CHECK(device.live().texture_bytes == texture.bytes());
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "layers and faces are addressed one by one") {
+    TEST_CASE_FIXTURE(GlFixture, "layers and faces are addressed separately") {
         for (const TextureShape shape : {TextureShape::array, TextureShape::cube_array}) {
             Texture texture(device, "layers",
                             {.size = {2, 2}, .format = Format::r32f, .shape = shape, .layers = 12});
@@ -159,7 +159,8 @@ TEST_SUITE("gl objects") {
         CHECK(texture.read_floats(2) == std::vector{7.5F});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "the host's pixel transfers neither disturb ours nor are disturbed") {
+    TEST_CASE_FIXTURE(GlFixture,
+                      "uploads and reads ignore the host's pixel transfer state and leave it unchanged") {
         const Buffer foreign(device, "host's pixels", 1024);
         device.gl().PixelStorei(GL_UNPACK_ROW_LENGTH, 7);
         device.gl().PixelStorei(GL_PACK_SKIP_ROWS, 2);
@@ -182,7 +183,7 @@ TEST_SUITE("gl objects") {
         CHECK(value(GL_PIXEL_PACK_BUFFER_BINDING) == static_cast<GLint>(foreign.name()));
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "textures that cannot be are refused by name, and nothing is left of them") {
+    TEST_CASE_FIXTURE(GlFixture, "invalid textures are refused by name, and no object is left") {
         const std::uint32_t side = device.limits().texture_size;
         const std::uint32_t layers = device.limits().texture_layers;
         const auto refuse = [&](const TextureDesc& desc, const char* why) {
@@ -202,14 +203,14 @@ TEST_SUITE("gl objects") {
         CHECK(device.live() == ObjectCounts{});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "uploads and reads past a texture are refused") {
+    TEST_CASE_FIXTURE(GlFixture, "uploads and reads outside of a texture are refused") {
         Texture texture(device, "texture", {.size = {2, 2}});
         CHECK_THROWS_AS(texture.upload(ramp(15)), GlError);
         CHECK_THROWS_AS(texture.upload(ramp(16), 1), GlError);
         CHECK_THROWS_AS(static_cast<void>(texture.read(0, 1)), GlError);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a framebuffer is complete or says why not") {
+    TEST_CASE_FIXTURE(GlFixture, "a framebuffer is complete or reports why not") {
         const Texture colour(device, "colour", {.size = {4, 4}, .format = Format::rgba16f});
         const Texture faces(
             device, "faces",

@@ -50,7 +50,7 @@ TEST_SUITE("gl shader source") {
               "#version 450 core\n#define TILE 16\n#define FAST 1\n#line 1 0\nvoid main() {}\n");
     }
 
-    TEST_CASE("includes take their place, each file once, with the lines of the files") {
+    TEST_CASE("each included file is inserted once, and lines keep their numbers") {
         const std::vector<EmbeddedShader> files = {
             {"a.frag", "first\n#include \"b.glsl\"\n  #  include \"c.glsl\"\r\nlast\n"},
             {"b.glsl", "b1\n#include \"c.glsl\"\nb3\n"},
@@ -68,12 +68,12 @@ TEST_SUITE("gl shader source") {
         CHECK(source.files == std::vector<std::string>{"a.frag", "b.glsl", "c.glsl"});
     }
 
-    TEST_CASE("what only looks like an include is left alone") {
+    TEST_CASE("text that only looks like an include is not changed") {
         const std::string_view text = "// #include \"b.glsl\"\n#include_next\n";
         CHECK(text_of({{"a.frag", text}}, "a.frag") == "#version 450 core\n#line 1 0\n" + std::string(text));
     }
 
-    TEST_CASE("bad includes are named with file and line") {
+    TEST_CASE("errors name invalid includes by file and line") {
         CHECK(error_of({}, "a.frag") == "shaders/a.frag: there is no such shader file");
         CHECK(error_of({{"a.frag", "\n#include \"b.glsl\"\n"}, {"b.glsl", "\n\n#include \"c.glsl\"\n"}},
                        "a.frag") == "shaders/b.glsl:3: there is no shader file \"c.glsl\" to include");
@@ -86,7 +86,7 @@ TEST_SUITE("gl shader source") {
               "shaders/c.glsl:1: \"b.glsl\" includes itself: a.frag -> b.glsl -> c.glsl -> b.glsl");
     }
 
-    TEST_CASE("drivers' messages name the files") {
+    TEST_CASE("in messages of drivers, file numbers are replaced by names") {
         const std::vector<std::string> files = {"a.frag", "shading/lighting.glsl"};
         CHECK(map_log("1:42(10): error: no such thing\n", files) ==
               "shaders/shading/lighting.glsl:42: error: no such thing\n");
@@ -96,7 +96,7 @@ TEST_SUITE("gl shader source") {
         CHECK(map_log("2:1(1): of no file\nsome words\n", files) == "2:1(1): of no file\nsome words\n");
     }
 
-    TEST_CASE("a directory is a library, read anew at each load") {
+    TEST_CASE("a directory can be a shader library, and is read again at each load") {
         const auto directory = std::filesystem::temp_directory_path() / "candela-shader-library-test";
         std::filesystem::create_directories(directory);
         const ShaderLibrary library(directory);
@@ -125,7 +125,7 @@ TEST_SUITE("gl program") {
         CHECK(error.find("nothing") != std::string::npos);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "the line is right behind an include, too") {
+    TEST_CASE_FIXTURE(GlFixture, "the line of an error after an include is correct, too") {
         const std::vector<EmbeddedShader> files = {
             {"a.comp", "layout(local_size_x = 1) in;\n#include \"b.glsl\"\n\nvoid main() { nothing(); }\n"},
             {"b.glsl", "const int b = 1;\n\n\n\n"},
@@ -133,7 +133,7 @@ TEST_SUITE("gl program") {
         CHECK(error_of(device, files, {"a.comp"}).find("\nshaders/a.comp:4: ") != std::string::npos);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "stages that do not fit, or are none, are refused by name") {
+    TEST_CASE_FIXTURE(GlFixture, "stages that do not link, or are unknown, are refused by name") {
         const std::vector<EmbeddedShader> files = {
             {"a.vert", "out vec3 x;\nvoid main() { x = vec3(1); gl_Position = vec4(0); }\n"},
             {"a.frag", "in vec4 x;\nout vec4 c;\nvoid main() { c = x; }\n"},
@@ -144,7 +144,7 @@ TEST_SUITE("gl program") {
         CHECK(device.live() == ObjectCounts{});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "defines choose a variant, and every kind of uniform arrives") {
+    TEST_CASE_FIXTURE(GlFixture, "defines choose a variant, and uniforms of every type can be set") {
         const std::vector<EmbeddedShader> files = {{"sum.comp", R"(
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) buffer Results { float results[]; };
@@ -198,7 +198,7 @@ void main() {
               std::vector<float>{1, -2, 3, 4, 5, 6, 7, -8, -9, 10, 11, 12, 13, 14, 15, 16, 17, 18});
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "vertices reach the picture") {
+    TEST_CASE_FIXTURE(GlFixture, "a triangle with float and integer vertex attributes is drawn") {
         const std::vector<EmbeddedShader> files = {
             {"flat.vert",
              "layout(location = 0) in vec2 position;\nlayout(location = 1) in uint red;\nflat out uint "

@@ -30,7 +30,7 @@ void time_frames(Device& device, Timer& timer, std::uint64_t first, std::uint64_
 }  // namespace
 
 TEST_SUITE("gl timer") {
-    TEST_CASE_FIXTURE(GlFixture, "every frame arrives once, in order, with its passes") {
+    TEST_CASE_FIXTURE(GlFixture, "the times of every frame are returned once, in order, with its passes") {
         Timer timer(device);
         CHECK(timer.collect().empty());
         std::vector<FrameTime> times;
@@ -56,7 +56,7 @@ TEST_SUITE("gl timer") {
         }
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "nothing is asked of a query that has no result yet") {
+    TEST_CASE_FIXTURE(GlFixture, "collecting times never waits for a query without a result") {
         // A driver whose results never arrive, and which would wait forever if it were asked for one.
         static bool asked;
         asked = false;
@@ -76,7 +76,7 @@ TEST_SUITE("gl timer") {
         CHECK_FALSE(asked);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "queries are used again") {
+    TEST_CASE_FIXTURE(GlFixture, "queries are reused") {
         Timer timer(device);
         time_frames(device, timer, 0, 3);
         CHECK(timer.finish().size() == 3);
@@ -87,7 +87,7 @@ TEST_SUITE("gl timer") {
         CHECK(device.live()[ObjectKind::query] == queries);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "passes outside of a frame are not timed") {
+    TEST_CASE_FIXTURE(GlFixture, "passes outside a frame are not timed") {
         Timer timer(device);
         timer.begin_pass(1);
         timer.end_pass();
@@ -95,7 +95,7 @@ TEST_SUITE("gl timer") {
         CHECK(device.live()[ObjectKind::query] == 0);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "a frame that never ended is dropped") {
+    TEST_CASE_FIXTURE(GlFixture, "a frame that was not ended is dropped") {
         Timer timer(device);
         timer.begin_frame(0);
         timer.begin_pass(1);

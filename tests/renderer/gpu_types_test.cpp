@@ -187,7 +187,7 @@ gl::Program compile_with_shipped(gl::Device& device, const std::string& compute_
 }  // namespace
 
 TEST_SUITE("gpu types") {
-    TEST_CASE_FIXTURE(GlFixture, "every struct lies in buffers as the driver says") {
+    TEST_CASE_FIXTURE(GlFixture, "every struct has the layout in storage buffers that the driver reports") {
         for (const Layout& layout : layouts()) {
             CAPTURE(layout.name);
             const gl::Program program = compile_with_shipped(device, copying_shader(layout.name));
@@ -210,7 +210,7 @@ TEST_SUITE("gpu types") {
         }
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "structs of uniform blocks lie there as they do in buffers") {
+    TEST_CASE_FIXTURE(GlFixture, "structs in uniform blocks have the same layout as in storage buffers") {
         std::size_t blocks = 0;
         for (const Layout& layout : layouts()) {
             if (!layout.name.ends_with("Constants")) continue;
@@ -227,7 +227,7 @@ TEST_SUITE("gpu types") {
         CHECK(blocks == 4);
     }
 
-    TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is among those compared") {
+    TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is compared") {
         const std::string types = gl::ShaderLibrary(gl::embedded_shaders()).load("types.glsl");
         std::size_t structs = 0;
         for (std::size_t at = types.find("\nstruct "); at != std::string::npos;

@@ -163,7 +163,7 @@ Configuration small_configuration(ShadingPath path) {
 }  // namespace
 
 TEST_SUITE("host state") {
-    TEST_CASE("whatever state a host is in, the picture is the same, and so is its state after") {
+    TEST_CASE("the host's GL state neither changes the picture nor is changed") {
         const Scene scene = textured_scene();
         std::map<ShadingPath, Picture> usual;
         for (const Oddity& oddity : oddities()) {

@@ -49,7 +49,8 @@ Configuration numbered_configuration(std::uint32_t i) {
 }  // namespace
 
 TEST_SUITE("lifetime") {
-    TEST_CASE_FIXTURE(RenderFixture, "a thousand configurations and two hundred sizes leave nothing behind") {
+    TEST_CASE_FIXTURE(RenderFixture,
+                      "1000 configurations and 200 target sizes leak neither objects nor memory") {
         const Scene scene = cornell_box();
         const RenderTarget target(device, size);
         // Waits for each frame, because the number of time queries in use depends on the number of frames in
@@ -86,7 +87,7 @@ TEST_SUITE("lifetime") {
         if (!is_sanitized) CHECK(resident_bytes() < memory_before + (8U << 20U));
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "meshes, images and lights that go free what they took") {
+    TEST_CASE_FIXTURE(RenderFixture, "removing a mesh frees its texture, and nothing leaks") {
         Scene scene = cornell_box();
         Configuration unlimited = linear_configuration();
         configure(unlimited);
@@ -113,7 +114,7 @@ TEST_SUITE("lifetime") {
     }
 
     TEST_CASE_FIXTURE(RenderFixture,
-                      "two renderers share a context and a target without a trace of each other") {
+                      "two renderers share a context and a target without affecting each other") {
         configure(linear_configuration());
         TestedRenderer other(context->get_proc());
         REQUIRE(other.configure(linear_configuration(ShadingPath::forward)).empty());
@@ -132,7 +133,7 @@ TEST_SUITE("lifetime") {
         }
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "renderers in two contexts take turns") {
+    TEST_CASE_FIXTURE(RenderFixture, "renderers in two contexts can be used in turns") {
         const Scene scene = cornell_box();
         configure(linear_configuration());
         const Picture alone = render(scene, size);

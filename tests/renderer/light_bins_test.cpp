@@ -128,7 +128,7 @@ CellGrid random_grid(Random& random) {
 }  // namespace
 
 TEST_SUITE("light bins") {
-    TEST_CASE("no light is missing from a cell in which it reaches anything") {
+    TEST_CASE("every cell lists all lights that reach into it") {
         Random random(1);
         std::uint64_t seen = 0, listed = 0, possible = 0;
         for (int round = 0; round < 200; ++round) {
@@ -157,7 +157,7 @@ TEST_SUITE("light bins") {
         CHECK(listed * 4 < possible);
     }
 
-    TEST_CASE("lists ascend, and a light is in them or global but never both") {
+    TEST_CASE("lists are sorted, and each light is either in lists or global, never both") {
         Random random(2);
         for (int round = 0; round < 50; ++round) {
             const CellGrid grid = random_grid(random);
@@ -189,7 +189,7 @@ TEST_SUITE("light bins") {
         CHECK(bins.first == std::vector<std::uint32_t>(grid.cells() + 1, 0));
     }
 
-    TEST_CASE("a small light far off is listed where it is seen and hardly elsewhere") {
+    TEST_CASE("a small distant light is in few cells") {
         const glm::uvec2 size(640, 480);
         const CameraView view =
             make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), {.camera = {}, .size = size});
@@ -214,7 +214,7 @@ TEST_SUITE("light bins") {
         CHECK(bin_lights(lights, view, cluster_grid(size, {}, 0.1F, 10.0F)).entries.empty());
     }
 
-    TEST_CASE("lists that outgrow their memory make the widest lights global") {
+    TEST_CASE("if lists exceed their memory, the lights with the largest extent become global") {
         const glm::uvec2 size(1024, 1024);
         const CameraView view =
             make_view({.vertical_fov = 1.2F}, glm::mat4(1.0F), {.camera = {}, .size = size});

@@ -93,7 +93,8 @@ double mean_lit(const Scene& scene, glm::uvec2 size, std::uint32_t tile_size) {
 }  // namespace
 
 TEST_SUITE("light lists") {
-    TEST_CASE_FIXTURE(PathFixture, "lists bound by depth hold few lights that reach nothing") {
+    TEST_CASE_FIXTURE(PathFixture,
+                      "lists bounded by depth contain few lights that reach no visible surface") {
         const Scene scene = shipped_scene("hall-256");
         constexpr glm::uvec2 size{160, 120};
         const auto listed = [&](ShadingPath path) {

@@ -152,8 +152,8 @@ double relative_to(glm::dvec3 difference, glm::dvec3 whole) {
 }  // namespace
 
 TEST_SUITE("masks") {
-    TEST_CASE_FIXTURE(Masks,
-                      "a surface is seen where alpha reaches the cutoff, and what is behind elsewhere") {
+    TEST_CASE_FIXTURE(
+        Masks, "a masked surface is visible where alpha reaches the cutoff, and transparent elsewhere") {
         Scene scene = masked_scene(0.5F);
         scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
         scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F, .casts_shadow = false});
@@ -166,7 +166,7 @@ TEST_SUITE("masks") {
         }
     }
 
-    TEST_CASE_FIXTURE(Masks, "an alpha at the cutoff is a surface, one below is none") {
+    TEST_CASE_FIXTURE(Masks, "an alpha equal to the cutoff is opaque, a lower one is a hole") {
         for (const float alpha : {0.5F, 0.499F}) {
             CAPTURE(alpha);
             Scene scene = ground();
@@ -184,7 +184,8 @@ TEST_SUITE("masks") {
         }
     }
 
-    TEST_CASE_FIXTURE(Masks, "light passes through the holes: shadows of suns, spots and points") {
+    TEST_CASE_FIXTURE(Masks,
+                      "light passes through the holes: shadows of directional, spot and point lights") {
         // The square is above the camera and invisible.
         Scene scene = masked_scene(static_cast<float>(shading_height));
         scene.world.set(scene.camera, looking({0, 1.2F, 0.6F}, {0, 0, 0}));
@@ -209,7 +210,7 @@ TEST_SUITE("masks") {
         }
     }
 
-    TEST_CASE_FIXTURE(Masks, "what is all hole might as well not be there") {
+    TEST_CASE_FIXTURE(Masks, "a surface that is all hole changes nothing") {
         Scene without = ground();
         Scene with = ground();
         add(with.world, at({0, 0.7F, 0}), MeshInstance{square(1.0F, masked(0.9F, 0.2F))});

@@ -23,7 +23,8 @@ void add_point(World& world, glm::vec3 position, float range) {
 
 // Each case has only the lights that it tests, so that a list that misses one is noticed.
 TEST_SUITE("paths: lights") {
-    TEST_CASE_FIXTURE(PathFixture, "lights near the eye, behind it, and across the planes of the view") {
+    TEST_CASE_FIXTURE(PathFixture,
+                      "lights around and behind the camera, and across the planes of the view frustum") {
         struct Case {
             std::string name;
             Camera camera;
@@ -77,7 +78,7 @@ TEST_SUITE("paths: lights") {
         }
     }
 
-    TEST_CASE_FIXTURE(PathFixture, "a light that reaches a millimetre") {
+    TEST_CASE_FIXTURE(PathFixture, "a light with a range of one millimetre") {
         Scene scene;
         add(scene.world, Transform{}, MeshInstance{square(4.0F, diffuse(glm::vec3(0.5F)))});
         scene.camera = add(scene.world, looking({1.0F, 0.004F, 1.0F}, {1.0F, 0.0F, 1.0F}, {0, 0, -1}),
@@ -116,7 +117,7 @@ TEST_SUITE("paths: lights") {
         check_paths(scene, size, direct_only());
     }
 
-    TEST_CASE_FIXTURE(PathFixture, "an orthographic camera") {
+    TEST_CASE_FIXTURE(PathFixture, "ranged lights seen by an orthographic camera") {
         Scene scene = cluttered_room();
         add_ranged_lights(scene.world, 40, 0.8F);
         add_point(scene.world, eye + glm::vec3(0.0F, 0.0F, 0.4F), 1.0F);
@@ -133,7 +134,7 @@ TEST_SUITE("paths: lights") {
         }
     }
 
-    TEST_CASE_FIXTURE(PathFixture, "narrow and wide spots") {
+    TEST_CASE_FIXTURE(PathFixture, "narrow and wide spot lights") {
         constexpr float pi = std::numbers::pi_v<float>;
         Scene scene = cluttered_room();
         std::mt19937 engine(5);

@@ -193,7 +193,7 @@ bool holds(int rounds, Property property) {
 }  // namespace
 
 TEST_SUITE("paths: random scenes") {
-    TEST_CASE_FIXTURE(PathFixture, "every path gives the picture of forward in any scene") {
+    TEST_CASE_FIXTURE(PathFixture, "every path gives the picture of forward: random scenes") {
         const auto measure = [&](const ScenePlan& plan) {
             return worst_path(build(plan), {64, 48}, configuration_of(plan));
         };

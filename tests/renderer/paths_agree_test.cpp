@@ -67,7 +67,7 @@ TEST_SUITE("shading paths") {
         }
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "all paths agree on surfels whose light moves") {
+    TEST_CASE_FIXTURE(RenderFixture, "all paths agree on surfels after a light has moved") {
         Picture first;
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
@@ -87,7 +87,7 @@ TEST_SUITE("shading paths") {
         }
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "the parts add up to the total") {
+    TEST_CASE_FIXTURE(RenderFixture, "direct and indirect light add up to the total") {
         const Scene scene = cornell_box_with_lights(7);
         for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
             std::array<Picture, 3> pictures;
@@ -107,7 +107,7 @@ TEST_SUITE("shading paths") {
         }
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "without indirect light the picture is the direct part") {
+    TEST_CASE_FIXTURE(RenderFixture, "if indirect light is disabled, the picture is the direct light") {
         const Scene scene = cornell_box_with_lights(3);
         Configuration configuration = linear_configuration();
         configuration.show = Show::direct;

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 TEST_SUITE("public headers") {
-    TEST_CASE("a host's GL types and those of the API go together") {
+    TEST_CASE("the host's GL types can be used with the API") {
         const GLuint framebuffer = 3;
         const candela::Target target{.framebuffer = framebuffer, .size = {4, 2}};
         CHECK(target.framebuffer == framebuffer);

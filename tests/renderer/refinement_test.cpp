@@ -81,14 +81,14 @@ Picture average(const std::vector<Picture>& pictures) {
 
 TEST_SUITE("refinement") {
     TEST_CASE_FIXTURE(RefinementTests,
-                      "the mean is that of pictures rendered with each seed, at each sample of the pixels") {
+                      "the result is the mean of pictures rendered with each seed and pixel sample") {
         constexpr std::uint32_t sets = frames_a_surfel_set + 2;
         Configuration configuration = refining(sets);
         std::uint32_t frames_a_seed = 1;
-        SUBCASE("of paths, one each") {
+        SUBCASE("VPLs on paths, one frame per seed") {
             configuration.vpls.placement = VplPlacement::paths;
         }
-        SUBCASE("of surfels, some each") {
+        SUBCASE("surfels, several frames per seed") {
             frames_a_seed = frames_a_surfel_set;
         }
         configure(configuration);
@@ -112,7 +112,7 @@ TEST_SUITE("refinement") {
         CHECK(pictures[frames_a_seed] != pictures[0]);
     }
 
-    TEST_CASE_FIXTURE(RefinementTests, "the error falls as sets accumulate") {
+    TEST_CASE_FIXTURE(RefinementTests, "the error decreases as sets of VPLs accumulate") {
         // The reference uses other seeds. Another number of VPLs would have another bound on the geometry
         // term.
         const auto start_at = [&](std::uint32_t seed, std::uint32_t frames) {
@@ -142,7 +142,7 @@ TEST_SUITE("refinement") {
     }
 
     TEST_CASE_FIXTURE(RefinementTests,
-                      "a still picture ends up antialiased, with indirect light or without") {
+                      "a still picture becomes antialiased, with and without indirect light") {
         // 64 samples per pixel on a grid, from a picture with 64 times as many pixels.
         const auto supersampled = [&](const Configuration& configuration) {
             constexpr std::uint32_t factor = 8;
@@ -170,7 +170,8 @@ TEST_SUITE("refinement") {
         }
     }
 
-    TEST_CASE_FIXTURE(RefinementTests, "whatever moves gives the unrefined frame at once, bit for bit") {
+    TEST_CASE_FIXTURE(RefinementTests,
+                      "after any movement the next frame is the unrefined one, bit for bit") {
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
             Configuration configuration = refining(16, path);
@@ -196,8 +197,7 @@ TEST_SUITE("refinement") {
         }
     }
 
-    TEST_CASE_FIXTURE(RefinementTests,
-                      "surfels stay the set that they are when a light or the camera moves") {
+    TEST_CASE_FIXTURE(RefinementTests, "the set of surfels is kept when a light or the camera moves") {
         Configuration configuration = refining(16);
         configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
         configure(configuration);
@@ -220,7 +220,8 @@ TEST_SUITE("refinement") {
         CHECK(renderer.report().refined == frames_a_surfel_set + 1);
     }
 
-    TEST_CASE_FIXTURE(RefinementTests, "it stops after as many frames, and then a frame costs nothing") {
+    TEST_CASE_FIXTURE(RefinementTests,
+                      "it stops after the configured number of frames, and then only tone mapping runs") {
         configure(refining(5));
         const Picture stands = refined(5);
         CHECK(ran("accumulate"));
@@ -232,7 +233,7 @@ TEST_SUITE("refinement") {
         CHECK(renderer.report().refined == 5);
     }
 
-    TEST_CASE_FIXTURE(RefinementTests, "what is set to what it was interrupts nothing") {
+    TEST_CASE_FIXTURE(RefinementTests, "setting a component to an equal value does not restart refinement") {
         configure(refining(16));
         static_cast<void>(refined(3));
         scene.world.set(scene.light, Transform(scene.world.get<Transform>(scene.light)));
@@ -241,7 +242,7 @@ TEST_SUITE("refinement") {
     }
 
     TEST_CASE_FIXTURE(RefinementTests,
-                      "between sets neither the scene nor the requested view nor shadows are touched") {
+                      "passes of the scene, the requested view and shadows do not run between sets") {
         Configuration configuration = refining(16);
         configuration.vpls.placement = VplPlacement::paths;
         configure(configuration);
@@ -256,7 +257,7 @@ TEST_SUITE("refinement") {
 
     TEST_CASE_FIXTURE(
         RefinementTests,
-        "resizing, another path and invalidating start anew; exposure and frame budget do not") {
+        "resizing, another path and invalidate() restart it, exposure and frame budget do not") {
         Configuration configuration = refining(16);
         configure(configuration);
         static_cast<void>(refined(4));
@@ -285,7 +286,7 @@ TEST_SUITE("refinement") {
         CHECK(renderer.report().refined == 7);
     }
 
-    TEST_CASE_FIXTURE(RefinementTests, "another world begins anew, and jitter is a move") {
+    TEST_CASE_FIXTURE(RefinementTests, "another world restarts it, and so does jitter") {
         const Configuration configuration = refining(16);
         configure(configuration);
         static_cast<void>(refined(4));

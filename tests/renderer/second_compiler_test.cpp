@@ -90,7 +90,7 @@ std::string ending(GLenum stage) {
 }  // namespace
 
 TEST_SUITE("second compiler") {
-    TEST_CASE_FIXTURE(GlFixture, "glslang takes every variant of every program") {
+    TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") {
         TestedRenderer renderer(noting(context->get_proc()));
         Configuration configuration;
         configuration.refinement.enabled = true;

@@ -186,7 +186,7 @@ TEST_SUITE("shadow maps") {
         }
     }
 
-    TEST_CASE_FIXTURE(ShadowMapTests, "a plane alone shades no pixel of itself, however it is lit") {
+    TEST_CASE_FIXTURE(ShadowMapTests, "a single plane does not shadow itself, however it is lit") {
         struct Slant {
             float height, distance;
         };
@@ -212,7 +212,7 @@ TEST_SUITE("shadow maps") {
         }
     }
 
-    TEST_CASE_FIXTURE(ShadowMapTests, "a light that casts no shadow shines through") {
+    TEST_CASE_FIXTURE(ShadowMapTests, "a light that casts no shadow lights occluded surfaces") {
         light_up(at({0.2F, 2.0F, 0.1F}), PointLight{.casts_shadow = false});
         shadows(true, 128);
         const Picture with = picture(occluded_);
@@ -224,7 +224,7 @@ TEST_SUITE("shadow maps") {
     }
 
     TEST_CASE_FIXTURE(ShadowMapTests,
-                      "only views that changed are rendered again, and the rest still holds") {
+                      "only changed shadow views are rendered again, and the others stay valid") {
         renderer.verify(false);  // which renders all views
         Configuration configuration = linear_configuration();
         configuration.indirect = false;
@@ -282,7 +282,7 @@ TEST_SUITE("shadow maps") {
         }
     }
 
-    TEST_CASE_FIXTURE(ShadowMapTests, "walls do not shade each other in their crease") {
+    TEST_CASE_FIXTURE(ShadowMapTests, "walls do not shadow each other at their common edge") {
         // A closed convex room has no shadows. At this size, the edges between walls run through pixel
         // centres.
         const Scene furnace = shipped_scene("furnace");
@@ -295,7 +295,7 @@ TEST_SUITE("shadow maps") {
         }
     }
 
-    TEST_CASE_FIXTURE(ShadowMapTests, "lights beyond the layers of a texture go without a shadow") {
+    TEST_CASE_FIXTURE(ShadowMapTests, "lights for which the texture has no layers left get no shadow") {
         Scene scene = ground();
         for (int i = 0; i < 400; ++i) add(scene.world, at({0, 1, 0}), PointLight{.intensity = 0.1F});
         shadows(true, 16);

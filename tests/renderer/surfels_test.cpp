@@ -72,8 +72,8 @@ class SurfelTests : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("surfels: where they are") {
-    TEST_CASE("their cells have the area of all surfaces, each about its share of it") {
+TEST_SUITE("surfels: placement") {
+    TEST_CASE("cells cover the area of all surfaces, and have about equal areas") {
         for (const std::uint32_t count : {24U, 100U, 1000U}) {
             CAPTURE(count);
             const SurfelSet set = place_surfels(cube(), count, test_seed());
@@ -92,7 +92,7 @@ TEST_SUITE("surfels: where they are") {
         }
     }
 
-    TEST_CASE("a cell is flat, on one side and near its surfel") {
+    TEST_CASE("a cell is flat, on one side of the surface, and near its surfel") {
         const SurfelSet set = place_surfels(cube(), 200, test_seed());
         const float width = std::sqrt(24.0F / 200.0F);
         std::size_t points = 0;
@@ -109,7 +109,7 @@ TEST_SUITE("surfels: where they are") {
         CHECK(points == set.points.size());
     }
 
-    TEST_CASE("surfaces that are double-sided have them on both sides, others on their front") {
+    TEST_CASE("double-sided surfaces have surfels on both sides, others on their front") {
         SurfelGround sheet{.triangles = {}, .item_of = {}, .double_sided = {false}};
         add_parallelogram(sheet, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         for (const bool both : {false, true}) {
@@ -123,7 +123,7 @@ TEST_SUITE("surfels: where they are") {
         }
     }
 
-    TEST_CASE("no cell reaches over to another item, though that lies in the same plane") {
+    TEST_CASE("no cell extends to another item, even in the same plane") {
         SurfelGround two{.triangles = {}, .item_of = {}, .double_sided = {false}};
         add_parallelogram(two, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
@@ -136,14 +136,14 @@ TEST_SUITE("surfels: where they are") {
         }
     }
 
-    TEST_CASE("a set of another seed is another one, and nothing gives none") {
+    TEST_CASE("another seed gives another set, and empty input gives none") {
         CHECK(place_surfels(cube(), 100, 1).surfels[0].position !=
               place_surfels(cube(), 100, 2).surfels[0].position);
         CHECK(place_surfels(cube(), 0, 1).surfels.empty());
         CHECK(place_surfels({}, 100, 1).surfels.empty());
     }
 
-    TEST_CASE("an item's shape does not depend on how it is turned, to the bit") {
+    TEST_CASE("an item's shape does not depend on its rotation, bit for bit") {
         std::mt19937 engine(test_seed());
         std::uniform_real_distribution<float> number(-1.0F, 1.0F);
         for (const glm::vec3 scale :
@@ -164,8 +164,9 @@ TEST_SUITE("surfels: where they are") {
     }
 }
 
-TEST_SUITE("surfels: their light") {
-    TEST_CASE_FIXTURE(SurfelTests, "in a sphere lit from its centre, walls reflect evenly and lose little") {
+TEST_SUITE("surfels: light") {
+    TEST_CASE_FIXTURE(SurfelTests,
+                      "in a sphere lit from its centre, indirect light is uniform and little is lost") {
         // Indirect radiance ρ/π · I/R² · ρ/(1 - ρ), at any albedo: bounces go on until little is left. Discs
         // take off what is nearer than their radius: of 256 surfels of 16 points each, some 16⁻¹ of 256⁻¹ of
         // the sphere a bounce, times a logarithm.
@@ -191,7 +192,8 @@ TEST_SUITE("surfels: their light") {
         }
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "what the lights of furnished rooms emit is absorbed or escapes") {
+    TEST_CASE_FIXTURE(SurfelTests,
+                      "all flux that is emitted in furnished rooms is absorbed, escapes or is truncated") {
         for (const char* const name : {"cornell", "two-rooms"}) {
             CAPTURE(name);
             const Scene scene = shipped_scene(name);
@@ -205,7 +207,7 @@ TEST_SUITE("surfels: their light") {
         }
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "the light of a dim face hardly depends on where surfels are") {
+    TEST_CASE_FIXTURE(SurfelTests, "the light of a dim face hardly depends on the placement of surfels") {
         // The front of the short block of the Cornell box is lit by the walls alone. With 1,024 VPLs on paths
         // its mean is off by a factor of two from one seed to the next.
         Scene scene = cornell_box();
@@ -225,7 +227,7 @@ TEST_SUITE("surfels: their light") {
         CHECK(most - least < 0.1 * least);
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "the more there are, the more of a closed box's light is accounted for") {
+    TEST_CASE_FIXTURE(SurfelTests, "with more surfels less of a closed box's flux is lost") {
         const Scene scene = furnace_box(0.5F);
         double before = 1.0;
         for (const std::uint32_t count : {64U, 256U, 1024U}) {
@@ -244,7 +246,8 @@ TEST_SUITE("surfels: their light") {
         CHECK(before < 0.005);
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "without bounces there are none, and one bounce is the lights' alone") {
+    TEST_CASE_FIXTURE(SurfelTests,
+                      "without bounces there is no indirect light, and each further bounce adds less") {
         const Scene scene = cornell_box();
         configure(surfels(64, 0));
         const Picture dark = render(scene, {24, 18});
@@ -262,7 +265,7 @@ TEST_SUITE("surfels: their light") {
         CHECK(mean(more) - mean(twice) < 3.0 * (mean(twice) - mean(once)));
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "a light that lies on a wall lights what it would light just before it") {
+    TEST_CASE_FIXTURE(SurfelTests, "a light exactly on a wall lights the room like one just in front of it") {
         Scene scene = furnace_box(0.5F);
         configure(surfels(256, 2));
         const auto lit_from = [&](float x) {
@@ -273,7 +276,9 @@ TEST_SUITE("surfels: their light") {
         CHECK(lit_from(1.0F) == doctest::Approx(lit_from(0.999F)).epsilon(0.05));
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "a scene that grows past twice its size is looked at anew") {
+    TEST_CASE_FIXTURE(
+        SurfelTests,
+        "after a scene has grown to more than twice its size, frames equal those of a new renderer") {
         // Rays then start farther from all surfaces.
         Configuration configuration = surfels(96);
         configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
@@ -286,7 +291,7 @@ TEST_SUITE("surfels: their light") {
         CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "light on a floor does not come through the wall that stands on it") {
+    TEST_CASE_FIXTURE(SurfelTests, "light from a floor does not leak through a wall that stands on it") {
         // With few surfels, whose cells extend under the wall. Behind the wall there are only the floor,
         // which does not light itself, and the back of the wall.
         Scene scene;
@@ -310,7 +315,9 @@ TEST_SUITE("surfels: their light") {
         }
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "what moves is seen where it is now, bit for bit as by a fresh renderer") {
+    TEST_CASE_FIXTURE(
+        SurfelTests,
+        "after meshes and lights have moved, frames equal those of a new renderer, bit for bit") {
         for (const auto method : {VplVisibility::maps, VplVisibility::none}) {
             Configuration configuration = surfels(96);
             configuration.visibility = {.method = method, .map_resolution = 16};

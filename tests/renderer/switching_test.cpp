@@ -64,8 +64,9 @@ Configuration by_path(ShadingPath path) {
 }  // namespace
 
 TEST_SUITE("switching") {
-    TEST_CASE_FIXTURE(RenderFixture,
-                      "the first frame after a switch is right, and what does not depend on the path stays") {
+    TEST_CASE_FIXTURE(
+        RenderFixture,
+        "the first frame after a switch is correct, and results that all paths share are kept") {
         const Scene scene = scene_with_lights();
         std::map<ShadingPath, Picture> pictures;
         for (const ShadingPath path : all_shading_paths) {
@@ -95,8 +96,7 @@ TEST_SUITE("switching") {
         }
     }
 
-    TEST_CASE_FIXTURE(
-        GlFixture, "switching back and forth between any two paths makes no object after the first round") {
+    TEST_CASE_FIXTURE(GlFixture, "switching between any two paths creates no objects after the first round") {
         const Scene scene = scene_with_lights();
         // Never verified, because passes that run again create their objects again.
         Renderer renderer(counting(context->get_proc()));
@@ -120,7 +120,8 @@ TEST_SUITE("switching") {
         CHECK(creations > 0);
     }
 
-    TEST_CASE_FIXTURE(RenderFixture, "a file's errors are all named, and the present configuration goes on") {
+    TEST_CASE_FIXTURE(RenderFixture,
+                      "all errors of a file are reported, and the current configuration stays in use") {
         const Scene scene = scene_with_lights();
         configure(by_path(ShadingPath::clustered_forward));
         const Picture before = render(scene, size);

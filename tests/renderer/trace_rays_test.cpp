@@ -156,24 +156,24 @@ class TraceRays : public GlFixture {
 }  // namespace
 
 TEST_SUITE("compute tracer") {
-    TEST_CASE_FIXTURE(TraceRays, "hits in the Cornell box are the CPU's") {
+    TEST_CASE_FIXTURE(TraceRays, "hits in the Cornell box equal those on the CPU") {
         check(cornell_box().world, random_rays(20'000, {0, 1, 0}, 0.95F), 0.7);
     }
 
-    TEST_CASE_FIXTURE(TraceRays, "hits among 100,000 triangles are the CPU's") {
+    TEST_CASE_FIXTURE(TraceRays, "hits among 100,000 triangles equal those on the CPU") {
         World world;
         add(world, Transform{}, MeshInstance{soup(100'000, 3)});
         check(world, random_rays(10'000, {0, 0, 0}, 1.2F), 0.5);
     }
 
-    TEST_CASE_FIXTURE(TraceRays, "one triangle, and none") {
+    TEST_CASE_FIXTURE(TraceRays, "hits with one triangle, and with none, equal those on the CPU") {
         World world;
         check(world, random_rays(100, {0, 0, 0}, 1.0F), -1.0);
         add(world, Transform{}, MeshInstance{soup(1, 3)});
         check(world, random_rays(1000, {0, 0, 0}, 1.0F), -1.0);
     }
 
-    TEST_CASE_FIXTURE(TraceRays, "mirrored and sheared instances are hit where they are") {
+    TEST_CASE_FIXTURE(TraceRays, "hits of mirrored and sheared instances equal brute force") {
         World world;
         const Entity parent = add(world, Transform{.scale = {-0.7F, 1.3F, 1.0F}});
         add(world, Transform{.rotation = glm::angleAxis(0.7F, glm::vec3(0, 0, 1)), .parent = parent},

@@ -126,7 +126,7 @@ std::vector<glm::vec4> with_alpha(const gl::Functions& gl, Renderer& renderer, c
 }  // namespace
 
 TEST_SUITE("transparent surfaces") {
-    TEST_CASE_FIXTURE(Transparent, "a pane shows alpha of itself and the rest of what is behind") {
+    TEST_CASE_FIXTURE(Transparent, "a pane is blended with the background by its alpha") {
         for (const float alpha : {0.0F, 0.3F, 1.0F}) {
             CAPTURE(alpha);
             Scene scene = lit_ground();
@@ -137,7 +137,8 @@ TEST_SUITE("transparent surfaces") {
         }
     }
 
-    TEST_CASE_FIXTURE(Transparent, "panes are drawn back to front, however they are declared and move") {
+    TEST_CASE_FIXTURE(Transparent,
+                      "panes are drawn back to front, in any order of creation and after they move") {
         const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
         const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
         for (const bool lower_first : {true, false}) {
@@ -161,7 +162,7 @@ TEST_SUITE("transparent surfaces") {
         }
     }
 
-    TEST_CASE_FIXTURE(Transparent, "an orthographic camera sorts as well") {
+    TEST_CASE_FIXTURE(Transparent, "panes are also sorted for an orthographic camera") {
         const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
         const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
         Scene scene = lit_ground();
@@ -174,7 +175,7 @@ TEST_SUITE("transparent surfaces") {
         check(scene, {lower, upper});
     }
 
-    TEST_CASE_FIXTURE(Transparent, "of a double-sided surface the far side is drawn before the near one") {
+    TEST_CASE_FIXTURE(Transparent, "the far side of a double-sided surface is drawn before the near one") {
         // A box seen from directly above. Its top and bottom are at different distances from the light.
         // Mirroring it reverses the order of its triangles.
         for (const float mirror : {1.0F, -1.0F}) {
@@ -195,7 +196,7 @@ TEST_SUITE("transparent surfaces") {
     }
 
     TEST_CASE_FIXTURE(Transparent,
-                      "the back of a single-sided pane is not drawn, nor what an opaque surface hides") {
+                      "backs of single-sided panes, and panes behind opaque surfaces, are not drawn") {
         const Scene without = lit_ground();
         Scene with = lit_ground();
         add(with.world,
@@ -211,7 +212,7 @@ TEST_SUITE("transparent surfaces") {
     }
 
     TEST_CASE_FIXTURE(Transparent,
-                      "over nothing there is black behind, and the picture tells that it is covered") {
+                      "a pane over the background is blended with black, and its pixels have an alpha of 1") {
         Scene scene = lit_ground();
         Scene empty;
         empty.camera = add(empty.world, scene.world.get<Transform>(scene.camera), Camera{});
@@ -238,7 +239,8 @@ TEST_SUITE("transparent surfaces") {
         }
     }
 
-    TEST_CASE_FIXTURE(Transparent, "light goes through: no shadow, no VPL, the scene's size as without") {
+    TEST_CASE_FIXTURE(Transparent,
+                      "light passes through panes: shadows, VPLs and the number of triangles do not change") {
         const Scene without = lit_ground();
         Scene with = lit_ground();
         add_pane(with, {.height = 3.5F, .half = 2.0F, .albedo = 0.9F, .alpha = 0.9F});  // above the camera

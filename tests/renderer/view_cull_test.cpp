@@ -74,7 +74,7 @@ Box cube_at(glm::vec3 centre) {
 }  // namespace
 
 TEST_SUITE("view cull") {
-    TEST_CASE("a box of which a point is in the view is never culled, and most of those that are not are") {
+    TEST_CASE("a box with a point in the view is never culled, and most other boxes are") {
         Random random;
         int hidden = 0;
         int culled = 0;
@@ -94,7 +94,7 @@ TEST_SUITE("view cull") {
         CHECK(culled > 0.9 * hidden);
     }
 
-    TEST_CASE("boxes beyond each of the six planes are culled, and those that reach over one are not") {
+    TEST_CASE("boxes outside of any of the six planes are culled, boxes that cross one are not") {
         const glm::mat4 clip = straight_view().clip_from_world;
         for (const glm::vec3 outside : {glm::vec3(-6.1F, 0, -5),
                                         {6.1F, 0, -5},
@@ -119,7 +119,7 @@ TEST_SUITE("view cull") {
         CHECK_FALSE(is_outside({glm::vec3(-100.0F), glm::vec3(100.0F)}, clip));  // contains the eye
     }
 
-    TEST_CASE("draws outside the view lose their instance, by where they are placed, and nothing else") {
+    TEST_CASE("draws of items that are placed outside the view get no instances and are else unchanged") {
         SceneLayout layout;
         ScenePlacement placement;
         for (const float x : {0.0F, 50.0F, 1.0F}) {

@@ -53,7 +53,7 @@ VplPlan three_lights() {
 }  // namespace
 
 TEST_SUITE("interleaved gathering") {
-    TEST_CASE("by itself it leaves every class eight VPLs, and less where they or the pixels are few") {
+    TEST_CASE("automatic interleaving leaves eight VPLs per class, and is lower for few VPLs or pixels") {
         for (std::uint32_t count = 0; count < 5000; ++count) {
             const std::uint32_t n = interleaving(Interleave::automatic, count, {512, 512});
             CHECK((n == 1 || n == 2 || n == 4 || n == 8));
@@ -69,7 +69,7 @@ TEST_SUITE("interleaved gathering") {
         CHECK(interleaving(Interleave::eight, 1, {1, 1}) == 8);
     }
 
-    TEST_CASE("each share of the VPLs has its part of every light and bounce") {
+    TEST_CASE("each share of the VPLs contains its part of every light and bounce") {
         const VplPlan paths = three_lights();
         std::vector<std::uint32_t> order = deal_vpls(paths);
         REQUIRE(order.size() == paths.vpl_count);
@@ -109,7 +109,7 @@ TEST_SUITE("interleaved gathering") {
     }
 
     TEST_CASE_FIXTURE(VplGatherTests,
-                      "textures of the stages share storage where their lifetimes do not overlap") {
+                      "textures of the stages share storage if their lifetimes do not overlap") {
         const Scene scene = cornell_box();
         Configuration configuration = linear_configuration();
         configuration.vpls.count = 256;
@@ -122,7 +122,7 @@ TEST_SUITE("interleaved gathering") {
         CHECK(renderer.report().memory.shared_by_aliasing_bytes == std::uint64_t{2} * size.x * size.y * 16);
     }
 
-    TEST_CASE_FIXTURE(VplGatherTests, "on a plane it is what all VPLs give, to rounding") {
+    TEST_CASE_FIXTURE(VplGatherTests, "on a plane the result equals that of all VPLs, up to rounding") {
         // A view so narrow that the light of a VPL is the same in the whole picture.
         Scene scene = cornell_box();
         scene.camera = add(scene.world, looking({0.1F, 1.3F, 1.0F}, {0.15F, 1.25F, -1.0F}),
@@ -144,7 +144,7 @@ TEST_SUITE("interleaved gathering") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplGatherTests, "nothing of one surface's light gets onto another's") {
+    TEST_CASE_FIXTURE(VplGatherTests, "light does not leak from one surface to another") {
         // The wall at the back is lit, and does not light surfaces that face away from it.
         Scene scene;
         const glm::quat towards_z = glm::angleAxis(glm::half_pi<float>(), glm::vec3(1, 0, 0));
@@ -198,7 +198,7 @@ TEST_SUITE("interleaved gathering") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplGatherTests, "where neighbours do not fit, the pixels ask VPLs themselves") {
+    TEST_CASE_FIXTURE(VplGatherTests, "pixels without suitable neighbours gather VPLs themselves") {
         Scene scene = cluttered_room();
         add(scene.world, at({0.5F, 1.0F, 0.5F}), PointLight{.intensity = 5.0F});
         constexpr glm::uvec2 size{96, 72};
@@ -220,7 +220,7 @@ TEST_SUITE("interleaved gathering") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplGatherTests, "pictures of one pixel, one row and one column are whole") {
+    TEST_CASE_FIXTURE(VplGatherTests, "pictures of one pixel, one row and one column are correct") {
         const Scene scene = cornell_box();
         for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(37, 1), glm::uvec2(1, 37)}) {
             const Picture all = picture(scene, indirect_only(Interleave::one, 256), size);

@@ -79,7 +79,7 @@ TEST_SUITE("geometry term") {
     constexpr double radius = 0.05;
     constexpr double scatter = 0.02;  // of the VPLs: more than 1/√N, as the sun's footprint wastes some
 
-    TEST_CASE_FIXTURE(VplGeometry, "a wall that stands on a lit floor is lit down to its foot") {
+    TEST_CASE_FIXTURE(VplGeometry, "a wall that stands on a lit floor is lit down to the floor") {
         for (const glm::quat& turn : turns) {
             CAPTURE(glm::degrees(glm::angle(turn)));
             const std::vector<double> found = rows(sunlit_floor(0.0F, 0.0F, turn));
@@ -94,7 +94,7 @@ TEST_SUITE("geometry term") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplGeometry, "a wall beyond the edge of a lit floor is lit from nothing up") {
+    TEST_CASE_FIXTURE(VplGeometry, "the light of a wall beyond the edge of a lit floor starts at zero") {
         const double gap = 2.0 * radius;
         for (const glm::quat& turn : turns) {
             CAPTURE(glm::degrees(glm::angle(turn)));
@@ -112,7 +112,7 @@ TEST_SUITE("geometry term") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplGeometry, "no pixel on the line where two walls meet is dark") {
+    TEST_CASE_FIXTURE(VplGeometry, "no pixel on the edge between two walls is dark") {
         // The camera looks straight into a box: the edges between walls run at 45 degrees, through pixel
         // centres.
         const Scene scene = shipped_scene("furnace");

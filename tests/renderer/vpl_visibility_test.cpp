@@ -173,7 +173,7 @@ Scene closed_rooms() {
 }  // namespace
 
 TEST_SUITE("VPL visibility") {
-    TEST_CASE_FIXTURE(VplVisibilityTests, "nothing darkens an unoccluded plane") {
+    TEST_CASE_FIXTURE(VplVisibilityTests, "an unoccluded plane is not darkened") {
         for (const float scale : scales) {
             const Scene scene = lit_wall(scale, 0.4F);
             Configuration configuration = indirect_only(VplVisibility::none);
@@ -193,7 +193,7 @@ TEST_SUITE("VPL visibility") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplVisibilityTests, "smooth normals darken nothing of a sphere's inside") {
+    TEST_CASE_FIXTURE(VplVisibilityTests, "smooth normals do not darken the inside of a sphere") {
         Scene scene;
         // Facets of 8°: shading normals differ by up to 5° from the normals of facets.
         add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 3, diffuse(glm::vec3(0.5F)))});
@@ -210,7 +210,8 @@ TEST_SUITE("VPL visibility") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplVisibilityTests, "a sheet's shadow is where it should be and begins at its foot") {
+    TEST_CASE_FIXTURE(VplVisibilityTests,
+                      "the shadow of a sheet is at the right place and begins at its lower edge") {
         for (const float scale : scales) {
             for (const std::uint32_t resolution : resolutions) {
                 check_sheet(indirect_only(VplVisibility::maps, resolution), scale, 2.0);
@@ -220,7 +221,8 @@ TEST_SUITE("VPL visibility") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplVisibilityTests, "maps come close to rays as they grow finer") {
+    TEST_CASE_FIXTURE(VplVisibilityTests,
+                      "depth maps approach the result of rays as their resolution grows") {
         const Scene scene = cornell_box();
         Configuration configuration = indirect_only(VplVisibility::rays);
         configuration.vpls.count = 96;
@@ -242,7 +244,7 @@ TEST_SUITE("VPL visibility") {
         CHECK(coarser < 0.02);
     }
 
-    TEST_CASE_FIXTURE(VplVisibilityTests, "a shut door keeps the light out") {
+    TEST_CASE_FIXTURE(VplVisibilityTests, "no light passes a closed door") {
         Scene scene = closed_rooms();
         const Entity dark = scene.camera;
         const Entity lit = add(scene.world, looking({-0.3F, 1.7F, 1.7F}, {-2.5F, 0.85F, -0.4F}),
@@ -302,7 +304,8 @@ TEST_SUITE("VPL visibility") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplVisibilityTests, "switching the method leaves nothing behind") {
+    TEST_CASE_FIXTURE(VplVisibilityTests,
+                      "switching the method leaks no objects and does not change later pictures") {
         const Scene scene = cornell_box();
         const auto round = [&] {
             Picture last;
@@ -322,7 +325,7 @@ TEST_SUITE("VPL visibility") {
     }
 
     TEST_CASE_FIXTURE(VplVisibilityTests,
-                      "maps are drawn when the VPLs change, and not when the camera moves") {
+                      "depth maps are drawn if the VPLs change, but not if the camera moves") {
         Scene scene = cornell_box();
         configure(indirect_only(VplVisibility::maps));
         const Picture first = render(scene, size);
@@ -341,7 +344,7 @@ TEST_SUITE("VPL visibility") {
 }
 
 TEST_SUITE("VPL atlas") {
-    TEST_CASE("tiles fit into what the driver allows") {
+    TEST_CASE("tiles fit into the limits of the driver") {
         const gl::Limits limits{.texture_size = 16384, .texture_layers = 2048};
         for (const std::uint32_t resolution : {8U, 33U, 64U, 200U, 1024U}) {
             for (const std::uint32_t maps : {1U, 2U, 257U, 16384U}) {
@@ -358,7 +361,7 @@ TEST_SUITE("VPL atlas") {
         }
     }
 
-    TEST_CASE("what does not fit is refused") {
+    TEST_CASE("maps that do not fit into the limits are refused") {
         const gl::Limits limits{.texture_size = 1024, .texture_layers = 256};
         CHECK_THROWS_WITH_AS(static_cast<void>(plan_vpl_atlas(2048, 1, limits)),
                              "depth maps of VPLs of 2048 texels a side: the driver allows 1024", gl::GlError);
