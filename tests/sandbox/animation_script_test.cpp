@@ -82,7 +82,7 @@ struct Staged {
 }  // namespace
 
 TEST_SUITE("animation script") {
-    TEST_CASE("every member reaches its value") {
+    TEST_CASE("every member of a script is read") {
         const Script script = read_script(everything);
         CHECK(script.scene == "two-rooms");
         CHECK(script.frames == 60);
@@ -114,14 +114,14 @@ TEST_SUITE("animation script") {
         CHECK((camera.translation.empty() && camera.rotation.empty() && camera.enabled.empty()));
     }
 
-    TEST_CASE("what is left out has its default") {
+    TEST_CASE("members that are left out have their defaults") {
         const Script script = read_script(R"({"frames": 1, "tracks": []})");
         CHECK_FALSE(script.scene);
         CHECK_FALSE(script.loop);
         CHECK(script.tracks.empty());
     }
 
-    TEST_CASE("what is no script is a error that names the place") {
+    TEST_CASE("errors of an invalid script name the place") {
         CHECK(error_of_script("") == "not valid JSON: line 1");
         CHECK(error_of_script("{\n \"frames\": 3,\n nonsense }") == "not valid JSON: line 3");
         CHECK(error_of_script("[1]") == "not a JSON object");
@@ -141,7 +141,7 @@ TEST_SUITE("animation script") {
               "tracks[1].node: 'a' has a track already");
     }
 
-    TEST_CASE("a bad track is a error that names the place") {
+    TEST_CASE("errors of an invalid track name the place") {
         CHECK(error_of_track(R"("speed": 1)") == "tracks[0].speed: is unknown");
         CHECK(error_of_track(R"("interpolation": "cubic")") ==
               "tracks[0].interpolation: is not one of linear, step, smooth");
@@ -175,7 +175,7 @@ TEST_SUITE("animation script") {
               "tracks[0].rotation[0][1].degrees: is missing");
     }
 
-    TEST_CASE("keys go forward in time") {
+    TEST_CASE("the frames of keys must increase") {
         CHECK(error_of_track(R"("scale": [[5, [1, 1, 1]], [4, [1, 1, 1]]])") ==
               "tracks[0].scale[1]: frame 4 does not come after frame 5");
         CHECK(error_of_track(R"("scale": [[5, [1, 1, 1]], [5, [1, 1, 1]]])") ==
@@ -183,7 +183,7 @@ TEST_SUITE("animation script") {
         CHECK(error_of_track(R"("scale": [[0, [1, 1, 1]], [60, [1, 1, 1]]])") == "none");
     }
 
-    TEST_CASE("numbers that are none, or that no float holds, are errors") {
+    TEST_CASE("NaN, infinity and numbers too large for a float are errors") {
         CHECK(error_of_track(R"("intensity": [[0, NaN]])").starts_with("not valid JSON"));
         CHECK(error_of_track(R"("intensity": [[0, Infinity]])").starts_with("not valid JSON"));
         CHECK(error_of_track(R"("intensity": [[0, 1e999]])") == "not valid JSON: a number is too large");
@@ -192,7 +192,7 @@ TEST_SUITE("animation script") {
               "tracks[0].translation[0][1][1]: is too large");
     }
 
-    TEST_CASE("quaternions of any length are made units") {
+    TEST_CASE("quaternions of any length are normalised") {
         for (const char* length : {"1e-30", "3", "1e30"}) {
             const Script script = read_script(fmt::format(
                 R"({{"frames": 1, "tracks": [{{"node": "a", "rotation": [[0, [{0}, {0}, {0}, {0}]]]}}]}})",
@@ -201,7 +201,7 @@ TEST_SUITE("animation script") {
         }
     }
 
-    TEST_CASE("errors of a file name it, and so does what is neither a file nor shipped") {
+    TEST_CASE("errors name the file, or the name that is neither a file nor a shipped script") {
         const TemporaryFolder folder;
         const fs::path file = folder / "a.json";
         std::ofstream(file) << R"({"frames": 2})";
@@ -215,7 +215,7 @@ TEST_SUITE("animation script") {
         }
     }
 
-    TEST_CASE("a script's scene is a shipped one, or a file beside it") {
+    TEST_CASE("a script's scene is a shipped scene, or a path relative to the script") {
         Script script;
         script.path = "somewhere/a.json";
         CHECK_FALSE(scene_of(script));
@@ -240,7 +240,7 @@ TEST_SUITE("animation script") {
         CHECK(at(frames) == at(0));
     }
 
-    TEST_CASE("shipped: the light creeps a millimetre a frame") {
+    TEST_CASE("shipped: the light moves one millimetre per frame") {
         Staged walk("flicker-walk");
         for (int frame = 0; frame + 1 < walk.animation.script().frames; ++frame) {
             const glm::vec3 step =
@@ -262,7 +262,7 @@ TEST_SUITE("animation script") {
         CHECK(jumps == 1);
     }
 
-    TEST_CASE("shipped: the door goes from shut to where the scene has it") {
+    TEST_CASE("shipped: the door opens from closed to its rotation in the scene file") {
         Staged door("door-opens");
         const Scene untouched = load_scene(door.scene.path);
         Entity leaf;
@@ -280,7 +280,7 @@ TEST_SUITE("animation script") {
             CHECK(door.matrix("door", frame + 1)[2].z <= door.matrix("door", frame)[2].z);
     }
 
-    TEST_CASE("shipped: lights go off one after the other and come back") {
+    TEST_CASE("shipped: lights are switched off one after the other, then on again") {
         Staged toggle("toggle");
         const int all = toggle.lights_on(0);
         CHECK(toggle.lights_on(15) == all - 1);

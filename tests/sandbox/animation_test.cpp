@@ -113,7 +113,7 @@ std::string error_of(const std::vector<Track>& tracks, const World& world) {
 }  // namespace
 
 TEST_SUITE("animation") {
-    TEST_CASE("at a key a value is the key's, to the bit, whatever the interpolation") {
+    TEST_CASE("at a key the value is exactly that of the key, with every interpolation") {
         for (const auto interpolation : {Interpolation::linear, Interpolation::step, Interpolation::smooth}) {
             const Track track = moving(interpolation);
             for (const auto& key : track.translation)
@@ -123,14 +123,14 @@ TEST_SUITE("animation") {
         for (const auto& key : door.rotation) CHECK(pose_at(door, key.frame).rotation == key.value);
     }
 
-    TEST_CASE("before the first key and after the last a value stands still") {
+    TEST_CASE("before the first key and after the last one a value is constant") {
         const Track track = moving(Interpolation::linear);
         for (const int frame : {0, 9, 10}) CHECK(pose_at(track, frame).translation == glm::vec3(1, 2, 3));
         for (const int frame : {24, 25, 1000000})
             CHECK(pose_at(track, frame).translation == glm::vec3(3, 0, -1));
     }
 
-    TEST_CASE("between keys: in proportion, not at all, or at rest at both ends") {
+    TEST_CASE("between keys values are interpolated linearly, in steps, or smoothly") {
         // The values of the keys and the fractions 1/2 and 1/4 between them are exact in binary.
         CHECK(pose_at(moving(Interpolation::linear), 15).translation == glm::vec3(2, 2, 1));
         CHECK(pose_at(moving(Interpolation::linear), 21).translation == glm::vec3(3, 1.5, -1));
@@ -142,7 +142,7 @@ TEST_SUITE("animation") {
               glm::vec3(3.0F, 2.0F - 2.0F * 5.0F / 32.0F, -1.0F));
     }
 
-    TEST_CASE("between equal keys a value stands still, to the bit") {
+    TEST_CASE("between equal keys a value is constant, bit for bit") {
         const glm::vec3 thirds(1.0F / 3.0F, 1.6F, -0.1F);
         const Track track{.node = "lamp",
                           .translation = {{0, thirds}, {7, thirds}},
@@ -151,13 +151,13 @@ TEST_SUITE("animation") {
         for (int frame = 0; frame < 7; ++frame) CHECK(pose_at(track, frame) == pose_at(track, 0));
     }
 
-    TEST_CASE("what has no keys is not driven") {
+    TEST_CASE("values without keys are not animated") {
         CHECK(pose_at(Track{.node = "lamp"}, 3) == Pose{});
         const Pose pose = pose_at(moving(Interpolation::linear), 3);
         CHECK_FALSE((pose.rotation || pose.scale || pose.intensity || pose.colour || pose.enabled));
     }
 
-    TEST_CASE("a light's switch steps, even where all else is smooth") {
+    TEST_CASE("a light is switched in a step, even with smooth interpolation") {
         const Track track{.node = "lamp",
                           .interpolation = Interpolation::smooth,
                           .intensity = {{0, 0.0F}, {8, 4.0F}},
@@ -168,7 +168,7 @@ TEST_SUITE("animation") {
         CHECK(pose_at(track, 4).intensity == 2.0F);
     }
 
-    TEST_CASE("turns go at an even pace around the axis, the shorter way") {
+    TEST_CASE("rotations have a constant speed around the axis and take the shorter way") {
         const Track ahead = turning(0.0F, 90.0F);
         for (int frame = 0; frame <= 10; ++frame) {
             CHECK(heading_at(ahead, frame) == doctest::Approx(9.0 * frame).epsilon(degree_tolerance));
@@ -180,13 +180,13 @@ TEST_SUITE("animation") {
         CHECK(heading_at(turning(0.0F, 270.0F), 5) == doctest::Approx(-45.0).epsilon(degree_tolerance));
     }
 
-    TEST_CASE("a quaternion and its negative are one rotation, on the way as at the keys") {
+    TEST_CASE("a quaternion and its negative are interpolated as the same rotation") {
         Track track = turning(20.0F, 80.0F);
         track.rotation[1].value = -track.rotation[1].value;
         CHECK(heading_at(track, 5) == doctest::Approx(50.0).epsilon(degree_tolerance));
     }
 
-    TEST_CASE("a run shows the script's frames, then the last one or all of them again") {
+    TEST_CASE("after the script's frames a run repeats the last frame, or loops") {
         Script script;
         script.frames = 4;
         for (const int frame : {0, 1, 3}) CHECK(frame_of(script, frame) == frame);
@@ -197,7 +197,7 @@ TEST_SUITE("animation") {
         CHECK(frame_of(script, 11) == 3);
     }
 
-    TEST_CASE("values reach the components, and leave alone what is not driven") {
+    TEST_CASE("values are written to components, and values without keys are not changed") {
         Stage stage;
         Script script = everything(false);
         script.tracks[0].translation.clear();
@@ -218,7 +218,7 @@ TEST_SUITE("animation") {
         CHECK(stage.world.get<Transform>(stage.camera).translation == glm::vec3(0.0F, 1.0F, 4.0F));
     }
 
-    TEST_CASE("a light that is off emits nothing, and comes back as it was") {
+    TEST_CASE("a light that is off emits nothing, and gets its intensity back") {
         Stage stage;
         const Animation animation(everything(false), stage.world);
         const auto lamp = [&] { return stage.world.get<PointLight>(stage.lamp).intensity; };
@@ -231,7 +231,7 @@ TEST_SUITE("animation") {
         CHECK(sun() == 3.0F);   // its initial value
     }
 
-    TEST_CASE("a frame is the same by every way to it") {
+    TEST_CASE("a frame is the same if it is played, jumped to, or jumped back to") {
         for (const bool loop : {false, true}) {
             Stage played;
             const Animation animation(everything(loop), played.world);
@@ -248,7 +248,7 @@ TEST_SUITE("animation") {
         }
     }
 
-    TEST_CASE("a frame that moves nothing changes nothing") {
+    TEST_CASE("a frame in which nothing moves changes no component") {
         Stage stage;
         const Animation animation(everything(false), stage.world);
         animation.apply(stage.world, 11);
@@ -261,7 +261,7 @@ TEST_SUITE("animation") {
         CHECK(stage.world.revision<Transform>() > transforms);
     }
 
-    TEST_CASE("nodes that are not there, not alone or no lights are errors by name") {
+    TEST_CASE("errors name nodes that are missing, ambiguous, or not lights") {
         Stage stage;
         CHECK(error_of({{.node = "lamp"}}, stage.world) == "none");
         CHECK(error_of({{.node = "lamp"}, {.node = "lump"}}, stage.world) ==

@@ -22,7 +22,7 @@ TEST_SUITE("capture") {
         CHECK(*std::max_element(cells.begin(), cells.end()) <= 6);
     }
 
-    TEST_CASE("samples of any number have their mean at the pixel's centre, so that no picture is shifted") {
+    TEST_CASE("the mean of any number of samples is the pixel's centre") {
         for (int count = 1; count <= 65; ++count) {
             CAPTURE(count);
             glm::vec2 sum(0.0F);

@@ -10,7 +10,7 @@
 namespace candela::sandbox {
 
 TEST_SUITE("choosing a configuration") {
-    TEST_CASE("without a wish it is the default, which a window refines, and paces") {
+    TEST_CASE("without options it is the default, with refinement and a frame budget in a window") {
         CHECK(choose_configuration({}, false) == Configuration{});
         Configuration refined;
         refined.refinement.enabled = true;
@@ -18,7 +18,7 @@ TEST_SUITE("choosing a configuration") {
         CHECK(choose_configuration({}, true) == refined);
     }
 
-    TEST_CASE("a file has the last word on refinement, if it says one") {
+    TEST_CASE("a file overrides the default for refinement, if it sets it") {
         const TemporaryFolder folder;
         Options options;
         options.config = folder / "a.json";
@@ -50,7 +50,7 @@ TEST_SUITE("choosing a configuration") {
         CHECK(configuration.path == ShadingPath::deferred);
     }
 
-    TEST_CASE("what is asked for is shown by --print-config") {
+    TEST_CASE("the written configuration has the requested VPL visibility") {
         for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
             Options options;
             options.vpl_visibility = method;

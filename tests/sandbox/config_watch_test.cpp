@@ -75,7 +75,7 @@ constexpr const char* tiled = R"({"path": "tiled-deferred"})";
 }  // namespace
 
 TEST_SUITE("config watch") {
-    TEST_CASE("a file that nobody saves is not read") {
+    TEST_CASE("a file that is not saved is not read again") {
         Watched file;
         for (int i = 0; i < 5; ++i) CHECK_FALSE(file.look());
     }
@@ -86,12 +86,12 @@ TEST_SUITE("config watch") {
             CHECK_FALSE(watch.poll(ConfigWatch::Clock::time_point(std::chrono::seconds(second))));
     }
 
-    TEST_CASE("a save is read once, whichever way it is made, and flags still override it") {
+    TEST_CASE("a saved file is read once, however it was saved, and flags still override it") {
         Watched file;
         SUBCASE("in place") {
             file.write(forward_plus);
         }
-        SUBCASE("by another file") {
+        SUBCASE("by renaming another file") {
             file.replace(forward_plus);
         }
         const auto saved = file.settle();
@@ -100,7 +100,7 @@ TEST_SUITE("config watch") {
         for (int i = 0; i < 3; ++i) CHECK_FALSE(file.look());
     }
 
-    TEST_CASE("a save that changes nothing is a save") {
+    TEST_CASE("a save that changes nothing is read, too") {
         Watched file;
         file.touch();
         const auto saved = file.settle();
@@ -108,7 +108,7 @@ TEST_SUITE("config watch") {
         CHECK(saved->configuration);
     }
 
-    TEST_CASE("a save of as many bytes is told by its time") {
+    TEST_CASE("a save with the same number of bytes is detected by its time") {
         Watched file;
         file.write(R"({"vpls": {"count": 11}})");
         CHECK(file.settle());
@@ -119,7 +119,7 @@ TEST_SUITE("config watch") {
         CHECK(saved->configuration->vpls.count == 22);
     }
 
-    TEST_CASE("the file is looked at no more often than agreed") {
+    TEST_CASE("the file is checked only once per interval") {
         Watched file;
         CHECK_FALSE(file.look());
         file.write(forward_plus);
@@ -127,7 +127,7 @@ TEST_SUITE("config watch") {
         CHECK(path_of(file.settle()) == ShadingPath::forward_plus);
     }
 
-    TEST_CASE("a file that grows is left alone until it is whole") {
+    TEST_CASE("a file is not read while it is growing") {
         Watched file;
         for (const char* part : {"", R"({"path")", R"({"path": "tiled)"}) {
             file.write(part);
@@ -137,7 +137,7 @@ TEST_SUITE("config watch") {
         CHECK(path_of(file.settle()) == ShadingPath::tiled_deferred);
     }
 
-    TEST_CASE("half a file that lay still is read again when it is whole") {
+    TEST_CASE("half a file that has not changed for a while is read, and again when it is complete") {
         Watched file;
         file.write(R"({"path": "tiled)");
         const auto half = file.settle();
@@ -147,7 +147,7 @@ TEST_SUITE("config watch") {
         CHECK(path_of(file.settle()) == ShadingPath::tiled_deferred);
     }
 
-    TEST_CASE("a file that is gone is no save, and is read when it is back") {
+    TEST_CASE("a removed file is ignored, and read when it exists again") {
         Watched file;
         file.remove();
         for (int i = 0; i < 3; ++i) CHECK_FALSE(file.look());
@@ -155,7 +155,7 @@ TEST_SUITE("config watch") {
         CHECK(path_of(file.settle()) == ShadingPath::tiled_deferred);
     }
 
-    TEST_CASE("errors come once a save, by file and member, and a better save recovers") {
+    TEST_CASE("errors are reported once per save, with file and member, and a valid save recovers") {
         Watched file;
         file.write(R"({"path": "fastest", "lists": {"tile_size": 17}, "colour": 1})");
         const auto saved = file.settle();

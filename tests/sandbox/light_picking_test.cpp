@@ -43,7 +43,7 @@ glm::vec3 position_of(const World& world, Entity entity) {
 }  // namespace
 
 TEST_SUITE("light picking") {
-    TEST_CASE("points appear where a pinhole camera shows them, y down") {
+    TEST_CASE("points are projected as by a pinhole camera, with y downwards") {
         World world;
         const Viewport viewport = make_viewport(world, add_camera(world), window);
         const float units_per_metre = 240.0F / (5.0F * std::tan(Camera{}.vertical_fov * 0.5F));
@@ -54,7 +54,7 @@ TEST_SUITE("light picking") {
         CHECK_FALSE(project(viewport, {0.0F, 0.0F, 6.0F}));
     }
 
-    TEST_CASE("the ray through where a point is seen meets the point, in both projections") {
+    TEST_CASE("the ray through the projection of a point hits the point, in both projections") {
         for (const auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
             World world;
             const Viewport viewport = make_viewport(world, add_camera(world, projection), window);
@@ -70,7 +70,7 @@ TEST_SUITE("light picking") {
         }
     }
 
-    TEST_CASE("planes that are parallel or behind are missed") {
+    TEST_CASE("rays miss planes that are parallel or behind") {
         const Ray ray{glm::vec3(0.0F), glm::vec3(0.0F, 0.0F, -1.0F)};
         CHECK_FALSE(intersect_plane(ray, {0.0F, 1.0F, 0.0F}, {0.0F, 1.0F, 0.0F}));
         CHECK_FALSE(intersect_plane(ray, {0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 1.0F}));
@@ -89,7 +89,7 @@ TEST_SUITE("light picking") {
         CHECK_FALSE(pick(markers, viewport, {320.0F, 300.0F}, 20.0F));
     }
 
-    TEST_CASE("a dragged light stays at its depth and under the pointer, below parents too") {
+    TEST_CASE("a dragged light keeps its depth and follows the pointer, also if it has a parent") {
         World world;
         const Entity camera = add_camera(world);
         const Entity parent = world.create();
@@ -114,7 +114,7 @@ TEST_SUITE("light picking") {
         CHECK(glm::distance(project(viewport, moved).value(), {100.0F, 400.0F}) < tolerance_window);
     }
 
-    TEST_CASE("a light below a flat parent cannot be moved, and stays") {
+    TEST_CASE("a light whose parent has a scale of zero along an axis is not moved") {
         World world;
         const Entity parent = world.create();
         world.set(parent, Transform{.scale = glm::vec3(1.0F, 0.0F, 1.0F)});
@@ -123,7 +123,7 @@ TEST_SUITE("light picking") {
         CHECK(position_of(world, light) == glm::vec3(1.0F, 0.0F, 0.0F));
     }
 
-    TEST_CASE("nudging goes along the picture's axes") {
+    TEST_CASE("nudging moves a light along the picture's axes") {
         World world;
         const Viewport viewport = make_viewport(world, add_camera(world), window);
         const Entity light = add_light(world, glm::vec3(0.0F));

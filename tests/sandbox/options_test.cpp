@@ -59,7 +59,7 @@ TEST_SUITE("options") {
         CHECK_FALSE((options.print_config || options.list_configs));
     }
 
-    TEST_CASE("every flag reaches its option") {
+    TEST_CASE("every flag sets its option") {
         const Options options = accepted({"room.glb",
                                           "--headless",
                                           "--context",
@@ -121,7 +121,7 @@ TEST_SUITE("options") {
         CHECK(options.list_configs);
     }
 
-    TEST_CASE("every word of a choice is known") {
+    TEST_CASE("every word of each choice is accepted") {
         CHECK(accepted({"--context", "auto"}).context == ContextChoice::automatic);
         CHECK(accepted({"--context", "window"}).context == ContextChoice::window);
         CHECK(accepted({"--context", "egl"}).context == ContextChoice::egl);
@@ -149,7 +149,7 @@ TEST_SUITE("options") {
         check_refused({"--headless", "--context", "window"}, "--headless", "--context window");
     }
 
-    TEST_CASE("sizes go from one pixel to what a texture holds") {
+    TEST_CASE("sizes range from one pixel to the size of the largest texture") {
         CHECK(accepted({"--size", "1x1"}).size == glm::ivec2(1));
         CHECK(accepted({"--size=16384x1"}).size == glm::ivec2(16384, 1));
         check_refused_value(
@@ -157,7 +157,7 @@ TEST_SUITE("options") {
                        "x64", "64x64x64", "64X64", " 64x64", "64x64 ", "axb", "+1x1"});
     }
 
-    TEST_CASE("numbers are whole and within their range") {
+    TEST_CASE("numbers must be whole and within their range") {
         check_refused_value("--frames", {"0", "-1", "1.5", "abc", "2147483648", "1e3", "3frames"});
         check_refused_value("--samples", {"0", "-1", "1.5", "abc"});
         for (const char* flag : {"--vpls", "--bounces", "--seed"}) {
@@ -186,7 +186,7 @@ TEST_SUITE("options") {
         check_refused({"a.gltf", "b.gltf"}, "b.gltf", "");
     }
 
-    TEST_CASE("help names every flag, and the version stands alone") {
+    TEST_CASE("the help names every flag, and the version is printed alone") {
         const EarlyExit help = std::get<EarlyExit>(parse({"--help"}));
         CHECK(help.status == 0);
         for (const char* flag :
@@ -202,7 +202,7 @@ TEST_SUITE("options") {
         CHECK(version.text == "candela " CANDELA_VERSION "\n");
     }
 
-    TEST_CASE("files that will be written have a known format and a folder") {
+    TEST_CASE("files must have a known format and be in an existing folder") {
         CHECK(accepted({"--out", "a.EXR"}).out == "a.EXR");
         CHECK(accepted({"--out", "/tmp/a.pfm"}).out == "/tmp/a.pfm");
         check_refused_value("--out", {"a.jpg", "a", "png", ".png", "/dev/null", "no/such/folder/a.png"});
@@ -211,7 +211,7 @@ TEST_SUITE("options") {
         check_refused_value("--config", {"no-such-file.json", "/tmp"});
     }
 
-    TEST_CASE("frames have numbers in their names where there is a place for them") {
+    TEST_CASE("the number of a frame replaces placeholders in the file name") {
         CHECK(numbered("a.png", 7) == "a.png");
         CHECK(numbered("a%d.png", 7) == "a7.png");
         CHECK(numbered("in/f%d-%d.exr", 12) == "in/f12-12.exr");

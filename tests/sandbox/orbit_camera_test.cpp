@@ -32,7 +32,7 @@ float roll(const OrbitCamera& camera) {
 }  // namespace
 
 TEST_SUITE("orbit camera") {
-    TEST_CASE("a viewpoint keeps its pose, loses its scale, and turns around what it looks at") {
+    TEST_CASE("a viewpoint keeps its pose, drops its scale, and has its target as pivot") {
         const OrbitCamera camera = some_camera();
         CHECK(distance(camera.eye, {3.0F, 2.0F, 5.0F}) < rounding);
         CHECK(distance(camera.pivot(), {1.0F, 1.0F, -1.0F}) < rounding);
@@ -45,7 +45,7 @@ TEST_SUITE("orbit camera") {
               rounding);
     }
 
-    TEST_CASE("a target behind the eye still leaves a pivot ahead") {
+    TEST_CASE("the pivot is in front of the camera, even if the target is behind it") {
         CHECK(look_from(glm::mat4(1.0F), {0.0F, 0.0F, 7.0F}, 0.25F).distance == 0.25F);
     }
 
@@ -58,14 +58,14 @@ TEST_SUITE("orbit camera") {
         CHECK(std::abs(roll(camera)) < 20.0F * rounding);
     }
 
-    TEST_CASE("a quarter turn to the right and up moves the eye there") {
+    TEST_CASE("orbiting to the right or up moves the camera to the right or up") {
         const OrbitCamera front = look_from(glm::translate(glm::mat4(1.0F), {0.0F, 0.0F, 2.0F}), {}, 0.1F);
         CHECK(distance(orbited(front, {glm::half_pi<float>(), 0.0F}).eye, {2.0F, 0.0F, 0.0F}) < rounding);
         const float half = std::sqrt(2.0F);
         CHECK(distance(orbited(front, {0.0F, glm::quarter_pi<float>()}).eye, {0.0F, half, half}) < rounding);
     }
 
-    TEST_CASE("the view never tips over a pole, and comes back from it") {
+    TEST_CASE("orbiting stops at the poles, and can turn back") {
         OrbitCamera camera = some_camera();
         for (int i = 0; i < 50; ++i) camera = orbited(camera, {0.0F, 0.3F});
         CHECK(camera.forward().y < -0.99F);

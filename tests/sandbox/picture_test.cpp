@@ -66,7 +66,7 @@ bool names(const std::string& error, const fs::path& path) {
 }  // namespace
 
 TEST_SUITE("picture") {
-    TEST_CASE("EXR and PFM keep every bit at every shape") {
+    TEST_CASE("EXR and PFM keep every bit of pictures of every shape") {
         const TemporaryFolder folder;
         for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(7, 3), glm::ivec2(3, 70),
                                       glm::ivec2(4096, 1), glm::ivec2(1, 4097)}) {
@@ -79,7 +79,7 @@ TEST_SUITE("picture") {
         }
     }
 
-    TEST_CASE("values that no display shows survive") {
+    TEST_CASE("values that no display can show are kept") {
         const TemporaryFolder folder;
         using Limits = std::numeric_limits<float>;
         const Picture picture{{2, 2},
@@ -93,7 +93,7 @@ TEST_SUITE("picture") {
         CHECK(same_bits(read_pfm(folder / "a.pfm"), picture));
     }
 
-    TEST_CASE("a PFM is laid out as its specification says") {
+    TEST_CASE("a PFM has the layout of its specification") {
         const TemporaryFolder folder;
         write_pfm(folder / "a.pfm", Picture{{1, 2}, {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}}});
         // The bottom row first, each float with its lowest byte first: 4 is 0x40800000, 1 is 0x3f800000.
@@ -105,7 +105,7 @@ TEST_SUITE("picture") {
         CHECK(file.substr(header.size() + 12, 4) == std::string("\x00\x00\x80\x3f", 4));
     }
 
-    TEST_CASE("a PFM may be big-endian, which its positive scale says") {
+    TEST_CASE("a PFM with a positive scale is read as big-endian") {
         const TemporaryFolder folder;
         // 1 is 0x3f800000, -2 is 0xc0000000, the smallest denormal is 0x00000001.
         write(folder / "a.pfm",
@@ -114,7 +114,7 @@ TEST_SUITE("picture") {
         CHECK(same_bits(read_pfm(folder / "a.pfm"), expected));
     }
 
-    TEST_CASE("a PFM may be grey, then all channels hold its value") {
+    TEST_CASE("all channels of a grey PFM have its value") {
         const TemporaryFolder folder;
         const std::vector<float> values{1.0F, 2.0F, 3.0F, 4.0F, 5.0F, -0.0F};
         write_grey_pfm(folder / "a.pfm", {2, 3}, values);
@@ -130,7 +130,7 @@ TEST_SUITE("picture") {
         CHECK(names(error_of([&] { write_grey_pfm(folder / "b.pfm", {2, 2}, values); }), folder / "b.pfm"));
     }
 
-    TEST_CASE("a file that was cut short is refused at every length") {
+    TEST_CASE("a truncated file is refused at every length") {
         const TemporaryFolder folder;
         write_pfm(folder / "a.pfm", gradient({5, 3}));
         write_exr(folder / "a.exr", gradient({5, 3}));
@@ -148,7 +148,7 @@ TEST_SUITE("picture") {
         }
     }
 
-    TEST_CASE("a PNG holds the bytes that were given, from the top") {
+    TEST_CASE("a PNG contains the given bytes, with the top row first") {
         const TemporaryFolder folder;
         const std::vector<std::uint8_t> rgb{255, 0,  0,  0,  255, 0,  1,  2,  3,
                                             10,  20, 30, 40, 50,  60, 70, 80, 90};
@@ -165,7 +165,7 @@ TEST_SUITE("picture") {
         stbi_image_free(pixels);
     }
 
-    TEST_CASE("pixels that do not fill the picture are refused") {
+    TEST_CASE("pixels that do not match the size are refused") {
         const TemporaryFolder folder;
         const fs::path path = folder / "a.png";
         const std::vector<std::uint8_t> rgb(11);
@@ -176,7 +176,7 @@ TEST_SUITE("picture") {
         CHECK(folder.file_count() == 0);
     }
 
-    TEST_CASE("what cannot be written is named, and what was there stays") {
+    TEST_CASE("errors name files that cannot be written, and keep what exists there") {
         const TemporaryFolder folder;
         const Picture picture = gradient({4, 4});
         const fs::path lost = folder / "no-such-folder" / "a.pfm";
@@ -205,7 +205,7 @@ TEST_SUITE("picture") {
         CHECK(folder.file_count() == 2);
     }
 
-    TEST_CASE("files that are no pictures are refused by name") {
+    TEST_CASE("files that are not pictures are refused by name") {
         const TemporaryFolder folder;
         const fs::path path = folder / "a.pfm";
         CHECK(names(error_of([&] { (void)read_pfm(path); }), path));

@@ -46,7 +46,7 @@ class Played {
 }  // namespace
 
 TEST_SUITE("playback") {
-    TEST_CASE("it plays a frame at a time, and pauses at the end") {
+    TEST_CASE("it advances one frame at a time, and pauses at the end") {
         Played played(false);
         for (const float frame : {0.0F, 1.0F, 2.0F, 3.0F}) {
             CHECK(played.playback.playing());
@@ -57,13 +57,13 @@ TEST_SUITE("playback") {
         CHECK(played.advance() == 3.0F);
     }
 
-    TEST_CASE("a loop goes on from the start") {
+    TEST_CASE("a loop continues at the start") {
         Played played(true);
         for (int frame = 0; frame < 11; ++frame) CHECK(played.advance() == static_cast<float>(frame % 4));
         CHECK(played.playback.playing());
     }
 
-    TEST_CASE("paused it stands, then goes on from there") {
+    TEST_CASE("after a pause it continues where it was paused") {
         Played played(false);
         static_cast<void>(played.advance());
         static_cast<void>(played.advance());
@@ -74,7 +74,7 @@ TEST_SUITE("playback") {
         CHECK(played.advance() == 2.0F);
     }
 
-    TEST_CASE("played again after the end it starts over") {
+    TEST_CASE("playing again after the end starts over") {
         Played played(false);
         for (int frame = 0; frame < 5; ++frame) static_cast<void>(played.advance());
         played.playback.toggle();
@@ -97,7 +97,7 @@ TEST_SUITE("playback") {
         CHECK(played.advance() == 2.0F);
     }
 
-    TEST_CASE("a light that is dragged is the script's while it plays and people's while it is paused") {
+    TEST_CASE("a dragged light keeps its place only while the script is paused") {
         Played played(false);
         static_cast<void>(played.advance());
         played.drag(9.0F);

@@ -38,7 +38,7 @@ RunReport some_run() {
 }  // namespace
 
 TEST_SUITE("report") {
-    TEST_CASE("report.json has what scripts look for") {
+    TEST_CASE("report.json has the members that scripts use") {
         const auto json = nlohmann::json::parse(to_json(some_run()));
         CHECK(json["gl_renderer"] == "a driver");
         CHECK(json["context"] == "EGL surfaceless");
@@ -61,21 +61,21 @@ TEST_SUITE("report") {
         CHECK(json["memory"]["shared_by_aliasing_bytes"] == 9);
     }
 
-    TEST_CASE("without indirect light there is no account of it") {
+    TEST_CASE("without indirect light there is no energy account") {
         RunReport run = some_run();
         run.state.vpls.reset();
         CHECK(nlohmann::json::parse(to_json(run))["vpls"].is_null());
         CHECK(to_table(run.frames[0], run.state).find("emitted") == std::string::npos);
     }
 
-    TEST_CASE("the table tells of lists only where there are some") {
+    TEST_CASE("the table mentions light lists only if there are any") {
         RunReport run = some_run();
         CHECK(to_table(run.frames[0], run.state).find("6.5 in the mean, 19 at most") != std::string::npos);
         run.state.lights.tile_max = 0;
         CHECK(to_table(run.frames[0], run.state).find("in a list") == std::string::npos);
     }
 
-    TEST_CASE("the residual is what the worst channel lacks") {
+    TEST_CASE("the residual is the relative loss of the worst channel") {
         CHECK(relative_residual(balanced()) < 1e-12);
         EnergyAccount lossy = balanced();
         lossy.absorbed.g -= 2.0;
@@ -85,7 +85,7 @@ TEST_SUITE("report") {
         CHECK(relative_residual(lossy) == std::numeric_limits<double>::infinity());
     }
 
-    TEST_CASE("light that is lost is an error that names the scene") {
+    TEST_CASE("lost energy is an error that names the scene") {
         Report state;
         check_energy("a.gltf", state);  // without VPLs there is no account
         state.vpls.emplace();

@@ -64,7 +64,7 @@ TEST_SUITE("scene") {
         CHECK(world.count<Camera>() == 2);
     }
 
-    TEST_CASE("a camera that is not there is a error that lists those that are") {
+    TEST_CASE("a missing camera is an error that lists the existing ones") {
         World world;
         add_camera(world, "front");
         for (const char* wanted : {"back", "1", "-1", "0x", ""}) {
@@ -75,7 +75,7 @@ TEST_SUITE("scene") {
         CHECK(error_of(World(), "0").find("none") != std::string::npos);
     }
 
-    TEST_CASE("bounds are those of the placed meshes") {
+    TEST_CASE("the bounds are those of the meshes in world space") {
         World world;
         CHECK(bounds(world).radius == 0.0F);
         add_triangle(world, 1.0F);
@@ -84,7 +84,7 @@ TEST_SUITE("scene") {
         CHECK(scene.radius == doctest::Approx(0.5 * std::sqrt(9.0 + 4.0)));
     }
 
-    TEST_CASE("a scene without cameras is framed: its corners lie within the picture") {
+    TEST_CASE("a scene without cameras gets one that shows all of its bounds") {
         for (const float aspect : {0.4F, 1.0F, 2.5F}) {
             World world;
             add_triangle(world, 100.0F);

@@ -26,7 +26,7 @@ Options small_headless() {
 }  // namespace
 
 TEST_SUITE("session") {
-    TEST_CASE("a headless run leaves the picture, the report and the graph") {
+    TEST_CASE("a headless run writes the picture, the report and the graph") {
         const TemporaryFolder folder;
         Options options = small_headless();
         options.samples = 2;
@@ -47,7 +47,7 @@ TEST_SUITE("session") {
         CHECK(report["lights"]["count"] == 1);
     }
 
-    TEST_CASE("the same command gives the same bits") {
+    TEST_CASE("the same command gives the same picture, bit for bit") {
         const TemporaryFolder folder;
         Options options = small_headless();
         options.frames = 2;
@@ -61,7 +61,7 @@ TEST_SUITE("session") {
         CHECK(first.pixels == read_pfm(*options.out).pixels);
     }
 
-    TEST_CASE("frames of a still scene without numbers are one refined picture") {
+    TEST_CASE("frames of a static scene give one refined picture if the output is not numbered") {
         const TemporaryFolder folder;
         Options options = small_headless();
         options.out = folder / "one.pfm";
@@ -120,7 +120,7 @@ TEST_SUITE("session") {
         }
     }
 
-    TEST_CASE("a run is as long as its script; frames beyond the end are the last") {
+    TEST_CASE("a run is as long as its script, and frames beyond the end repeat the last one") {
         const TemporaryFolder folder;
         const TemporaryFolder inputs;
         std::ofstream(inputs / "a.json") << R"({"frames": 2, "tracks": [
@@ -143,7 +143,7 @@ TEST_SUITE("session") {
         CHECK(before * 0.25F == frame(1)[10 * 33 + 16]);
     }
 
-    TEST_CASE("errors end with status 2 and leave nothing behind") {
+    TEST_CASE("errors end with status 2 and leave no files") {
         const TemporaryFolder folder;
         const TemporaryFolder inputs;
         std::ofstream(inputs / "broken.json") << R"({"path": "sideways"})";
@@ -179,7 +179,7 @@ TEST_SUITE("session") {
             options.animate = "orbit-light";
             options.out = folder / "%d.png";
         }
-        SUBCASE("a picture that the driver cannot hold") {
+        SUBCASE("a picture that is too large for the driver") {
             options.size = glm::ivec2(1 << 24, 1);
         }
         CHECK(run(options) == 2);
