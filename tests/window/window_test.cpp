@@ -305,7 +305,7 @@ void check_same_beside_the_box(const Shot& before, const Shot& after) {
 }  // namespace
 
 TEST_SUITE("window") {
-    TEST_CASE("a wall is brightest right behind the light, before it is dragged and after") {
+    TEST_CASE("a wall is brightest right behind the light, also after the light is dragged") {
         const DarkConfiguration dark;
         App app({"--indirect", "off", "--config", dark.path()});
         // The irradiance I·d/r³ on the wall is largest at the foot of the perpendicular.
@@ -332,7 +332,7 @@ TEST_SUITE("window") {
         CHECK(app.quit() == 0);
     }
 
-    TEST_CASE("a drag on empty space turns the view and leaves the light") {
+    TEST_CASE("a drag on empty space turns the view and does not move the light") {
         const DarkConfiguration dark;
         App app({"--indirect", "off", "--config", dark.path()});
         const Shot before = app.settled();
@@ -349,7 +349,7 @@ TEST_SUITE("window") {
         CHECK(app.quit() == 0);
     }
 
-    TEST_CASE("a script plays to its end, and steps and plays again by keyboard") {
+    TEST_CASE("a script plays to its end, and keys step it and play it again") {
         const DarkConfiguration dark;
         const ScriptFile script(R"({"frames": 20, "tracks": [{"node": "ceiling light",
             "translation": [[0, [-0.4, 1.6, 0]], [19, [0.4, 1.6, 0]]]}]})");
@@ -365,7 +365,7 @@ TEST_SUITE("window") {
         CHECK(app.quit() == 0);
     }
 
-    TEST_CASE("a script that has ended leaves its light to be dragged, and takes it back") {
+    TEST_CASE("after a script has ended its light can be dragged, and a step moves it back") {
         const DarkConfiguration dark;
         const ScriptFile script(R"({"frames": 2, "tracks": [{"node": "ceiling light",
             "interpolation": "step", "translation": [[0, [-0.4, 1.6, 0]], [1, [0, 1.6, 0]]]}]})");
@@ -379,7 +379,7 @@ TEST_SUITE("window") {
         CHECK(app.quit() == 0);
     }
 
-    TEST_CASE("the view goes with a camera that a script drives, and orbits once it stands") {
+    TEST_CASE("the view follows a camera that a script moves, and can be orbited after the end") {
         const DarkConfiguration dark;
         const ScriptFile script(R"({"frames": 10, "tracks": [{"node": "camera",
             "translation": [[0, [0, 1, 3.9]], [9, [0.3, 1, 3.9]]]}]})");
@@ -393,7 +393,7 @@ TEST_SUITE("window") {
         CHECK(app.quit() == 0);
     }
 
-    TEST_CASE("what is written is the whole picture, however short a frame's time was") {
+    TEST_CASE("written pictures have full quality, however small the frame budget is") {
         const TemporaryFolder folder;
         const auto written = [&](const std::string& budget_ms) {
             const fs::path config = folder / "config.json";
@@ -413,7 +413,7 @@ TEST_SUITE("window") {
         CHECK((written("0.001") == whole));
     }
 
-    TEST_CASE("a configuration that is saved goes into force, and a bad one leaves it there") {
+    TEST_CASE("a saved configuration takes effect, and an invalid one changes nothing") {
         const TemporaryFolder folder;
         const fs::path config = folder / "config.json";
         const fs::path report = folder / "report.json";
