@@ -32,15 +32,15 @@ TEST_SUITE("reference: closed forms") {
         }
     }
 
-    TEST_CASE("a disc shows the form factor of the lit disc across") {
+    TEST_CASE("a disc is lit according to the form factor of the lit disc opposite") {
         CHECK(parallel_discs());
     }
-    TEST_CASE("the halves tell how noisy their mean is") {
+    TEST_CASE("the difference of the halves gives the noise of their mean") {
         CHECK(noise_of_discs());
     }
 }
 
-TEST_SUITE("reference: a wrong reference is noticed") {
+TEST_SUITE("reference: errors in the tracer are detected") {
     TEST_CASE("without the cosine") {
         CHECK_FALSE(plane_under_point_light(Defect::drop_cosine));
         CHECK_FALSE(plane_under_ranged_light(Defect::drop_cosine));

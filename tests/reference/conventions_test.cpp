@@ -65,7 +65,7 @@ std::shared_ptr<const Material> with_holes() {
 }  // namespace
 
 TEST_SUITE("reference: conventions") {
-    TEST_CASE("the back of a single-sided surface is not seen, and stops light") {
+    TEST_CASE("the back of a single-sided surface is invisible, but blocks light") {
         Scene scene = lit_ground();
         CHECK(seen(scene) == doctest::Approx(0.5F));
         SUBCASE("single-sided") {
@@ -82,7 +82,7 @@ TEST_SUITE("reference: conventions") {
         }
     }
 
-    TEST_CASE("the back of a single-sided surface reflects nothing of bounced light") {
+    TEST_CASE("the back of a single-sided surface does not reflect bounced light") {
         // A pane above the ground reflects light to the ground only if its front faces down or it is
         // double-sided.
         for (const bool faces_down : {true, false}) {
@@ -99,7 +99,7 @@ TEST_SUITE("reference: conventions") {
         }
     }
 
-    TEST_CASE("a mask makes holes for the eye and for light") {
+    TEST_CASE("the camera and light see through the holes of a mask") {
         Scene scene = lit_ground();
         const Entity pane = add_pane(scene, with_holes());
         // Texel centres are a quarter of the square's side away from its middle.
@@ -113,7 +113,7 @@ TEST_SUITE("reference: conventions") {
         }
     }
 
-    TEST_CASE("a blended surface covers what lies behind by its alpha, and casts no shadow") {
+    TEST_CASE("a blended surface covers its background by its alpha, and casts no shadow") {
         Scene scene = lit_ground();
         add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 0.25F}, AlphaMode::blend, false));
         CHECK(seen(scene) == doctest::Approx(0.25F * 0.2F + 0.75F * 0.5F));
@@ -122,7 +122,7 @@ TEST_SUITE("reference: conventions") {
         CHECK(seen(scene) == doctest::Approx(0.5F * 0.8F + 0.5F * (0.25F * 0.2F + 0.75F * 0.5F)));
     }
 
-    TEST_CASE("bounced light passes a blended surface unchanged") {
+    TEST_CASE("bounced light passes through a blended surface unchanged") {
         Scene scene = furnace_box(0.5F);
         const Estimate without = traced(scene, 16, 3);
         add(scene.world, Transform{.translation = {0, -0.5F, 0}},
@@ -158,14 +158,14 @@ TEST_SUITE("reference: conventions") {
         CHECK(seen(scene) == doctest::Approx(0.5F * std::cos(1.0F)));
     }
 
-    TEST_CASE("a light that casts no shadow shines through, onto what is seen") {
+    TEST_CASE("a light that casts no shadow lights occluded surfaces") {
         Scene scene = lit_ground();
         add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 1}, AlphaMode::opaque, false), false);
         scene.world.edit<DirectionalLight>(scene.light, [](auto& light) { light.casts_shadow = false; });
         CHECK(seen(scene) == doctest::Approx(0.5F));
     }
 
-    TEST_CASE("mirrored placements keep their front") {
+    TEST_CASE("mirrored instances keep their front") {
         Scene scene = lit_ground();
         const Entity pane = add_pane(scene, made_of({0.2F, 0.2F, 0.2F, 1}, AlphaMode::opaque, false));
         scene.world.edit<Transform>(pane, [](auto& pose) { pose.scale = {-1, 1, 1}; });

@@ -46,7 +46,7 @@ double correlation(const sandbox::Picture& a, const sandbox::Picture& b, const s
 }  // namespace
 
 TEST_SUITE("reference: tracer") {
-    TEST_CASE("a seed gives one picture, on any number of threads") {
+    TEST_CASE("a seed gives the same picture on any number of threads") {
         const Scene scene = shipped_scene("glass");
         const Settings settings{.size = {40, 30}, .samples = 8, .seed = 3, .threads = 1};
         const Estimate once = traced(scene, settings);
@@ -74,7 +74,7 @@ TEST_SUITE("reference: tracer") {
         CHECK(std::abs(correlation(one.halves[0], two.halves[0], truth.indirect)) < 0.15);
     }
 
-    TEST_CASE("the mean of the halves is the indirect light, which with the direct light makes the total") {
+    TEST_CASE("indirect light is the mean of the halves, and the total is direct plus indirect light") {
         const Estimate estimate = traced(cornell_box(), {.size = {32, 32}, .samples = 4});
         const sandbox::Picture total = reference::total(estimate);
         for (std::size_t i = 0; i < total.pixels.size(); ++i) {
@@ -84,7 +84,7 @@ TEST_SUITE("reference: tracer") {
         }
     }
 
-    TEST_CASE("without bounces there is no indirect light, and bounces add up") {
+    TEST_CASE("without bounces there is no indirect light, and each bounce adds some") {
         const Scene scene = furnace_box(0.5F);
         const auto indirect = [&](std::optional<std::uint32_t> bounces) {
             const Estimate estimate = traced(scene, {.size = {32, 32}, .samples = 64, .bounces = bounces});
@@ -103,7 +103,7 @@ TEST_SUITE("reference: tracer") {
         CHECK(all.value - last < all.value / 64.0 + 4.0 * all.error);
     }
 
-    TEST_CASE("paths end without a loss in a white room, however long they get") {
+    TEST_CASE("long paths in a nearly white room end without bias") {
         // In a closed box of albedo 0.97 paths get long: Russian roulette after many bounces must not change
         // the mean.
         Scene scene;
@@ -120,7 +120,7 @@ TEST_SUITE("reference: tracer") {
         CHECK(std::abs(any.value - limited.value) < 4.0 * std::hypot(any.error, limited.error));
     }
 
-    TEST_CASE("impossible requests are refused") {
+    TEST_CASE("invalid requests are refused") {
         const Scene scene = cornell_box();
         CHECK_THROWS_AS(traced(scene, {.size = {8, 8}, .samples = 3}), std::invalid_argument);
         CHECK_THROWS_AS(traced(scene, {.size = {8, 8}, .samples = 0}), std::invalid_argument);
