@@ -33,7 +33,7 @@ std::string error_of(const Comparison& comparison) {
 }  // namespace
 
 TEST_SUITE("compare") {
-    TEST_CASE("all measures are printed, of PFM and EXR alike") {
+    TEST_CASE("all measures are printed, for PFM and EXR files") {
         const TemporaryFolder folder;
         write_pfm(folder / "a.pfm", constant({5, 3}, glm::vec3(0.75F)));
         write_exr(folder / "b.exr", constant({5, 3}, glm::vec3(0.5F)));
@@ -43,7 +43,7 @@ TEST_SUITE("compare") {
             "relMSE   0.247525\nRMSE     0.433013\nbias     0.5\nspikes   1.5\nFLIP     0."));
     }
 
-    TEST_CASE("a grey mask leaves pixels out, and the heat map shows them grey") {
+    TEST_CASE("a mask excludes pixels, and the heat map shows them grey") {
         const TemporaryFolder folder;
         Picture picture = constant({2, 2}, glm::vec3(1.0F));
         write_pfm(folder / "b.pfm", picture);

@@ -62,12 +62,12 @@ TEST_SUITE("flip") {
         CHECK(*std::max_element(same.map.begin(), same.map.end()) == 0.0);
     }
 
-    TEST_CASE("green and blue differ the most that colours can") {
+    TEST_CASE("green and blue have the largest difference that is possible") {
         const Flip far = flip(constant(shape, {0.0F, 1.0F, 0.0F}), constant(shape, {0.0F, 0.0F, 1.0F}));
         CHECK(far.mean == doctest::Approx(1.0).epsilon(1e-9));
     }
 
-    TEST_CASE("flat greys differ by their lightness alone") {
+    TEST_CASE("flat greys differ only by their lightness") {
         // The two decimals of a and b in the table are 1e-4 of the distance.
         CHECK(flip(grey(0.0F), grey(1.0F)).mean == doctest::Approx(flat_difference(100.0)).epsilon(1e-3));
         const auto lightness = [](double y) { return 116.0 * std::cbrt(y) - 16.0; };
@@ -81,7 +81,7 @@ TEST_SUITE("flip") {
               doctest::Approx(flat_difference(0.004 * 903.3)).epsilon(1e-3));
     }
 
-    TEST_CASE("it grows with contrast and does not tell picture from reference") {
+    TEST_CASE("it grows with contrast, and stays equal if picture and reference are swapped") {
         double last = 0.0;
         for (const float contrast : {0.01F, 0.05F, 0.1F, 0.2F, 0.4F}) {
             Picture picture = grey(0.5F);
@@ -93,14 +93,14 @@ TEST_SUITE("flip") {
         }
     }
 
-    TEST_CASE("columns are treated as rows are") {
+    TEST_CASE("rows and columns are treated equally") {
         const Picture a = noise(shape, 1);
         const Picture b = noise(shape, 2);
         // Sums in another order: rounding errors of doubles, after a power and a difference.
         CHECK(flip(transposed(a), transposed(b)).mean == doctest::Approx(flip(a, b).mean).epsilon(1e-9));
     }
 
-    TEST_CASE("detail too fine to be seen differs less than coarse detail") {
+    TEST_CASE("detail that is too fine to be seen counts less than coarse detail") {
         const Picture flat = constant({96, 96}, glm::vec3(0.5F));
         const double fine = flip(chequered(1), flat).mean;
         const double coarse = flip(chequered(12), flat).mean;
@@ -108,7 +108,7 @@ TEST_SUITE("flip") {
         CHECK(fine < 0.25 * coarse);
     }
 
-    TEST_CASE("a point stands out as the strength of the detectors' middle says") {
+    TEST_CASE("the difference of a single bright point agrees with its closed form") {
         Picture point = constant({21, 21}, glm::vec3(0.0F));
         point.pixels[10 * 21 + 10] = glm::vec3(1.0F);
         const Flip seen = flip(point, constant({21, 21}, glm::vec3(0.0F)));
@@ -130,7 +130,7 @@ TEST_SUITE("flip") {
         CHECK(seen.map[0] < 1e-6);
     }
 
-    TEST_CASE("pictures of all colours agree with the equations written out a second time") {
+    TEST_CASE("differences of pictures of all colours agree with a second implementation") {
         // The expected values were computed with NumPy, with dense two-dimensional kernels instead of
         // separable ones.
         Picture a{{9, 6}, {}};
@@ -150,12 +150,12 @@ TEST_SUITE("flip") {
         CHECK(seen.map[5 * 9 + 8] == doctest::Approx(0.2784559750).epsilon(1e-6));
     }
 
-    TEST_CASE("what a screen cannot show is clamped") {
+    TEST_CASE("values that a screen cannot show are clamped") {
         CHECK(flip(grey(7.0F), grey(1.0F)).mean == 0.0);
         CHECK(flip(grey(-3.0F), grey(0.0F)).mean == 0.0);
     }
 
-    TEST_CASE("pixels off the mask are left out of the mean") {
+    TEST_CASE("pixels outside the mask are excluded from the mean") {
         Picture picture = grey(0.0F);
         picture.pixels[0] = glm::vec3(1.0F);
         const Flip all = flip(picture, grey(0.0F));

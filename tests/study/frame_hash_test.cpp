@@ -21,7 +21,7 @@ sandbox::Script script_of(const char* members = "") {
 }  // namespace
 
 TEST_SUITE("frame hash") {
-    TEST_CASE("frames that show the same have one hash, others have their own") {
+    TEST_CASE("equal frames have equal hashes, different frames have different hashes") {
         const sandbox::Script script = script_of();
         const std::string still = frame_hash(scene, script, 0);
         CHECK(still.size() == 16);
@@ -30,13 +30,13 @@ TEST_SUITE("frame hash") {
         CHECK(frame_hash(scene, script, 3) != frame_hash(scene, script, 2));
     }
 
-    TEST_CASE("after its end a script stands still or begins anew") {
+    TEST_CASE("frames after the end have the hash of the last frame, or of the frame in the loop") {
         CHECK(frame_hash(scene, script_of(), 7) == frame_hash(scene, script_of(), 3));
         const sandbox::Script loop = script_of(R"("loop": true, )");
         CHECK(frame_hash(scene, loop, 6) == frame_hash(scene, loop, 2));
     }
 
-    TEST_CASE("another scene, node or kind of value is another frame") {
+    TEST_CASE("another scene, node or kind of value gives another hash") {
         const auto hash = [](const char* track) {
             return frame_hash(
                 scene, sandbox::read_script(std::string(R"({"frames": 1, "tracks": [)") + track + "]}"), 0);

@@ -60,13 +60,13 @@ TEST_SUITE("heat map") {
         }
     }
 
-    TEST_CASE("values beyond the ramp have the colours of its ends") {
+    TEST_CASE("values outside the ramp have the colours of its ends") {
         CHECK(heat_colour(-1.0) == heat_colour(0.0));
         CHECK(heat_colour(2.0) == heat_colour(1.0));
         CHECK(heat_colour(std::numeric_limits<double>::infinity()) == heat_colour(1.0));
     }
 
-    TEST_CASE("without a scale the largest error is brightest") {
+    TEST_CASE("without a scale the largest error has the brightest colour") {
         const HeatMap map = heat_map(errors_on(reference, 0.25F), reference);
         CHECK(map.size == glm::ivec2(2, 2));
         // √(3 · 1² / (3 · 1.01)).
@@ -77,7 +77,7 @@ TEST_SUITE("heat map") {
         CHECK(colour_at(map, 3) == bytes_of(1.0));
     }
 
-    TEST_CASE("a scale makes maps comparable, and what is above it is brightest") {
+    TEST_CASE("with a scale, errors above it have the brightest colour") {
         const double scale = 0.5 / std::sqrt(1.01);
         const HeatMap map = heat_map(errors_on(reference, 0.25F), reference, {}, scale);
         CHECK(map.scale == scale);
@@ -86,7 +86,7 @@ TEST_SUITE("heat map") {
         CHECK(colour_at(map, 3) == bytes_of(1.0));
     }
 
-    TEST_CASE("pixels off the mask are grey and set no scale") {
+    TEST_CASE("pixels outside the mask are grey and do not affect the scale") {
         const Mask hit{1, 1, 1, 0};
         const HeatMap map = heat_map(errors_on(reference, 0.25F), reference, hit);
         CHECK(map.scale == doctest::Approx(0.5 / std::sqrt(1.01)));
@@ -94,7 +94,7 @@ TEST_SUITE("heat map") {
         CHECK(colour_at(map, 3) == Colour{128, 128, 128});
     }
 
-    TEST_CASE("no error is cold, an infinite one hot") {
+    TEST_CASE("no error has the darkest colour, an infinite error the brightest") {
         const HeatMap cold = heat_map(reference, reference);
         CHECK(cold.scale == 0.0);
         for (std::size_t pixel = 0; pixel < 4; ++pixel) CHECK(colour_at(cold, pixel) == bytes_of(0.0));
@@ -106,7 +106,7 @@ TEST_SUITE("heat map") {
         CHECK(colour_at(hot, 2) == bytes_of(1.0));
     }
 
-    TEST_CASE("a scale that is none is refused") {
+    TEST_CASE("invalid scales are refused") {
         for (const double scale : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
             CHECK_THROWS_AS((void)heat_map(reference, reference, {}, scale), std::invalid_argument);
         }

@@ -12,11 +12,11 @@ using namespace candela::study;
 using candela::sandbox::TemporaryFolder;
 
 TEST_SUITE("JSON lines") {
-    TEST_CASE("a line holds no breaks and keeps the order of its members") {
+    TEST_CASE("a line contains no line breaks and keeps the order of its members") {
         CHECK(to_line({{"b", 1}, {"a", {{"text", "two\nlines"}}}}) == R"({"b":1,"a":{"text":"two\nlines"}})");
     }
 
-    TEST_CASE("a number that JSON cannot hold is refused by name, not written as null") {
+    TEST_CASE("a number that JSON cannot represent is refused by name, not written as null") {
         for (const double value :
              {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
               -std::numeric_limits<double>::infinity()}) {
@@ -32,12 +32,12 @@ TEST_SUITE("JSON lines") {
                         std::domain_error);
     }
 
-    TEST_CASE("numbers come back as they were") {
+    TEST_CASE("numbers are read back exactly") {
         const double third = 1.0 / 3.0;
         CHECK(Json::parse(to_line({{"x", third}})).at("x").get<double>() == third);
     }
 
-    TEST_CASE("bad files are named") {
+    TEST_CASE("errors name files that cannot be read") {
         const TemporaryFolder folder;
         candela::sandbox::write_text(folder / "broken.json", "{");
         for (const char* name : {"none.json", "broken.json"}) {

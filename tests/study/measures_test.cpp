@@ -41,7 +41,7 @@ TEST_SUITE("measures") {
         CHECK(errors.spikes == 1.0);
     }
 
-    TEST_CASE("an offset of all channels: every measure follows from it") {
+    TEST_CASE("all measures of a constant offset equal their closed forms") {
         // |a - r|² = 3 · 0.5², |r|² = |m|² = 3 · 2².
         const Errors errors = measure(constant({8, 5}, glm::vec3(2.5F)), constant({8, 5}, glm::vec3(2.0F)));
         CHECK(errors.rel_mse == about(0.25 / (4.0 * 1.01)));
@@ -50,7 +50,7 @@ TEST_SUITE("measures") {
         CHECK(errors.spikes == about(1.25));
     }
 
-    TEST_CASE("channels count as parts of one vector") {
+    TEST_CASE("the channels of a pixel are measured as one vector") {
         // |a - r|² = 2² + 1², |r|² = |m|² = 1 + 4 + 16; Σ(a - r) = 1 of Σr = 7; the largest channels are 4
         // and 5.
         const Errors errors = measure(row({{1.0F, 0.0F, 4.0F + 1.0F}}), row({{1.0F, 2.0F, 4.0F}}));
@@ -60,7 +60,7 @@ TEST_SUITE("measures") {
         CHECK(errors.spikes == about(5.0 / 4.0));
     }
 
-    TEST_CASE("the mean is a vector: colours that cancel nothing still share its floor") {
+    TEST_CASE("the floor uses the length of the mean colour, not the mean of lengths") {
         // r is red in one pixel and green in the other, so m = (1, 1, 0) / 2 and
         // m
         // ² = 1/2, not 1 as a mean of lengths would give. Each pixel lacks all of its light.
@@ -71,7 +71,7 @@ TEST_SUITE("measures") {
         CHECK(errors.spikes == 0.0);
     }
 
-    TEST_CASE("a black pixel's error is weighed by the floor alone") {
+    TEST_CASE("the error of a black pixel is divided by the floor alone") {
         // m = (1, 1, 1). The second pixel is black where the picture shows 0.1: 0.03 / 0.03.
         const Errors errors =
             measure(row({glm::vec3(2.0F), glm::vec3(0.1F)}), row({glm::vec3(2.0F), glm::vec3(0.0F)}));
@@ -79,7 +79,7 @@ TEST_SUITE("measures") {
         CHECK(errors.bias == about(0.05));
     }
 
-    TEST_CASE("relMSE, bias and spikes do not depend on the unit of radiance; RMSE is in it") {
+    TEST_CASE("relMSE, bias and spikes do not depend on the unit of radiance, RMSE does") {
         const Picture picture = noise({16, 16}, 1);
         const Picture reference = noise({16, 16}, 2);
         const Errors errors = measure(picture, reference);
@@ -91,7 +91,7 @@ TEST_SUITE("measures") {
         CHECK(bright.spikes == errors.spikes);
     }
 
-    TEST_CASE("a scaled picture has the bias of its scale") {
+    TEST_CASE("the bias of a scaled picture follows from its scale") {
         const Picture reference = noise({16, 16}, 3);
         const Errors errors = measure(scaled(reference, 0.75F), reference);
         CHECK(errors.bias == about(-0.25));
@@ -113,7 +113,7 @@ TEST_SUITE("measures") {
         CHECK(errors.spikes == about(11.0));
     }
 
-    TEST_CASE("pixels off the mask count nowhere, not even in the mean") {
+    TEST_CASE("pixels outside the mask do not count, not even in the mean") {
         Picture picture = row({glm::vec3(2.5F), glm::vec3(1e6F), glm::vec3(2.5F)});
         Picture reference = row({glm::vec3(2.0F), glm::vec3(-1e6F), glm::vec3(2.0F)});
         const Mask hit{1, 0, 255};
@@ -133,7 +133,7 @@ TEST_SUITE("measures") {
         CHECK(sum / 99.0 == doctest::Approx(measure(picture, reference).rel_mse).epsilon(1e-12));
     }
 
-    TEST_CASE("against a black reference a black picture is right and any other is infinitely wrong") {
+    TEST_CASE("with a black reference, a black picture has no error, others an infinite relative error") {
         const Picture black = constant({2, 2}, glm::vec3(0.0F));
         const Errors right = measure(black, black);
         CHECK(right.rel_mse == 0.0);
@@ -146,7 +146,7 @@ TEST_SUITE("measures") {
         CHECK(wrong.rmse == about(std::sqrt(3.0)));
     }
 
-    TEST_CASE("what cannot be compared is refused") {
+    TEST_CASE("pictures that cannot be compared are refused") {
         const Picture picture = constant({4, 3}, glm::vec3(1.0F));
         CHECK_THROWS_WITH_AS((void)measure(picture, constant({3, 4}, glm::vec3(1.0F))),
                              "a picture of 4x3 cannot be compared with one of 3x4", std::invalid_argument);
@@ -170,7 +170,7 @@ TEST_SUITE("measures") {
 }
 
 TEST_SUITE("flicker") {
-    TEST_CASE("an error that stays does not flicker, whatever moves") {
+    TEST_CASE("a constant error does not flicker, whatever moves") {
         // Sums of quarters, which floats hold exactly.
         std::vector<Picture> frames;
         std::vector<Picture> reference;
@@ -202,7 +202,7 @@ TEST_SUITE("flicker") {
         CHECK(flicker(frames, reference) == about(0.25 * 0.25 / (0.01 * 4.0)));
     }
 
-    TEST_CASE("each pair of frames has a flicker of its own, and their mean is that of all") {
+    TEST_CASE("each pair of frames has its own flicker, and the flicker of all is their mean") {
         // As above: |Δa|² = 3 · 1 and 0, each over 0.01 · 3 · 2².
         const std::vector<Picture> reference(3, constant({2, 2}, glm::vec3(2.0F)));
         const std::vector<Picture> frames{constant({2, 2}, glm::vec3(2.0F)),
@@ -215,7 +215,7 @@ TEST_SUITE("flicker") {
         CHECK(flicker(frames, reference) == about(0.5 / 0.04));
     }
 
-    TEST_CASE("what moves in the reference is part of the measure") {
+    TEST_CASE("flicker is relative to the changes of the reference") {
         // Δr = 2 in each channel, Δa = 1; m = 2: 1 / (4 + 0.04).
         const std::vector<Picture> reference{constant({2, 2}, glm::vec3(1.0F)),
                                              constant({2, 2}, glm::vec3(3.0F))};
@@ -227,7 +227,7 @@ TEST_SUITE("flicker") {
         CHECK(flicker(still, reference) == about(4.0 / 4.04));
     }
 
-    TEST_CASE("pixels count where they do in both frames") {
+    TEST_CASE("only pixels that count in both frames are compared") {
         const std::vector<Picture> reference(2, row({glm::vec3(1.0F), glm::vec3(1.0F), glm::vec3(1.0F)}));
         const std::vector<Picture> frames{reference[0],
                                           row({glm::vec3(1.5F), glm::vec3(9.0F), glm::vec3(-9.0F)})};

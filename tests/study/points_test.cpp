@@ -36,7 +36,7 @@ TEST_SUITE("points") {
         CHECK(points[1].seeds == std::vector<std::uint32_t>{0});
     }
 
-    TEST_CASE("seeds are the same in all frames, unless fresh ones are asked for") {
+    TEST_CASE("seeds are the same in all frames, unless fresh ones are requested") {
         const auto points = points_of(R"([{"id": "a"}, {"id": "b", "fresh_seeds": true}])");
         REQUIRE(points.size() == 2);
         CHECK_FALSE(points[0].fresh_seeds);
@@ -45,12 +45,12 @@ TEST_SUITE("points") {
               "points.json: point 0: \"fresh_seeds\" is neither true nor false");
     }
 
-    TEST_CASE("the configuration is handed on as it is, known to the renderer or not") {
+    TEST_CASE("the configuration is passed on unchanged, even with unknown members") {
         CHECK(points_of(R"([{"id": "a", "config": {"lever": {"x": 1}}}])")[0].request ==
               R"({"lever":{"x":1}})");
     }
 
-    TEST_CASE("errors name the list, the point and the error") {
+    TEST_CASE("errors name the list, the point and the cause") {
         CHECK(error_of("{}") == "points.json: is not a list of points");
         CHECK(error_of("[1]") == "points.json: point 0: is not an object");
         CHECK(error_of(R"([{"id": "a"}, {}])") == "points.json: point 1: \"id\" is not a text");
@@ -60,7 +60,7 @@ TEST_SUITE("points") {
               "points.json: point 0: \"config\" is not an object");
     }
 
-    TEST_CASE("an id that is no name for a file is a error") {
+    TEST_CASE("an id that is not a valid file name is an error") {
         for (const char* text :
              {R"([{"id": ""}])", R"([{"id": "../a"}])", R"([{"id": "a/b"}])", R"([{"id": ".a"}])"}) {
             CAPTURE(text);

@@ -51,7 +51,7 @@ std::string read_text(const std::filesystem::path& path) {
 }  // namespace
 
 TEST_SUITE("reference files") {
-    TEST_CASE("a reference comes back as it was written") {
+    TEST_CASE("a reference is read back as it was written") {
         const TemporaryFolder folder;
         for (const std::optional<std::uint32_t> bounces :
              {std::optional(3U), std::optional<std::uint32_t>()}) {
@@ -72,7 +72,7 @@ TEST_SUITE("reference files") {
         CHECK(folder.file_count() == 1);
     }
 
-    TEST_CASE("scaled down, a pixel is the mean of a square") {
+    TEST_CASE("a pixel of a scaled-down picture is the mean of a square") {
         Picture picture{{4, 2}, {}};
         for (int i = 0; i < 8; ++i) {
             picture.pixels.emplace_back(static_cast<float>(i), 1.0F, 0.0F);
@@ -97,7 +97,7 @@ TEST_SUITE("reference files") {
         CHECK(noise(sample().estimate).total < noise(sample().estimate).indirect);
     }
 
-    TEST_CASE("a folder holds the request that it was made for, and no other") {
+    TEST_CASE("a folder matches only the request that it was made for") {
         const TemporaryFolder folder;
         const Reference reference = sample();
         CHECK_FALSE(holds(folder / "reference", reference.request));
@@ -117,7 +117,7 @@ TEST_SUITE("reference files") {
         CHECK_FALSE(other([](Request& r) { r.seed = 8; }));
     }
 
-    TEST_CASE("a folder that lacks a file, or whose description is broken, holds nothing and is made anew") {
+    TEST_CASE("a folder with a missing file or a broken description is invalid, and can be written again") {
         const TemporaryFolder folder;
         const Reference reference = sample();
         write_reference(folder / "reference", "a.gltf", reference);
@@ -135,7 +135,7 @@ TEST_SUITE("reference files") {
         CHECK(holds(folder / "reference", reference.request));
     }
 
-    TEST_CASE("what fails half-way leaves what was there, and nothing else") {
+    TEST_CASE("if replacing a folder fails, the old one is kept, and nothing else is left") {
         const TemporaryFolder folder;
         const auto fail_half_way = [](const std::filesystem::path& fresh) {
             sandbox::write_text(fresh / "a", "new");
@@ -152,7 +152,7 @@ TEST_SUITE("reference files") {
         CHECK(read_text(folder / "result" / "a") == "old");
     }
 
-    TEST_CASE("the new folder takes the place of the old one, with nothing of it left") {
+    TEST_CASE("a new folder replaces all of the old one") {
         const TemporaryFolder folder;
         const auto write = [&](const char* name) {
             replace_folder(folder / "result/", [&](const std::filesystem::path& fresh) {
@@ -167,7 +167,7 @@ TEST_SUITE("reference files") {
         CHECK(read_text(folder / "result" / "b") == "b");
     }
 
-    TEST_CASE("a reference never replaces what is something else") {
+    TEST_CASE("a reference never replaces a file or folder that is not a reference") {
         const TemporaryFolder folder;
         std::filesystem::create_directory(folder / "empty");
         write_reference(folder / "empty", "a.gltf", sample());
@@ -183,7 +183,7 @@ TEST_SUITE("reference files") {
         CHECK(read_text(folder / "file") == "x");
     }
 
-    TEST_CASE("pictures of another size than the description says are a error of the file") {
+    TEST_CASE("if a picture's size differs from the description, the error names the picture") {
         const TemporaryFolder folder;
         write_reference(folder / "reference", "a.gltf", sample());
         sandbox::write_pfm(folder / "reference" / "indirect.pfm", {{1, 1}, {glm::vec3(1.0F)}});
@@ -195,7 +195,7 @@ TEST_SUITE("reference files") {
         }
     }
 
-    TEST_CASE("a reference of another scene, or of an earlier state of it, is refused") {
+    TEST_CASE("a reference of an earlier version of the scene is refused") {
         const TemporaryFolder folder;
         const auto text = [](const char* name) {
             return fmt::format(

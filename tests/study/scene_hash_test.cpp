@@ -34,14 +34,14 @@ std::string hash_of(const TemporaryFolder& folder) {
 }  // namespace
 
 TEST_SUITE("scene hash") {
-    TEST_CASE("FNV-1a gives its authors' values") {
+    TEST_CASE("FNV-1a gives the published values") {
         CHECK(fnv1a("") == 0xcbf29ce484222325U);
         CHECK(fnv1a("a") == 0xaf63dc4c8601ec8cU);
         CHECK(fnv1a("foobar") == 0x85944171f73967e8U);
         CHECK(fnv1a("bar", fnv1a("foo")) == fnv1a("foobar"));
     }
 
-    TEST_CASE("a scene has its hash wherever it lies") {
+    TEST_CASE("a scene's hash does not depend on its folder") {
         const TemporaryFolder here;
         const TemporaryFolder there;
         write_scene(here, "abcd");
@@ -50,7 +50,7 @@ TEST_SUITE("scene hash") {
         CHECK(hash_of(here) == hash_of(there));
     }
 
-    TEST_CASE("a change of the file, or of a file that it names, changes the hash") {
+    TEST_CASE("a change of the file, or of a file that it refers to, changes the hash") {
         const TemporaryFolder folder;
         write_scene(folder, "abcd");
         const std::string before = hash_of(folder);
@@ -61,7 +61,7 @@ TEST_SUITE("scene hash") {
         CHECK(hash_of(folder) != other_buffer);
     }
 
-    TEST_CASE("a scene that cannot be read is named") {
+    TEST_CASE("the error names a scene that cannot be read") {
         const TemporaryFolder folder;
         write_text(folder / "scene.gltf", gltf_with("missing.bin"));
         CHECK_THROWS_AS(static_cast<void>(hash_of(folder)), SceneError);
