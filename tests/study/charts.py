@@ -33,7 +33,7 @@ plt.rcParams.update({
     "svg.fonttype": "none", "svg.hashsalt": "candela",
 })
 
-TIMES = {"frame_ms": "a frame after a move of the camera, ms", "full_ms": "a frame with everything made anew, ms"}
+TIMES = {"frame_ms": "frame after a camera move, ms", "full_ms": "frame that recomputes everything, ms"}
 
 Made = dict[str, str]  # file name without extension: caption
 
@@ -139,7 +139,7 @@ def error_against_time(rows: Sequence[Row], tracer: Sequence[Row], best: str | N
         legend_below(figure, grid[0][1], 5)
         name = f"error-time-{scene}"
         save(figure, out, name)
-        made[name] = f"{scene}: error against a reference of any depth, and time. Every mark is a configuration."
+        made[name] = f"{scene}: error against a reference with unlimited bounces, and time. A mark is a configuration."
     return made
 
 
@@ -153,7 +153,7 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
         figure, panels = plt.subplots(1, 2, figsize=(10, 4.6), sharey=True)
         for axes, (time, time_label) in zip(panels, TIMES.items()):
             levers = {matrix.interleaved(64, n).axes["lever"]: f"paths, one in {n * n}" for n in matrix.GATHERED}
-            levers |= {"none": "paths, every pixel asks all", "surfels": "surfels, as the app does"}
+            levers |= {"none": "paths, every pixel uses all", "surfels": "surfels, as the app does"}
             for (lever, label), (colour, marker) in zip(levers.items(), SERIES):
                 points = sorted(select(chosen, lever=lever), key=lambda row: row["vpls"])
                 axes.plot([row[time] for row in points], [row["total_rel_mse"] for row in points], color=colour,
@@ -168,7 +168,7 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
         legend_below(figure, panels[0], 3)
         name = f"gather-{scene}"
         save(figure, out, name)
-        made[name] = f"{scene}: interleaved gathering of VPLs on paths, and of surfels. Numbers beside marks: VPLs."
+        made[name] = f"{scene}: interleaved gathering of VPLs on paths, and of surfels. Numbers next to marks: VPLs."
     return made
 
 
@@ -210,11 +210,11 @@ def convergence(rows: Sequence[Row], out: pathlib.Path) -> Made:
     for scene in scenes_of(rows, "convergence"):
         figure, axes = plt.subplots(1, 3, figsize=(12, 4.3))
         convergence_panels(axes, select(rows, suite="convergence", scene=scene))
-        figure.suptitle(f"{scene}: indirect light of as many bounces as the reference has")
+        figure.suptitle(f"{scene}: indirect light with as many bounces as the reference")
         legend_below(figure, axes[0], 6)
         name = f"convergence-{scene}"
         save(figure, out, name)
-        made[name] = f"{scene}: what the number of VPLs and the bound of the geometry term leave of the error."
+        made[name] = f"{scene}: error over the number of VPLs, for each bound of the geometry term."
     return made
 
 
@@ -256,7 +256,7 @@ def report_table(rows: Sequence[Row], out: pathlib.Path) -> Made:
         cell.set_edgecolor("#cccccc")
         cell.set_height(2.4 if line == 0 else 1.0)
         cell.set_facecolor("#eef2f6" if line == 0 else "white")
-    axes.set_title(f"Cornell box, {chosen[0]['width']} × {chosen[0]['height']}: frame after a move of the camera")
+    axes.set_title(f"Cornell box, {chosen[0]['width']} × {chosen[0]['height']}: frame after a camera move")
     figure.tight_layout()
     save(figure, out, "report-table")
     names = [cell.replace("-\n", "-").replace("\n", " ") for cell in header]
@@ -264,7 +264,7 @@ def report_table(rows: Sequence[Row], out: pathlib.Path) -> Made:
     rule = "|" + "---|" * len(header)
     body = ["| " + " | ".join(line) + " |" for line in lines]
     (out / "report-table.md").write_text("\n".join([head, rule, *body]) + "\n", encoding="utf-8")
-    return {"report-table": "The student report's table, as ratios, beside the same for every path here."}
+    return {"report-table": "The student report's table, as ratios, and the same ratios for every path of Candela."}
 
 
 def growth_panel(axes: Axes, rows: Sequence[Row], x: str, label: str, time: str = "frame_ms") -> None:
@@ -284,11 +284,11 @@ def growth(rows: Sequence[Row], lights: Sequence[Row], out: pathlib.Path) -> Mad
     growth_panel(axes[0][0], lights, "lights", "lights, in a hall that grows with them")
     axes[0][0].set_title("direct light without shadows, 320 × 240 pixels")
     growth_panel(axes[0][1], pixels, "pixels", "pixels, Cornell box")
-    axes[0][1].set_title("64 VPLs, after a move of the camera")
+    axes[0][1].set_title("64 VPLs, after a camera move")
     growth_panel(axes[1][0], triangles, "triangles", "triangles, the same hills")
-    axes[1][0].set_title("64 VPLs, 160 × 120 pixels, after a move of the camera")
+    axes[1][0].set_title("64 VPLs, 160 × 120 pixels, after a camera move")
     growth_panel(axes[1][1], triangles, "triangles", "triangles, the same hills", "full_ms")
-    axes[1][1].set_title("the same with everything made anew")
+    axes[1][1].set_title("the same, with everything recomputed")
     legend_below(figure, axes[0][0], 7)
     save(figure, out, "growth")
     return {"growth": "Frame time as lights, pixels and triangles grow."}
@@ -316,7 +316,7 @@ def energy(rows: Sequence[Row], out: pathlib.Path) -> Made:
     figure.suptitle(f"Where the light of {vpls:,} VPLs goes")
     legend_below(figure, grid[0][0], 4)
     save(figure, out, "energy")
-    return {"energy": "The energy account. What the bars have above or below the emitted light is roulette's chance."}
+    return {"energy": "The energy account. Bars differ from the emitted light by the random error of Russian roulette."}
 
 
 def energy_panel(axes: Axes, rows: Sequence[Row]) -> None:
@@ -346,7 +346,7 @@ def direct_light(rows: Sequence[Row], out: pathlib.Path) -> Made:
     axes.set_xticks(range(3), [label for _, label in order])
     legend_below(figure, axes, 4)
     save(figure, out, "direct-light")
-    return {"direct-light": "Direct light against the reference, edges of shadows included."}
+    return {"direct-light": "Error of the direct light against the reference, including shadow edges."}
 
 
 def draw(
@@ -359,7 +359,7 @@ def draw(
         "Interleaved gathering": gather(rows, tracer, out),
         "Error against the number of VPLs": convergence(rows, out),
         "Forward against deferred, and with lists": report_table(rows, out),
-        "As lights, pixels and triangles grow": growth(rows, lights, out),
+        "Growing numbers of lights, pixels and triangles": growth(rows, lights, out),
         "Where the light goes": energy(rows, out),
         "Direct light": direct_light(rows, out) if matrix_made else {},
     }

@@ -51,7 +51,7 @@ def all_measured(rows: Sequence[Row]) -> Iterator[Check]:
         failed = [f"{row['id']}: {row['failed']}" for row in rows if row["scene"] == scene and row["failed"]]
         yield f"{scene}: every point is measured", not failed, "; ".join(failed)
     strange = [f"{row['id']}: {name}" for row in rows for name, value in row.items() if not is_finite(value)]
-    yield "no figure is NaN or infinite", not strange, ", ".join(strange)
+    yield "no value is NaN or infinite", not strange, ", ".join(strange)
 
 
 def is_finite(value: object) -> bool:
@@ -67,7 +67,7 @@ def errors_fall(rows: Sequence[Row]) -> Iterator[Check]:
     for scene in names(rows):
         errors = [row["indirect_rel_mse"] for row in series(rows, scene, matrix.DEFAULT_BOUND)]
         falls = len(errors) > 1 and all(after < before for before, after in zip(errors, errors[1:]))
-        yield f"{scene}: the indirect light's error falls as VPLs rise", falls, figures(errors)
+        yield f"{scene}: the error of the indirect light decreases with the number of VPLs", falls, figures(errors)
 
 
 def obstacles_seen(rows: Sequence[Row]) -> Iterator[Check]:
@@ -88,7 +88,7 @@ def flicker_falls(played: Sequence[Row]) -> Iterator[Check]:
     """Surfels flicker less than VPLs on paths that are traced again in every frame."""
     for script in names(played):
         failed = [f"{row['id']}: {row['failed']}" for row in played if row["scene"] == script and row["failed"]]
-        yield f"{script}: every configuration is played", not failed, "; ".join(failed)
+        yield f"{script}: every configuration is rendered", not failed, "; ".join(failed)
         found = {row["id"]: row["indirect_flicker"] for row in select(played, scene=script)}
         holds = len(found) == 3 and found["surfels"] < min(found["fresh"], found["fixed"])
         yield f"{script}: surfels flicker least", holds, figures(list(found.values()))
@@ -99,7 +99,7 @@ def direct_light_right(rows: Sequence[Row]) -> Iterator[Check]:
         measured = select(rows, scene=scene)
         errors = [row["direct_off_edges_rel_mse"] for row in measured if "direct_off_edges_rel_mse" in row]
         holds = max(errors, default=1) <= DIRECT_OFF_EDGES
-        yield f"{scene}: direct light is right off edges", holds, figures(errors[:1])
+        yield f"{scene}: direct light is correct away from shadow edges", holds, figures(errors[:1])
 
 
 def energy_accounted(rows: Sequence[Row]) -> Iterator[Check]:
@@ -140,7 +140,7 @@ def paths_agree(rows: Sequence[Row]) -> Iterator[Check]:
         chosen = select(rows, scene=scene, vpls=256, bound=matrix.DEFAULT_BOUND, visibility=visibility)
         errors = {row["path"]: row["total_rel_mse"] for row in chosen}
         holds = len(errors) == len(matrix.PATHS) and max(errors.values()) <= min(errors.values()) * (1 + PATHS_AGREE)
-        yield f"{scene}: all paths have one error", holds, figures(list(errors.values()))
+        yield f"{scene}: all paths have the same error", holds, figures(list(errors.values()))
 
 
 def run(rows: Sequence[Row], tracer: Sequence[Row], played: Sequence[Row]) -> int:

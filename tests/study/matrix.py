@@ -1,7 +1,7 @@
 """What is measured: groups of points. A point is one configuration. A group is measured together, with times in
 interleaved rounds: one scene at one size against one reference.
 
-A new setting ("lever") of the renderer is added as one line of LEVERS, and as one member of what "none" turns off.
+A new setting ("lever") of the renderer needs a line in LEVERS, and a member in the line "none", which turns it off.
 """
 
 import hashlib
@@ -150,8 +150,8 @@ def blind(vpls: int, path: str = DEFAULT_PATH, **axes: Any) -> Point:
 def plain(counts: list[int]) -> list[Point]:
     """Instant radiosity as in the student report, forward and deferred: all VPLs, unbounded, without visibility.
     Forward takes several times as long, so 16,384 VPLs are measured only with deferred."""
-    dearest = {"forward": 4096, "deferred": 16384}
-    return [blind(n, path, bound=UNBOUNDED) for path, most in dearest.items() for n in counts if n <= most]
+    largest = {"forward": 4096, "deferred": 16384}
+    return [blind(n, path, bound=UNBOUNDED) for path, most in largest.items() for n in counts if n <= most]
 
 
 def short_sweep() -> tuple[Point, ...]:

@@ -49,7 +49,7 @@ def trace_baseline(study: Study, group: Group) -> None:
     study.forecast.record("tracer", units, time.monotonic() - started)
     if error:
         study.bar.clear()
-        print(f"study: {group.name}: the path tracer's own points failed: {error}", file=sys.stderr)
+        print(f"study: {group.name}: measuring the path tracer failed: {error}", file=sys.stderr)
     kind = {"kind": "failed", "message": error} if error else {"kind": "tracer", "lines": lines}
     study.note({"key": study.keys(group)["tracer"], "group": group.name, "id": "tracer", **kind})
 
@@ -83,7 +83,7 @@ def announce_once(study: Study) -> None:
         study.announced = True
         left = progress.clock(study.forecast.seconds_left())
         study.bar.clear()
-        print(f"study: about {left} min left, going by the first points", file=sys.stderr)
+        print(f"study: about {left} min left, estimated from the first points", file=sys.stderr)
 
 
 def expect_motion(study: Study, motion: Motion) -> None:
@@ -131,7 +131,7 @@ def measure(study: Study, groups: list[Group], motions: list[Motion]) -> None:
         expect_motion(study, motion)
     if study.forecast.seconds_left() > 0:
         left = progress.clock(study.forecast.seconds_left())
-        print(f"study: about {left} min, a guess until the first points are measured", file=sys.stderr)
+        print(f"study: about {left} min, a rough guess until the first points are measured", file=sys.stderr)
     for group in groups:
         points = study.missing(group)
         if not points and not study.misses_tracer(group):

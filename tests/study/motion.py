@@ -44,7 +44,7 @@ def config(vpls: int, placement: str = "paths", refined: bool = False) -> Config
 
 
 def takes() -> tuple[Take, ...]:
-    """Paths that are traced again with every move, with new samples or with the same ones; and surfels, which stay."""
+    """Paths that are traced again with every move, with new samples or the same ones; and surfels, which are kept."""
     return (
         Take("fresh", config(VPLS), fresh_seeds=True),
         Take("fixed", config(VPLS)),

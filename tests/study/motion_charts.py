@@ -13,8 +13,8 @@ from charts import BLUE, GREEN, ORANGE, RED, Made
 from motion import VPLS
 
 STYLES = {
-    "fresh": (ORANGE, f"all {VPLS} VPLs made anew, fresh samples"),
-    "fixed": (BLUE, f"all {VPLS} VPLs made anew, fixed samples"),
+    "fresh": (ORANGE, f"all {VPLS} VPLs traced again, fresh samples"),
+    "fixed": (BLUE, f"all {VPLS} VPLs traced again, fixed samples"),
     "surfels": (RED, f"{VPLS} surfels"),
 }
 REFINED = {"refined-64": (GREEN, "o", "sets of 64 VPLs"), "refined-256": (BLUE, "s", "sets of 256 VPLs")}
@@ -44,7 +44,7 @@ def scripts(played: Sequence[Row], out: pathlib.Path) -> Made:
     for column, name in enumerate(names):
         scripts_panels(grid[0][column], grid[1][column], select(rows, scene=name))
     grid[0][0].set_ylabel("relMSE of the indirect light")
-    grid[1][0].set_ylabel("flicker from the frame before\n(dotted: the reference's own noise)")
+    grid[1][0].set_ylabel("flicker since the previous frame\n(dotted: the reference's own noise)")
     charts.legend_below(figure, grid[0][0], 3)
     charts.save(figure, out, "motion")
     caption = "Error and flicker of the indirect light over the frames of each script. Below 1e-7 nothing changes."
@@ -72,9 +72,9 @@ def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
     grid[0][0].set_ylabel("relMSE of the indirect light")
     charts.legend_below(figure, grid[0][0], 2)
     charts.save(figure, out, "refinement")
-    return {"refinement": "While nothing moves, each frame adds VPLs of its own to the mean."}
+    return {"refinement": "While nothing moves, each frame adds a new set of VPLs to the mean."}
 
 
 def draw(played: Sequence[Row], out: pathlib.Path) -> dict[str, Made]:
     """Returns the written files by heading."""
-    return {"While things move": scripts(played, out), "While nothing moves": refinement(played, out)}
+    return {"While something moves": scripts(played, out), "While nothing moves": refinement(played, out)}

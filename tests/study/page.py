@@ -33,7 +33,7 @@ COLUMNS = {
     "indirect_spikes": "spikes, indirect",
     "flip": "FLIP",
     "frame_ms": "frame, ms",
-    "full_ms": "all anew, ms",
+    "full_ms": "everything recomputed, ms",
     "alive": "VPLs alive",
     "work_vpl_pixels": "VPL · pixel",
     "memory_bytes": "memory, bytes",
@@ -85,7 +85,7 @@ def pictures(out: pathlib.Path, rows: Sequence[Row], best: str | None) -> str:
     by_scene = {scene: select(chosen, scene=scene) for scene in dict.fromkeys(row["scene"] for row in chosen)}
     strips = [strip(out, scene, of_scene, best) for scene, of_scene in by_scene.items()]
     note = "Heat maps: a pixel's error relative to its brightness, from black at 0 to pale yellow at 0.5 and above."
-    return element("h2", "Pictures beside the reference") + element("p", note) + "".join(strips) if strips else ""
+    return element("h2", "Pictures and their references") + element("p", note) + "".join(strips) if strips else ""
 
 
 def number(value: Any) -> str:
@@ -97,9 +97,9 @@ def number(value: Any) -> str:
 
 
 OPENING = """Candela lights a scene with virtual point lights (VPLs): points on its surfaces that pass on the light that
-reaches them. This page compares pictures made in many ways with those of a path tracer, and with the time that they
-took. relMSE, the error throughout, is the mean over all pixels of the squared difference from the path tracer's
-picture, divided by the square of that picture's brightness there: 0 is no difference, 1 is what a black picture has."""
+reaches them. This page compares pictures of many configurations with those of a path tracer, and shows the time that
+they took. relMSE, the error on this page, is the mean over all pixels of the squared difference from the path tracer's
+picture, divided by the square of that picture's brightness there: 0 is no difference, 1 is that of a black picture."""
 
 
 def opening(out: pathlib.Path, rows: Sequence[Row]) -> str:
@@ -138,10 +138,11 @@ def left_over(rows: Sequence[Row]) -> str:
     columns = {"scene": "", "id": "configuration", "vpls": "VPLs", "indirect_rel_mse": "relMSE, indirect",
                "indirect_bias": "bias, indirect", "reference_noise": "the reference's own noise, relMSE"}
     note = (
-        "With the most VPLs, against a reference of as many bounces: what is left is noise, what bounding the geometry "
-        "term takes away, and what maps of few texels let through."
+        "With the largest number of VPLs, against a reference with as many bounces: what is left is noise, the light "
+        "that bounding the geometry term removes, and the light that leaks through depth maps with few texels."
     )
-    return element("h2", "What is left at the most VPLs") + element("p", note) + table(columns, found) if found else ""
+    heading = element("h2", "The error with the largest number of VPLs")
+    return heading + element("p", note) + table(columns, found) if found else ""
 
 
 def visibility_costs(out: pathlib.Path, rows: Sequence[Row], costs: Sequence[Row]) -> str:
@@ -151,8 +152,8 @@ def visibility_costs(out: pathlib.Path, rows: Sequence[Row], costs: Sequence[Row
     columns = {"scene": "", "vpls": "VPLs", "none": "relMSE, no visibility", "maps": "maps", "rays": "rays",
                "none_to_maps": "no visibility / maps", "reference_noise": "the reference's own noise, relMSE"}
     strips = [visibility_strip(out, line["scene"], rows) for line in costs]
-    note = "Indirect light against a reference of as many bounces."
-    heading = element("h2", "What missing VPL visibility costs")
+    note = "Indirect light against a reference with as many bounces."
+    heading = element("h2", "The error without VPL visibility")
     return heading + element("p", note) + table(columns, costs) + "".join(strips)
 
 
@@ -172,10 +173,10 @@ def flicker(table_rows: Sequence[Row]) -> str:
         return ""
     columns = {"script": "", "fresh": "fresh samples", "fixed": "fixed samples", "surfels": "surfels",
                "surfels_to_fresh": "surfels / fresh", "surfels_to_fixed": "surfels / fixed",
-               "noise": "the reference's own", "excess_frames": "frames above 1.2 × the error of fixed samples"}
+               "noise": "noise of the reference", "excess_frames": "frames above 1.2 × the error of fixed samples"}
     note = (
         "Flicker of the indirect light: relMSE between its changes from frame to frame and those of the reference. "
-        "Samples, fresh or fixed, are of paths that are traced anew where something moves; surfels stay where they are."
+        "With fresh or fixed samples, paths are traced again whenever something moves; surfels stay where they are."
     )
     return element("h2", "Flicker") + element("p", note) + table(columns, table_rows)
 
@@ -186,7 +187,7 @@ def placement(table_rows: Sequence[Row]) -> str:
     columns = {"scene": "", "vpls": "VPLs", "paths": "relMSE, paths", "surfels": "relMSE, surfels",
                "surfels_to_paths": "surfels / paths", "paths_bias": "bias, paths", "surfels_bias": "bias, surfels",
                "noise": "the reference's own noise, relMSE"}
-    note = "Indirect light with depth maps, by where VPLs are placed, against a reference of any depth."
+    note = "Indirect light with depth maps, for each placement of VPLs, against a reference with unlimited bounces."
     return element("h2", "Paths and surfels") + element("p", note) + table(columns, table_rows)
 
 
@@ -195,13 +196,14 @@ def gathering(table_rows: Sequence[Row], camera: Sequence[Row]) -> str:
         return ""
     columns = {"scene": "", "indirect_to_all": "relMSE, indirect", "total_to_all": "relMSE, total",
                "frame_to_all": "frame", "frame_to_128": "frame of 1,024 VPLs / of 128",
-               "frame_ms_to_tracer": f"least time to relMSE {AIM} / tracer's", "full_ms_to_tracer": "the same, all anew"}
+               "frame_ms_to_tracer": f"shortest time to relMSE {AIM} / the path tracer's",
+               "full_ms_to_tracer": "the same, everything recomputed"}
     note = (
-        "1,024 VPLs with depth maps: where a pixel asks one in 64, as a multiple of where it asks all. Frames are those "
-        "after a move of the camera."
+        "1,024 VPLs with depth maps: values if each pixel uses one VPL in 64, as multiples of those if it uses all. "
+        "Frames are those after a camera move."
     )
-    heading = element("h2", "What interleaving costs and saves")
-    moving = {"script": "", "all": "flicker, every pixel asks all VPLs", "shared": "one in 64", "shared_to_all": "ratio"}
+    heading = element("h2", "The error and the time of interleaving")
+    moving = {"script": "", "all": "flicker, each pixel uses all VPLs", "shared": "one in 64", "shared_to_all": "ratio"}
     return heading + element("p", note) + table(columns, table_rows) + (table(moving, camera) if camera else "")
 
 
@@ -218,7 +220,7 @@ def charts(made: dict[str, dict[str, str]]) -> str:
 def default_choice(best: dict[str, Any] | None) -> str:
     if best is None:
         return ""
-    same = "It is what the app does by default." if best["is_default_of_app"] else "The app's default is another."
+    same = "It is the app's default." if best["is_default_of_app"] else "The app's default is a different one."
     text = f"{element('b', best['id'])}: {html.escape(best['reason'])}. {same}"
     return element("h2", "The best default") + element("p", text)
 

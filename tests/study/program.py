@@ -32,7 +32,7 @@ def end_of(status: int, stderr: str) -> End:
     if status == 0:
         return End("", crashed=False)
     if status == -signal.SIGKILL:
-        return End(f"killed: silent for {SILENCE:.0f} s, or too large for the memory", crashed=True)
+        return End(f"killed: no output for {SILENCE:.0f} s, or out of memory", crashed=True)
     if status < 0:
         return End(f"crashed: {signal.Signals(-status).name}", crashed=True)
     said = stderr.strip().splitlines()[-1:] or [f"exit status {status}"]

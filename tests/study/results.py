@@ -173,10 +173,10 @@ def choice(rows: list[Row], groups: list[Group]) -> dict[str, Any] | None:
         return None
     agrees = is_app_default(best, app_default(), points)
     reason = (
-        f"of the configurations measured in {best['scenes']} scenes it has the least relMSE of the total light in the"
-        f" scene where it has most, {best['error']:.3g} in {best['worst_scene']}, among those whose frame after a move"
-        f" of the camera costs at most {analysis.COST_FACTOR:g} times what 256 unbounded VPLs do, deferred and without"
-        f" visibility: {best['frame_ms']:.2f} times, and {best['full_ms']:.2f} with everything made anew at once"
+        f"it has the smallest relMSE of the total light in its worst scene, {best['error']:.3g} in"
+        f" {best['worst_scene']}, of the configurations measured in {best['scenes']} scenes whose frame after a camera"
+        f" move takes at most {analysis.COST_FACTOR:g} times as long as with 256 unbounded VPLs, deferred and without"
+        f" visibility; it takes {best['frame_ms']:.2f} times as long, {best['full_ms']:.2f} if everything is recomputed"
     )
     return {"id": best["id"], "reason": reason, "is_default_of_app": agrees}
 

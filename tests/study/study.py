@@ -38,13 +38,13 @@ def names(text: str) -> list[str]:
 def arguments() -> argparse.Namespace:
     parts = list(dict.fromkeys(SUITES + PROGRAM_PARTS))
     parser = argparse.ArgumentParser(prog="tests/study/run", description="Charts Candela's speed against its accuracy.")
-    parser.add_argument("--quick", action="store_true", help="a small matrix, and checks of what must hold anywhere")
-    parser.add_argument("--scenes", metavar="A,B", type=names, help="only these")
+    parser.add_argument("--quick", action="store_true", help="a small matrix, and checks that must pass on any machine")
+    parser.add_argument("--scenes", metavar="A,B", type=names, help="only these scenes")
     parser.add_argument("--out", metavar="DIR", type=pathlib.Path, help="default: build/study/results")
-    parser.add_argument("--part", metavar="A,B", type=names, help=f"only these of {', '.join(parts)}; default: all")
+    parser.add_argument("--part", metavar="A,B", type=names, help=f"only these, of {', '.join(parts)}; default: all")
     given = parser.parse_args()
     if given.quick and given.part:
-        parser.error("--quick is a part by itself")
+        parser.error("--quick and --part cannot be combined")
     require_known(parser, "--part", given.part, parts)
     moving = [motion.scene_of(each, ANIMATIONS) for each in planned_motions(given.quick, given.part, None)]
     still = [group.scene for group in planned(given.quick, given.part, None)]
@@ -56,7 +56,7 @@ def arguments() -> argparse.Namespace:
 def require_known(parser: argparse.ArgumentParser, flag: str, given: list[str] | None, known: list[str]) -> None:
     for name in given or []:
         if name not in known:
-            parser.error(f"{flag}: '{name}' is none of {', '.join(dict.fromkeys(known))}")
+            parser.error(f"{flag}: '{name}' is not one of {', '.join(dict.fromkeys(known))}")
 
 
 def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> list[Group]:
@@ -139,7 +139,7 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
             print(f"study: {part},", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
     print(f"study: {study.out / 'index.html'}")
     if best:
-        same = "what the app does by default" if best["is_default_of_app"] else "NOT what the app does by default"
+        same = "the app's default" if best["is_default_of_app"] else "NOT the app's default"
         print(f"study: the best default is {best['id']}, {same}: {best['reason']}")
 
 
@@ -174,4 +174,4 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except KeyboardInterrupt:
-        sys.exit("study: interrupted; started again, it goes on where it was")
+        sys.exit("study: interrupted; run it again to continue")

@@ -103,7 +103,7 @@ class BestDefault(unittest.TestCase):
             row(scene, "yardstick", 10 * scale, 0.5, bound="infinity", visibility="none"),
             row(scene, "good", 15 * scale, 0.1),
             row(scene, "cheap", 5 * scale, 0.4),
-            row(scene, "dear", 51 * scale, 0.01),
+            row(scene, "expensive", 51 * scale, 0.01),
         ]
 
     def test_is_the_least_error_within_the_cost(self) -> None:
