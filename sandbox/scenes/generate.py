@@ -34,16 +34,16 @@ ON_DEMAND = {"atrium": atrium, "hall-4096": lambda: hall(4096)}
 def arguments():
     parser = argparse.ArgumentParser(description="Writes scenes as glTF.")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).parent, metavar="DIR")
-    parser.add_argument("--lights", type=int, metavar="N", help="of the scene `hall`, which is written as hall-N")
+    parser.add_argument("--lights", type=int, metavar="N", help="lights of the scene `hall`, which becomes hall-N")
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join([*SHIPPED, *ON_DEMAND, "hall"]))
     given = parser.parse_args()
     if ("hall" in given.names) != (given.lights is not None):
-        parser.error("the scene hall and --lights go together")
+        parser.error("the scene hall needs --lights, and the other scenes do not use it")
     if given.lights is not None and given.lights < 1:
-        parser.error("--lights wants at least 1")
+        parser.error("--lights must be at least 1")
     for name in given.names:
         if name not in {**SHIPPED, **ON_DEMAND, "hall": None}:
-            parser.error(f"no scene is called {name}; there are: {', '.join([*SHIPPED, *ON_DEMAND, 'hall'])}")
+            parser.error(f"there is no scene {name}; the scenes are: {', '.join([*SHIPPED, *ON_DEMAND, 'hall'])}")
     return given
 
 
