@@ -26,9 +26,7 @@ struct NoisyMean {
 [[nodiscard]] double noise_ratio(const Estimate& estimate, const sandbox::Picture& truth,
                                  const std::vector<std::uint8_t>& mask);
 
-/// The largest
-/// a - b
-/// / max(b, floor) of the red channel over `mask`.
+/// The largest |a - b| / max(b, floor) of the red channel over `mask`.
 [[nodiscard]] double worst_error(const sandbox::Picture& a, const sandbox::Picture& b,
                                  const std::vector<std::uint8_t>& mask, double floor);
 
