@@ -9,8 +9,7 @@
 
 namespace candela {
 
-/// The kind of context that this run of the tests uses: `--context=egl
-/// osmesa`.
+/// The kind of context that this run of the tests uses: `--context=egl|osmesa`.
 [[nodiscard]] ContextKind tested_context();
 void set_tested_context(ContextKind kind);
 

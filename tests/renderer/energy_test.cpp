@@ -14,9 +14,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr glm::uvec2 size{4, 4};
 
-/// The largest
-/// a - b
-/// over the channels, relative to the largest channel of b.
+/// The largest |a - b| over the channels, relative to the largest channel of b.
 double relative_error(glm::dvec3 a, glm::dvec3 b) {
     const glm::dvec3 d = glm::abs(a - b);
     return std::max({d.r, d.g, d.b}) / std::max({b.r, b.g, b.b});

@@ -7,9 +7,8 @@
 #include "tests/renderer/context_fixture.hpp"
 #include "tests/seed.hpp"
 
-/// Like tests/main.cpp, with two more options: `--context=egl
-/// osmesa` (default: egl), and `--verify` for renderers that run clean passes again and compare their
-/// results.
+/// Like tests/main.cpp, with two more options: `--context=egl|osmesa` (default: egl), and `--verify` for
+/// renderers that run clean passes again and compare their results.
 int main(int argc, char** argv) {
     constexpr std::string_view option = "--context=";
     std::vector<char*> others;

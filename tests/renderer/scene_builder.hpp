@@ -75,11 +75,7 @@ struct Picture {
 [[nodiscard]] bool is_sane(const Picture& picture);
 /// Mean of all pixels and channels.
 [[nodiscard]] double mean(const Picture& picture);
-/// The largest
-/// a - b
-/// / max(
-/// b
-/// , floor) over all pixels and channels; infinite if one is not a number.
+/// The largest |a - b| / max(|b|, floor) over all pixels and channels; infinite if one is not a number.
 [[nodiscard]] double worst_error(const Picture& a, const Picture& b, double floor);
 
 /// Mean squared error relative to the reference's mean square.

@@ -31,11 +31,7 @@ Configuration indirect_only(VplVisibility method, std::uint32_t resolution = 32)
     return configuration;
 }
 
-/// relMSE as in the study's measures: over all pixels, relative to
-/// b
-/// ² + 0.01 ·
-/// mean of b
-/// ².
+/// relMSE as in the study's measures: over all pixels, relative to |b|² + 0.01 · |mean of b|².
 double relative_error(const Picture& a, const Picture& b) {
     glm::dvec3 sum(0.0);
     for (const glm::vec3& pixel : b.pixels) sum += pixel;
@@ -83,11 +79,8 @@ bool crosses(const Sheet& sheet, double scale, glm::dvec3 from, glm::dvec3 direc
 }
 
 /// The largest angle under which the diagonal of a texel is seen. A texel of 2 / resolution along both sides
-/// of the square has a diagonal of √2 · 2 / resolution on the octahedron, which is at distance s⁻¹ (s =
-/// x
-/// +
-/// y
-/// + z of the direction).
+/// of the square has a diagonal of √2 · 2 / resolution on the octahedron, which is at distance 1/s, with
+/// s = |x| + |y| + z of the direction.
 double texel_angle(std::uint32_t resolution, glm::dvec3 local) {
     const double s = std::abs(local.x) + std::abs(local.y) + local.z;
     return std::asin(std::min(1.0, 2.0 * std::numbers::sqrt2 * s / resolution));
