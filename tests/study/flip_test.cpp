@@ -44,9 +44,7 @@ Picture transposed(const Picture& picture) {
 /// FLIP, according to the paper, of a lightness difference between uniform greys.
 double flat_difference(double lightness) {
     // Green and blue according to tables of CIE L*a*b*, (87.73, -86.18, 83.18) and (32.30, 79.19, -107.86),
-    // have a distance of 203.3 with a and b scaled by L/100 and distance
-    // ΔL
-    // + √(Δa² + Δb²).
+    // have a distance |ΔL| + √(Δa² + Δb²) of 203.3, with a and b scaled by L/100.
     const double largest = std::pow(203.3, 0.7);
     const double distance = std::pow(lightness, 0.7);
     if (distance < 0.4 * largest) return 0.95 * distance / (0.4 * largest);

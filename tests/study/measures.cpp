@@ -67,13 +67,7 @@ double largest_channel(const Picture& picture, std::span<const std::uint8_t> hit
     return largest;
 }
 
-/// The squared relative error of a pixel, or of a pixel's change:
-/// a - r
-/// ² / (
-/// r
-/// ² + 0.01
-/// m
-/// ²).
+/// The squared relative error of a pixel, or of a pixel's change: |a - r|² / (|r|² + 0.01 |m|²).
 double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square) {
     return ratio(square(a - r), square(r) + floor_of_square * mean_square);
 }

@@ -35,28 +35,17 @@ struct Errors {
 [[nodiscard]] Errors measure(const sandbox::Picture& picture, const sandbox::Picture& reference,
                              std::span<const std::uint8_t> hit = {});
 
-/// √(
-/// a - r
-/// ² / (
-/// r
-/// ² + 0.01
-/// m
-/// ²)) of each pixel; the mean of its square is the relMSE. 0 for pixels that do not count. Throws as
-/// `measure` does.
+/// √(|a - r|² / (|r|² + 0.01 |m|²)) of each pixel; the mean of its square is the relMSE. 0 for pixels that do
+/// not count. Throws as `measure` does.
 [[nodiscard]] std::vector<double> relative_errors(const sandbox::Picture& picture,
                                                   const sandbox::Picture& reference,
                                                   std::span<const std::uint8_t> hit = {});
 
 /// The error of the change from frame to frame, for each pair of consecutive frames: the relMSE between the
-/// difference of the frames and that of the reference, mean(
-/// Δa - Δr
-/// ² / (
-/// Δr
-/// ² + 0.01
-/// m
-/// ²)) over the pixels that count in both. m is the mean vector of all frames of the reference, not of their
-/// differences, so that flicker is also defined for a still reference. `hits` contains one mask per frame, or
-/// is empty for all pixels. Throws as `measure` does, and if there are fewer than two frames.
+/// difference of the frames and that of the reference, mean(|Δa - Δr|² / (|Δr|² + 0.01 |m|²)) over the pixels
+/// that count in both frames. m is the mean vector of all frames of the reference, not of their differences,
+/// so that flicker is also defined for a still reference. `hits` contains one mask per frame, or is empty for
+/// all pixels. Throws as `measure` does, and if there are fewer than two frames.
 [[nodiscard]] std::vector<double> flicker_of_pairs(std::span<const sandbox::Picture> frames,
                                                    std::span<const sandbox::Picture> reference_frames,
                                                    std::span<const Mask> hits = {});

@@ -61,9 +61,8 @@ TEST_SUITE("measures") {
     }
 
     TEST_CASE("the floor uses the length of the mean colour, not the mean of lengths") {
-        // r is red in one pixel and green in the other, so m = (1, 1, 0) / 2 and
-        // m
-        // ² = 1/2, not 1 as a mean of lengths would give. Each pixel lacks all of its light.
+        // r is red in one pixel and green in the other, so m = (1, 1, 0) / 2 and |m|² = 1/2, not 1 as a mean
+        // of lengths would give. Each pixel lacks all of its light.
         const Errors errors = measure(row({{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}}),
                                       row({{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}}));
         CHECK(errors.rel_mse == about(1.0 / (1.0 + 0.01 * 0.5)));
@@ -183,17 +182,7 @@ TEST_SUITE("flicker") {
     }
 
     TEST_CASE("an error that changes its sign from frame to frame flickers by twice its size") {
-        // Nothing moves in the reference:
-        // Δa - Δr
-        // ² =
-        // 2e
-        // ²,
-        // Δr
-        // ² = 0,
-        // m
-        // ² =
-        // r
-        // ².
+        // Nothing moves in the reference: |Δa - Δr|² = |2e|², |Δr|² = 0, |m|² = |r|².
         std::vector<Picture> frames;
         const std::vector<Picture> reference(5, constant({3, 3}, glm::vec3(2.0F)));
         for (const float error : {0.125F, -0.125F, 0.125F, -0.125F, 0.125F}) {

@@ -90,8 +90,8 @@ TEST_SUITE("reference files") {
     }
 
     TEST_CASE("the noise of the mean is a quarter of the halves' relMSE") {
-        // Each pixel differs by 2 in every channel from 3, the mean of the picture: 2² / (3² + 0.01 · 3²) /
-        // 4.
+        // Each pixel differs by 2 in every channel from 3, the mean of the picture. The noise is a quarter of
+        // 2² / (3² + 0.01 · 3²).
         CHECK(noise(sample().estimate).indirect == doctest::Approx(4.0 / (9.0 * 1.01) / 4.0));
         // With direct light, the same difference is divided by a larger value.
         CHECK(noise(sample().estimate).total < noise(sample().estimate).indirect);
