@@ -27,18 +27,18 @@ def front_of(pairs: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 class ParetoFront(unittest.TestCase):
-    def test_leaves_out_what_is_beaten(self) -> None:
+    def test_excludes_points_that_others_beat(self) -> None:
         self.assertEqual(front_of([(3, 3), (1, 5), (2, 2), (4, 1), (5, 1)]), [(1, 5), (2, 2), (4, 1)])
 
-    def test_of_one_cost_keeps_the_least_error(self) -> None:
+    def test_of_equal_costs_keeps_the_smallest_error(self) -> None:
         self.assertEqual(front_of([(1, 5), (1, 4), (1, 6)]), [(1, 4)])
 
-    def test_is_what_comparing_all_pairs_finds(self) -> None:
+    def test_agrees_with_a_comparison_of_all_pairs(self) -> None:
         pairs = [((17 * i) % 101, (i * i * 7) % 97) for i in range(60)]
         beaten = {b for a in pairs for b in pairs if a != b and a[0] <= b[0] and a[1] <= b[1]}
         self.assertEqual(front_of(pairs), sorted(set(pairs) - beaten))
 
-    def test_of_nothing_is_empty(self) -> None:
+    def test_of_no_points_is_empty(self) -> None:
         self.assertEqual(front_of([]), [])
 
 
@@ -47,11 +47,11 @@ class Slopes(unittest.TestCase):
         for exponent in (-1.0, -0.5, 2.0):
             self.assertAlmostEqual(analysis.slope([16, 64, 256], [3 * n**exponent for n in (16, 64, 256)]), exponent)
 
-    def test_of_one_place_is_refused(self) -> None:
+    def test_points_at_a_single_x_are_refused(self) -> None:
         with self.assertRaises(ValueError):
             analysis.slope([16, 16], [1, 2])
 
-    def test_leaves_out_what_the_references_noise_hides(self) -> None:
+    def test_excludes_errors_near_the_noise_of_the_reference(self) -> None:
         floor = 1e-3
         rows = [{"vpls": 4**i, "indirect_rel_mse": 1 / 4**i + floor / 100} for i in range(3)]
         rows += [{"vpls": 4**i, "indirect_rel_mse": floor} for i in range(6, 9)]
@@ -60,14 +60,14 @@ class Slopes(unittest.TestCase):
 
 
 class Gathering(unittest.TestCase):
-    def test_time_to_an_error_is_read_off_straight_lines_between_logarithms(self) -> None:
+    def test_time_to_an_error_is_interpolated_linearly_in_logarithms(self) -> None:
         curve = [(4.0, 0.01), (1.0, 0.04), (16.0, 0.0025)]  # error = 0.04 / time
         self.assertAlmostEqual(analysis.time_to_error(curve, 0.02), 2.0)
         self.assertAlmostEqual(analysis.time_to_error(curve, 0.04), 1.0)
         self.assertIsNone(analysis.time_to_error(curve, 0.001))
         self.assertIsNone(analysis.time_to_error([], 0.001))
 
-    def test_table_compares_what_asks_alike(self) -> None:
+    def test_table_has_ratios_to_other_configurations_and_the_tracer(self) -> None:
         def one(vpls: int, lever: str, frame: float, error: float) -> dict[str, object]:
             found = row("a", f"{vpls}-{lever}", frame, error, vpls=vpls, lever=lever)
             return {**found, "suite": "gather", "full_ms": 10 * frame, "indirect_rel_mse": 2 * error}
@@ -82,7 +82,7 @@ class Gathering(unittest.TestCase):
         self.assertAlmostEqual(line["full_ms_to_tracer"], 40 / 100)
         self.assertEqual(analysis.gather_table(rows[:2], tracer), [])
 
-    def test_flicker_of_a_moving_camera_is_compared(self) -> None:
+    def test_flicker_with_a_moving_camera_is_compared(self) -> None:
         def take(name: str, flicker: float) -> dict[str, object]:
             return {"suite": "camera", "scene": "orbit", "id": name, "failed": "", "indirect_flicker": flicker}
 
@@ -92,7 +92,8 @@ class Gathering(unittest.TestCase):
 
 
 def row(scene: str, name: str, cost: float, error: float, **axes: object) -> dict[str, object]:
-    base = {"path": "deferred", "vpls": 256, "bounces": analysis.YARDSTICK["bounces"], "bound": 1.0, "visibility": "maps", "lever": "none"}
+    base = {"path": "deferred", "vpls": 256, "bounces": analysis.YARDSTICK["bounces"], "bound": 1.0}
+    base |= {"visibility": "maps", "lever": "none"}
     figures = {"frame_ms": cost, "full_ms": cost, "total_rel_mse": error}
     return {"suite": "matrix", "scene": scene, "id": name, "failed": "", **base, **figures, **axes}
 
@@ -106,35 +107,35 @@ class BestDefault(unittest.TestCase):
             row(scene, "expensive", 51 * scale, 0.01),
         ]
 
-    def test_is_the_least_error_within_the_cost(self) -> None:
+    def test_has_the_smallest_error_within_the_cost(self) -> None:
         best = analysis.best_default(self.rows("a", 1.0) + self.rows("b", 7.0))
         self.assertEqual(best["id"], "good")
         self.assertAlmostEqual(best["cost"], 1.5)
 
-    def test_counts_frames_after_a_move_of_the_camera(self) -> None:
+    def test_cost_is_that_of_frames_after_a_camera_move(self) -> None:
         rows = self.rows("a", 1.0)
         rows[1]["full_ms"] = 51.0
         self.assertEqual(analysis.best_default(rows)["id"], "good")
         rows[1]["frame_ms"] = 51.0
         self.assertEqual(analysis.best_default(rows)["id"], "cheap")
 
-    def test_looks_at_the_scene_where_it_is_worst(self) -> None:
+    def test_error_is_that_of_the_worst_scene(self) -> None:
         rows = self.rows("a", 1.0) + self.rows("b", 1.0)
         rows[1]["total_rel_mse"] = 0.001
         rows[5]["total_rel_mse"] = 0.45  # of "good", whose mean is still the smallest
         best = analysis.best_default(rows)
         self.assertEqual((best["id"], best["error"], best["worst_scene"]), ("cheap", 0.4, "a"))
 
-    def test_of_equals_takes_the_first_of_the_cheapest(self) -> None:
+    def test_of_equal_errors_is_the_first_of_the_cheapest(self) -> None:
         equals = [row("a", name, cost, 0.1) for name, cost in (("slow", 14.0), ("simple", 12.4), ("lists", 12.0))]
         self.assertEqual(analysis.best_default(self.rows("a", 1.0) + equals)["id"], "simple")
 
-    def test_passes_over_what_was_not_measured_everywhere(self) -> None:
+    def test_excludes_configurations_not_measured_on_all_scenes(self) -> None:
         rows = self.rows("a", 1.0) + self.rows("b", 1.0)
         rows[5]["failed"] = "crashed"
         self.assertEqual(analysis.best_default(rows)["id"], "cheap")
 
-    def test_of_nothing_is_none(self) -> None:
+    def test_of_no_rows_is_none(self) -> None:
         self.assertIsNone(analysis.best_default([]))
 
 
@@ -144,18 +145,18 @@ class Matrix(unittest.TestCase):
         made += (matrix.gather_groups,)
         return [group for make in made for group in make()] + matrix.quick_groups()
 
-    def test_ids_are_distinct_and_fit_for_files(self) -> None:
+    def test_ids_are_distinct_and_valid_file_names(self) -> None:
         for group in self.groups():
             names = [one.id for one in group.points]
             self.assertEqual(len(names), len(set(names)), group.name)
             for name in names:
                 self.assertRegex(name, r"^[a-z][a-z0-9.-]*$")
 
-    def test_groups_are_distinct(self) -> None:
+    def test_names_of_groups_are_distinct(self) -> None:
         names = [group.name for group in self.groups()]
         self.assertEqual(len(names), len(set(names)))
 
-    def test_sweep_has_every_axis(self) -> None:
+    def test_sweep_has_all_values_of_every_axis(self) -> None:
         axes = [one.axes for one in matrix.sweep()]
         for name, values in (
             ("path", matrix.PATHS),
@@ -167,29 +168,29 @@ class Matrix(unittest.TestCase):
         ):
             self.assertEqual({each[name] for each in axes}, set(values))
 
-    def test_has_the_yardstick(self) -> None:
+    def test_short_sweep_contains_the_yardstick(self) -> None:
         self.assertIn(analysis.YARDSTICK, [one.axes for one in matrix.short_sweep()])
 
-    def test_the_yardstick_has_every_lever_off(self) -> None:
+    def test_the_yardstick_has_all_levers_off(self) -> None:
         config = matrix.blind(256, bound=matrix.UNBOUNDED).config
         self.assertEqual(config["vpls"]["visibility"], "none")
         self.assertEqual(config["vpls"]["placement"], "paths")
         self.assertFalse(config["refinement"]["enabled"])
 
-    def test_shadow_levers_leave_no_light_without_a_map(self) -> None:
+    def test_shadow_levers_have_memory_for_maps_of_all_lights(self) -> None:
         # 256 cube maps of six faces of 1,024² texels of four bytes take 6 GiB.
         for name in ("shadow-maps-half", "shadow-maps-double"):
             shadows = matrix.blind(256, lever=name).config["shadows"]
             self.assertGreaterEqual(shadows["budget_mib"] * 2**20, 256 * 6 * shadows["cube_resolution"] ** 2 * 4)
 
-    def test_levers_join_the_rest_of_their_group(self) -> None:
+    def test_merging_keeps_other_members_of_a_group(self) -> None:
         base = {"vpls": {"count": 1}, "path": "forward"}
         change = {"vpls": {"bounces": 2}, "show": "direct"}
         expected = {"vpls": {"count": 1, "bounces": 2}, "path": "forward", "show": "direct"}
         self.assertEqual(matrix.merged(base, change), expected)
         self.assertEqual(base, {"vpls": {"count": 1}, "path": "forward"})
 
-    def test_keys_tell_circumstances_apart(self) -> None:
+    def test_keys_differ_between_points_and_circumstances(self) -> None:
         group = matrix.table_groups()[0]
         one, other = group.points[:2]
         key = matrix.key_of(group, one, {"scene": "a"})
@@ -211,16 +212,16 @@ class Motions(unittest.TestCase):
             take_row("surfels", [0.1, 0.13, 0.11], 0.125),
         ]
 
-    def test_the_table_has_ratios_and_frames_that_are_worse(self) -> None:
+    def test_the_table_has_ratios_and_the_number_of_worse_frames(self) -> None:
         (line,) = analysis.flicker_table(self.rows())
         self.assertAlmostEqual(line["surfels_to_fresh"], 0.125 / 4.0)
         self.assertAlmostEqual(line["surfels_to_fixed"], 0.25)
         self.assertEqual(line["excess_frames"], 1)
 
-    def test_a_script_that_lacks_a_take_is_left_out(self) -> None:
+    def test_a_script_with_a_missing_take_is_excluded(self) -> None:
         self.assertEqual(analysis.flicker_table(self.rows()[:2]), [])
 
-    def test_surfels_that_flicker_are_noticed(self) -> None:
+    def test_too_much_flicker_of_surfels_fails_the_check(self) -> None:
         self.assertTrue(all(holds for _, holds, _ in checks.flicker_falls(self.rows())))
         rows = self.rows()
         rows[2]["indirect_flicker"] = 0.6
@@ -228,7 +229,7 @@ class Motions(unittest.TestCase):
         rows[2]["failed"] = "crashed"
         self.assertEqual([holds for _, holds, _ in checks.flicker_falls(rows)], [False, False])
 
-    def test_a_take_without_its_flicker_failed(self) -> None:
+    def test_a_take_without_flicker_counts_as_failed(self) -> None:
         frame, flicker = {"kind": "frame"}, {"kind": "flicker"}
         self.assertEqual(measuring.told([frame, frame, flicker], "")["frames"], [frame, frame])
         self.assertEqual(measuring.told([frame], "")["kind"], "failed")
@@ -236,19 +237,19 @@ class Motions(unittest.TestCase):
         own_words = {"kind": "failed", "message": "its own words"}
         self.assertEqual(measuring.told([frame, own_words], "")["message"], "its own words")
 
-    def test_takes_differ_in_nothing_but_placement_and_seeds(self) -> None:
+    def test_takes_differ_only_in_placement_and_seeds(self) -> None:
         fresh, fixed, surfels = motion.takes()
         self.assertEqual(fresh.config, fixed.config)
         self.assertEqual(matrix.merged(surfels.config, {"vpls": {"placement": "paths"}}), fixed.config)
 
-    def test_keys_tell_takes_and_scripts_apart(self) -> None:
+    def test_keys_differ_between_takes_and_scripts(self) -> None:
         walk = motion.quick_motions()[0]
         keys = {motion.key_of(walk, take, {"script": text}) for take in walk.takes for text in ("a", "b")}
         self.assertEqual(len(keys), 6)
 
 
 class VisibilityCosts(unittest.TestCase):
-    def test_compares_what_was_measured_all_three_ways(self) -> None:
+    def test_compares_counts_measured_with_all_three_visibilities(self) -> None:
         def point(visibility: str, vpls: int, error: float) -> dict[str, object]:
             measured = {"suite": "convergence", "indirect_rel_mse": error, "reference_noise": 0.001}
             return row("rooms", f"{visibility}-{vpls}", 1.0, 0.0, visibility=visibility, vpls=vpls, **measured)
@@ -269,7 +270,7 @@ class Journal(unittest.TestCase):
     def line(self, kind: str, key: str = "k", end: str = "\n") -> str:
         return json.dumps({"kind": kind, "key": key}) + end
 
-    def test_appends_what_it_reads(self) -> None:
+    def test_appended_lines_are_read_back(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "journal.jsonl"
             self.assertEqual(journal.read(path), [])
@@ -277,28 +278,28 @@ class Journal(unittest.TestCase):
             journal.append(path, {"kind": "time", "key": "a"})
             self.assertEqual([line["kind"] for line in journal.read(path)], ["errors", "time"])
 
-    def test_a_point_is_done_with_its_last_round(self) -> None:
+    def test_a_point_is_done_after_its_last_round(self) -> None:
         record = self.written(self.line("errors"), self.line("time"), self.line("time"))["k"]
         self.assertTrue(journal.is_done(record, 2))
         self.assertFalse(journal.is_done(record, 3))
         self.assertFalse(journal.is_done(None, 0))
 
-    def test_a_line_cut_short_does_not_count(self) -> None:
+    def test_an_incomplete_line_does_not_count(self) -> None:
         record = self.written(self.line("errors"), self.line("time"), '{"kind": "ti')["k"]
         self.assertEqual(len(record["times"]), 1)
 
-    def test_what_is_appended_after_a_cut_line_counts(self) -> None:
+    def test_a_line_after_an_incomplete_line_counts(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "journal.jsonl"
             path.write_text('{"kind": "ti', encoding="utf-8")
             journal.append(path, {"kind": "errors", "key": "a"})
             self.assertEqual(journal.read(path), [{"kind": "errors", "key": "a"}])
 
-    def test_errors_begin_a_point_anew(self) -> None:
+    def test_new_errors_discard_the_times_of_a_point(self) -> None:
         record = self.written(self.line("errors"), self.line("time"), self.line("errors"))["k"]
         self.assertEqual(record["times"], [])
 
-    def test_what_failed_is_tried_again(self) -> None:
+    def test_failed_points_are_tried_again(self) -> None:
         record = self.written(self.line("errors"), self.line("failed"))["k"]
         self.assertFalse(journal.is_done(record, 0))
         again = self.written(self.line("failed"), self.line("errors"))["k"]
@@ -348,34 +349,34 @@ class Program(unittest.TestCase):
             program.measure(str(fake), *paths, group, points, take)
         return found
 
-    def test_all_is_measured(self) -> None:
+    def test_all_points_are_measured(self) -> None:
         self.assertEqual(self.measured("a", "b"), {name: ["errors", "time", "time"] for name in ("a", "b")})
 
-    def test_a_point_that_fails_leaves_the_others_alone(self) -> None:
+    def test_a_failed_point_does_not_affect_the_others(self) -> None:
         found = self.measured("a", "fail", "b")
         self.assertEqual(found["fail"], ["its own words"])
         self.assertEqual(found["b"], ["errors", "time", "time"])
 
-    def test_a_crash_costs_the_point_that_was_running(self) -> None:
+    def test_after_a_crash_only_the_running_point_fails(self) -> None:
         for name in ("crash-at-errors", "crash-at-time"):
             found = self.measured("a", name, "b")
             self.assertEqual(found[name][-1], "crashed: SIGABRT")
             for other in ("a", "b"):
                 self.assertEqual(found[other][-3:], ["errors", "time", "time"])
 
-    def test_a_refusal_is_told_for_all_that_is_left(self) -> None:
+    def test_after_a_refusal_all_remaining_points_fail(self) -> None:
         self.assertEqual(self.measured("a", "refuse"), {"a": ["fake: refused"], "refuse": ["fake: refused"]})
 
 
 class Forecast(unittest.TestCase):
-    def test_learns_what_a_unit_takes(self) -> None:
+    def test_learns_the_time_of_a_unit_from_measurements(self) -> None:
         forecast = progress.Forecast()
         forecast.expect("errors", 10.0)
         forecast.record("errors", 2.0, 6.0)
         self.assertAlmostEqual(forecast.seconds_left(), 24.0)
         self.assertAlmostEqual(forecast.share_done(), 0.2)
 
-    def test_is_done_when_nothing_is_left(self) -> None:
+    def test_is_complete_when_no_work_is_left(self) -> None:
         forecast = progress.Forecast()
         forecast.expect("time", 1.0)
         forecast.forget("time", 0.5)
@@ -385,7 +386,7 @@ class Forecast(unittest.TestCase):
 
 
 class Configurations(unittest.TestCase):
-    def test_numbers_in_single_precision_are_the_same(self) -> None:
+    def test_numbers_that_differ_by_single_precision_are_equal(self) -> None:
         default = {"vpls": {"geometry_bound": 0.30000001192092896, "count": 256}, "path": "deferred"}
         self.assertTrue(results.same(matrix.merged(default, {"vpls": {"geometry_bound": 0.3}}), default))
         self.assertFalse(results.same(matrix.merged(default, {"vpls": {"geometry_bound": 0.31}}), default))
@@ -394,16 +395,16 @@ class Configurations(unittest.TestCase):
 
 
 class Checks(unittest.TestCase):
-    def test_nan_is_noticed(self) -> None:
+    def test_nan_and_infinity_fail_the_check(self) -> None:
         for value in (math.nan, math.inf):
             found = list(checks.all_measured([row("a", "p", 1.0, value)]))
             self.assertEqual([holds for _, holds, _ in found], [True, False])
 
-    def test_a_failed_point_is_noticed(self) -> None:
+    def test_a_failed_point_fails_the_check(self) -> None:
         found = list(checks.all_measured([row("a", "p", 1.0, 0.5, failed="crashed")]))
         self.assertFalse(found[0][1])
 
-    def test_rooms_that_leak_are_noticed(self) -> None:
+    def test_light_leaks_fail_the_check(self) -> None:
         def rows(seeing: float) -> list[dict[str, object]]:
             return [
                 row("two-rooms", f"p-{visibility}", 1.0, 0.5, vpls=1024, visibility=visibility, indirect_rel_mse=error)
@@ -414,7 +415,7 @@ class Checks(unittest.TestCase):
         self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.21))))
         self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.19)[1:])))
 
-    def test_a_path_that_strays_is_noticed(self) -> None:
+    def test_a_path_with_a_different_error_fails_the_check(self) -> None:
         rows = [row("a", path, 1.0, 0.5, path=path) for path in matrix.PATHS]
         self.assertTrue(all(holds for _, holds, _ in checks.paths_agree(rows)))
         rows[2]["total_rel_mse"] = 0.52
@@ -437,7 +438,7 @@ class OwnScenes(unittest.TestCase):
         for (start, end), count in edges.items():
             self.assertEqual(count, edges.get((end, start)))
 
-    def test_content_of_named_files_counts(self) -> None:
+    def test_hash_includes_the_content_of_referenced_files(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             path, data = pathlib.Path(folder) / "a.gltf", pathlib.Path(folder) / "a.bin"
             path.write_text(json.dumps({"buffers": [{"uri": "a.bin"}]}), encoding="utf-8")
