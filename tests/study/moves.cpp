@@ -66,7 +66,7 @@ void play_round(Bench& bench, int round, Figures& figures) {
     const Share camera = share_of(bench.renderer(), is_of_vpls);
     bench.renderer().invalidate();
     bench.frame({});
-    const Share anew = share_of(bench.renderer(), is_of_vpls);
+    const Share all = share_of(bench.renderer(), is_of_vpls);
     bench.renderer().invalidate();
     bench.frame({});
     const Share before_shading = share_of(bench.renderer(), is_before_shading);
@@ -77,7 +77,7 @@ void play_round(Bench& bench, int round, Figures& figures) {
     figures.still.push_back(still_ms / before_shading.ms);
     figures.camera.push_back(camera.ms);
     figures.camera_passes = std::max(figures.camera_passes, camera.passes);
-    figures.light.push_back(moved.ms / anew.ms);
+    figures.light.push_back(moved.ms / all.ms);
 }
 
 Figures play(const gl::GetProc& get_proc, const sandbox::Script& script, const MovesStudy& study) {
@@ -106,7 +106,7 @@ int moves(const MovesStudy& study) {
         fmt::print("  still frame / a full one's time before shading: {:.3f}\n", median(figures.still));
         fmt::print("  camera moved: {} passes of VPLs ran, {:.2f} ms\n", figures.camera_passes,
                    median(figures.camera));
-        fmt::print("  light moved, VPLs' passes / all made anew: {:.3f}\n", median(figures.light));
+        fmt::print("  light moved, VPL passes / all computed again: {:.3f}\n", median(figures.light));
     }
     return 0;
 }
