@@ -38,7 +38,7 @@ void add_choice(CLI::App& app, const std::string& flag, Target& target,
         ->type_name(fmt::format("{}", fmt::join(words, "|")))
         ->check([words](const std::string& word) {
             const bool known = std::find(words.begin(), words.end(), word) != words.end();
-            return known ? std::string() : fmt::format("'{}' is none of {}", word, fmt::join(words, ", "));
+            return known ? std::string() : fmt::format("'{}' is not one of {}", word, fmt::join(words, ", "));
         });
 }
 
