@@ -123,17 +123,21 @@ Json parse_json(Bytes text) {
     }
 }
 
+bool is_supported(std::string_view extension) {
+    return std::ranges::find(supported_extensions, extension) != supported_extensions.end();
+}
+
 /// Throws for required extensions that are not supported; returns a warning for each other unsupported one.
 std::vector<std::string> check_extensions(const Json& document) {
     const auto names = [&](const char* member) { return document.value(member, std::set<std::string>{}); };
     for (const std::string& name : names("extensionsRequired")) {
-        if (name != lights_extension) {
+        if (!is_supported(name)) {
             throw SceneError(fmt::format("it requires the extension {}, which is not supported", name));
         }
     }
     std::vector<std::string> warnings;
     for (const std::string& name : names("extensionsUsed")) {
-        if (name != lights_extension) {
+        if (!is_supported(name)) {
             warnings.push_back(fmt::format("the extension {} is not supported and is ignored", name));
         }
     }

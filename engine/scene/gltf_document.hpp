@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -11,8 +12,11 @@
 
 namespace candela::gltf {
 
-/// The only extension that is supported.
 inline constexpr const char* lights_extension = "KHR_lights_punctual";
+inline constexpr const char* emissive_strength_extension = "KHR_materials_emissive_strength";
+/// All extensions that are supported.
+inline constexpr std::array<std::string_view, 2> supported_extensions{lights_extension,
+                                                                      emissive_strength_extension};
 
 /// A checked glTF document with its buffers loaded (`model.buffers[i].data`). Images stay encoded:
 /// `model.images[i]` has a name and either `uri` or `bufferView`. Animations and skins are left out.

@@ -1,5 +1,6 @@
 #include "engine/scene/gltf_materials.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -98,30 +99,48 @@ ImageKey image_key(const tinygltf::Model& model, const tinygltf::Texture& textur
     return {texture.source, to_wrap(sampler.wrapS, texture.sampler), to_wrap(sampler.wrapT, texture.sampler)};
 }
 
-std::shared_ptr<const Image> base_colour_texture(const tinygltf::TextureInfo& info,
-                                                 const std::string& material, Document& document,
-                                                 Images& images,
-                                                 const std::filesystem::path& base_directory) {
-    if (info.index < 0) {
-        return nullptr;
+/// Reads the images of materials. Textures with the same image and wrapping share one.
+class ImageReader {
+ public:
+    ImageReader(Document& document, const std::filesystem::path& base_directory)
+        : document_(document), base_directory_(base_directory) {}
+
+    /// The image of a texture; null, with a warning that starts with `label`, if it cannot be used.
+    std::shared_ptr<const Image> read(int index, int coordinate_set, const std::string& label) {
+        if (index < 0) {
+            return nullptr;
+        }
+        const tinygltf::Texture& texture = document_.model.textures[static_cast<std::size_t>(index)];
+        if (texture.source < 0) {
+            document_.warnings.push_back(fmt::format("{} has no PNG or JPEG image; ignored", label));
+            return nullptr;
+        }
+        if (coordinate_set != 0) {
+            document_.warnings.push_back(
+                fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label, coordinate_set));
+            return nullptr;
+        }
+        const ImageKey key = image_key(document_.model, texture);
+        std::shared_ptr<const Image>& image = images_[key];
+        if (!image) {
+            image = load_image(document_.model, key, base_directory_);
+        }
+        return image;
     }
-    const tinygltf::Texture& texture = document.model.textures[static_cast<std::size_t>(info.index)];
-    if (texture.source < 0) {
-        document.warnings.push_back(
-            fmt::format("{}: its texture has no PNG or JPEG image; ignored", material));
-        return nullptr;
+
+ private:
+    Document& document_;
+    const std::filesystem::path& base_directory_;
+    Images images_;
+};
+
+/// KHR_materials_emissive_strength; check_schema has checked the value.
+double emissive_strength(const tinygltf::Material& material) {
+    const auto extension = material.extensions.find(emissive_strength_extension);
+    if (extension == material.extensions.end() || !extension->second.Has("emissiveStrength")) {
+        return 1.0;
     }
-    if (info.texCoord != 0) {
-        document.warnings.push_back(fmt::format(
-            "{}: its texture uses coordinate set {}; only set 0 is read; ignored", material, info.texCoord));
-        return nullptr;
-    }
-    const ImageKey key = image_key(document.model, texture);
-    std::shared_ptr<const Image>& image = images[key];
-    if (!image) {
-        image = load_image(document.model, key, base_directory);
-    }
-    return image;
+    return extension->second.Get("emissiveStrength").GetNumberAsDouble();
 }
 
 /// check_schema accepts no other names.
@@ -132,8 +151,7 @@ AlphaMode to_alpha_mode(std::string_view name) {
     return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-Material read_material(const tinygltf::Material& source, const std::string& label, Document& document,
-                       Images& images, const std::filesystem::path& base_directory) {
+Material read_material(const tinygltf::Material& source, const std::string& label, ImageReader& images) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     Material material;
     material.name = source.name;
@@ -141,10 +159,18 @@ Material read_material(const tinygltf::Material& source, const std::string& labe
         material.base_colour[i] = static_cast<float>(pbr.baseColorFactor[static_cast<std::size_t>(i)]);
     }
     for (int i = 0; i < 3; ++i) {
-        material.emissive[i] = static_cast<float>(source.emissiveFactor[static_cast<std::size_t>(i)]);
+        material.emissive[i] = static_cast<float>(source.emissiveFactor[static_cast<std::size_t>(i)] *
+                                                  emissive_strength(source));
+        if (!std::isfinite(material.emissive[i])) {
+            throw SceneError(fmt::format("{}: its emission is too large", label));
+        }
     }
     material.base_colour_texture =
-        base_colour_texture(pbr.baseColorTexture, label, document, images, base_directory);
+        images.read(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord, label + ": its texture");
+    if (material.emissive != glm::vec3(0.0F)) {
+        material.emissive_texture = images.read(source.emissiveTexture.index, source.emissiveTexture.texCoord,
+                                                label + ": its emissive texture");
+    }
     material.double_sided = source.doubleSided;
     material.alpha_mode = to_alpha_mode(source.alphaMode);
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
@@ -155,12 +181,11 @@ Material read_material(const tinygltf::Material& source, const std::string& labe
 
 std::vector<std::shared_ptr<const Material>> read_materials(Document& document,
                                                             const std::filesystem::path& base_directory) {
-    Images images;
+    ImageReader images(document, base_directory);
     std::vector<std::shared_ptr<const Material>> materials;
     for (const tinygltf::Material& source : document.model.materials) {
         const std::string label = fmt::format("material {}", materials.size());
-        materials.push_back(
-            std::make_shared<const Material>(read_material(source, label, document, images, base_directory)));
+        materials.push_back(std::make_shared<const Material>(read_material(source, label, images)));
     }
     materials.push_back(std::make_shared<const Material>());
     return materials;

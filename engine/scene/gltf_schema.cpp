@@ -233,6 +233,8 @@ std::vector<Rule> rules() {
         {"materials.[].occlusionTexture.index", texture},
         {"materials.[].emissiveTexture", has({"index"})},
         {"materials.[].emissiveTexture.index", texture},
+        {"materials.[].emissiveTexture.texCoord", index},
+        {"materials.[].extensions.KHR_materials_emissive_strength.emissiveStrength", number(not_negative)},
 
         {"meshes.[]", has({"primitives"})},
         {"meshes.[].name", text()},

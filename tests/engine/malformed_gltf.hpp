@@ -52,7 +52,8 @@ inline GltfBuilder complete_scene() {
         {"indices", {{"bufferView", indices}, {"componentType", 5125}}},
         {"values", {{"bufferView", values}}}};
     file.document.update(Json::parse(R"({
-        "materials": [{"emissiveFactor": [0, 0, 0], "doubleSided": true, "normalTexture": {"index": 0},
+        "materials": [{"emissiveFactor": [1, 1, 2], "emissiveTexture": {"index": 0},
+                       "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}, "doubleSided": true, "normalTexture": {"index": 0},
                        "alphaMode": "MASK", "alphaCutoff": 0.5,
                        "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}}],
         "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 10497, "wrapT": 10497}],

@@ -72,6 +72,39 @@ TEST_SUITE("glTF materials") {
         CHECK(imported.report.warnings.empty());
     }
 
+    TEST_CASE("emission: strength, texture, and textures that cannot be used") {
+        GltfBuilder file = right_triangle();
+        file.primitive()["material"] = 0;
+        file.document["extensionsUsed"] = Json::parse(R"(["KHR_materials_emissive_strength"])");
+        file.document["images"][0] = data_uri(png(four_colours, 2, 2));
+        file.document["textures"] = Json::parse(R"([{"source": 0}, {}])");
+        const auto set_material = [&](const char* emission) {
+            file.document["materials"] = Json::array({Json::parse(emission)});
+        };
+        set_material(R"({"emissiveFactor": [1, 0.5, 0], "emissiveTexture": {"index": 0},
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}})");
+        {
+            const Imported imported(file);
+            const Material& material = *imported.primitive().material;
+            CHECK(material.emissive == glm::vec3(20.0F, 10.0F, 0.0F));
+            REQUIRE(material.emissive_texture != nullptr);
+            CHECK(material.emissive_texture->width == 2);
+            CHECK(imported.report.warnings.empty());
+        }
+        // A texture alone emits nothing: the factor is 0 by default.
+        set_material(R"({"emissiveTexture": {"index": 0}})");
+        CHECK(Imported(file).primitive().material->emissive_texture == nullptr);
+
+        set_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "texCoord": 1}})");
+        CHECK(
+            Imported(file).report.warnings ==
+            std::vector<std::string>{"material 0: its emissive texture uses coordinate set 1; only set 0 is "
+                                     "read; ignored"});
+        set_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1}})");
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{"material 0: its emissive texture has no PNG or JPEG image; ignored"});
+    }
+
     TEST_CASE("alpha modes and their cutoff") {
         struct Alpha {
             const char* json;

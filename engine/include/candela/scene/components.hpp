@@ -61,11 +61,19 @@ struct Material {
     std::string name;
     glm::vec4 base_colour{1.0F};                       ///< linear
     std::shared_ptr<const Image> base_colour_texture;  ///< null: none
-    glm::vec3 emissive{0.0F};                          ///< linear; not used yet: it emits no light
+    /// Radiance that the surface emits, linear, in cd/m² (or W/(sr m²), like the lights' units), each channel
+    /// >= 0 and finite: from the front, and from the back if it is double-sided. Multiplied by the texture.
+    glm::vec3 emissive{0.0F};
+    std::shared_ptr<const Image> emissive_texture;  ///< null: none; alpha is ignored
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;  ///< of AlphaMode::mask, >= 0
 };
+
+/// Whether surfaces of the material may emit light.
+[[nodiscard]] inline bool emits(const Material& material) {
+    return material.emissive != glm::vec3(0.0F);
+}
 
 /// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.
 struct Vertex {
