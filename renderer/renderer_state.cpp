@@ -101,7 +101,7 @@ bool same_radiance(Configuration a, const Configuration& b) {
 
 Renderer::State::State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
     : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
-    switch_to(configuration_, size_, {});
+    switch_to(configuration_, size_, {}, {});
 }
 
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
@@ -110,17 +110,18 @@ std::vector<std::string> Renderer::State::configure(const Configuration& configu
         return errors;
     }
     try {
-        switch_to(configuration, size_, quality_);
+        switch_to(configuration, size_, quality_, contents_);
     } catch (const gl::GlError& error) {
         errors.emplace_back(error.what());
     }
     return errors;
 }
 
-void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality) {
+void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality,
+                                const FrameContents& contents) {
     FrameGraph graph;
-    FrameHandles frame =
-        build_frame(graph, gpu_, configuration, {rendered_size(size, quality), size, quality.interleave});
+    FrameHandles frame = build_frame(graph, gpu_, configuration,
+                                     {rendered_size(size, quality), size, quality.interleave}, contents);
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = frame;
     if (size != size_ || quality != quality_ || !same_radiance(configuration, configuration_)) {
@@ -129,6 +130,7 @@ void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 s
     configuration_ = configuration;
     size_ = size;
     quality_ = quality;
+    contents_ = contents;
     last_passes_.clear();
 }
 
@@ -141,8 +143,9 @@ void Renderer::State::render(const World& world, Entity camera, const Target& ta
     }
     const gl::HostState host_state(gpu_.gl());
     const Quality quality = quality_now(world, {camera, target.size, jitter});
-    if (target.size != size_ || quality != quality_) {
-        switch_to(configuration_, target.size, quality);
+    const FrameContents contents = contents_now(world);
+    if (target.size != size_ || quality != quality_ || contents != contents_) {
+        switch_to(configuration_, target.size, quality, contents);
     }
     runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
@@ -200,6 +203,15 @@ Quality Renderer::State::quality_now(const World& world, const ViewRequest& requ
         return {};
     }
     return moved ? quality_in_motion_ : quality_;
+}
+
+FrameContents Renderer::State::contents_now(const World& world) {
+    const Tick revision = world.revision<MeshInstance>();
+    if (world_ == &world && revision == meshes_revision_) {
+        return contents_;
+    }
+    meshes_revision_ = revision;
+    return contents_of(world);
 }
 
 void Renderer::State::learn_cost(const PendingFrame& frame) {

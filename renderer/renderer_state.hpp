@@ -42,7 +42,9 @@ class Renderer::State {
         Quality quality;
     };
 
-    void switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality);
+    void switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality,
+                   const FrameContents& contents);
+    [[nodiscard]] FrameContents contents_now(const World& world);
     [[nodiscard]] double budget_ms() const;
     [[nodiscard]] Quality quality_now(const World& world, const ViewRequest& request);
     void learn_cost(const PendingFrame& frame);
@@ -56,6 +58,8 @@ class Renderer::State {
     gl::GraphBackend backend_;
     GraphRuntime runtime_;
     Configuration configuration_;
+    FrameContents contents_;  // of the world in the last frame
+    Tick meshes_revision_ = 0;
     glm::uvec2 size_{1};  // of the target
     Quality quality_;
     Quality quality_in_motion_;

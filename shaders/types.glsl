@@ -24,14 +24,17 @@ struct Material {
     uint texel_height;
     uint flags;           // MATERIAL_*
     float alpha_cutoff;   // alpha below it is a hole; 0: no holes
+    uint first_emissive_texel;  // the same of its emissive image
+    uint emissive_width;
+    uint emissive_height;
+    vec3 emissive;        // radiance
     float pad0 DEFAULT(0.0);
-    float pad1 DEFAULT(0.0);
-    float pad2 DEFAULT(0.0);
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u
-#define MATERIAL_WRAP_U_SHIFT 1u
-#define MATERIAL_WRAP_V_SHIFT 3u
+#define MATERIAL_BASE_COLOUR_WRAP_SHIFT 1u  // 2 bits for u, then 2 for v
+#define MATERIAL_EMISSIVE_WRAP_SHIFT 5u
+#define MATERIAL_WRAP_BITS 2u
 #define MATERIAL_WRAP_MASK 3u
 
 #define LIGHT_POINT 0u
@@ -106,13 +109,15 @@ struct TileDepth {
     uint pad0 DEFAULT(0u);
 };
 
+#define NO_MAP 0xffffffffu
+
 // A VPL or a surfel. Members "of surfels" are unused in traced VPLs, and the reverse.
 struct Vpl {
     vec3 position;     // metres, on the surface
-    uint map;          // slot of its depth map in the atlas
+    uint map;          // slot of its depth map in the atlas, or NO_MAP: rays find its visibility
     vec3 normal;       // unit; it emits into this half-space
     float radius2;     // m², squared radius of the disc that it emits from; of surfels
-    vec3 flux;         // reflected flux; zero: emits nothing, or not in use
+    vec3 flux;         // reflected flux; of surfels also emitted; zero: sends nothing, or not in use
     uint first_point;  // index of its cell's first point; of surfels
     vec3 edges_up;     // 1/m, inverse distances to edges along +x, +y, +z, 0: none near; of traced VPLs: vpl_edges.comp
     uint point_count;  // points of its cell; of surfels
@@ -133,12 +138,16 @@ struct CellPoint {
     uint pad0 DEFAULT(0u);
 };
 
-// Light that a cell point receives from the lights.
+// Light that a cell point receives from the lights and from surfaces that emit light, and that it emits.
 struct DirectPoint {
     vec3 arriving;  // flux
     float area;     // m²; 0: in a hole of a mask, or hidden from its surfel
     vec3 albedo;    // linear
     float pad0 DEFAULT(0.0);
+    vec3 emitted;   // flux
+    float pad1 DEFAULT(0.0);
+    vec3 from_emitters;  // the part of `arriving` that comes from surfaces that emit light
+    float pad2 DEFAULT(0.0);
 };
 
 // A cell point with all the light that it reflects.
@@ -147,18 +156,22 @@ struct LitPoint {
     float area;     // m²
     vec3 normal;    // unit
     float pad0 DEFAULT(0.0);
-    vec3 flux;      // reflected, direct and indirect
+    vec3 flux;      // emitted, and reflected of direct and indirect light
     float pad1 DEFAULT(0.0);
 };
 
 // Light of a surfel's cell as a whole, from the lights and from other surfels.
 struct CellLight {
-    vec3 centre;    // metres: mean position of the reflected flux of the lights
+    vec3 centre;    // metres: mean position of the flux `direct`
     float radius2;  // m², squared radius of the disc that this flux comes from
-    vec3 arriving;  // flux of the lights
+    vec3 arriving;  // flux of the lights and of surfaces that emit light
     float pad2 DEFAULT(0.0);
-    vec3 direct;    // the part of `arriving` that it reflects
+    vec3 direct;    // the part of `arriving` that it reflects, and what it emits
     float pad0 DEFAULT(0.0);
+    vec3 emitted;   // flux
+    float pad3 DEFAULT(0.0);
+    vec3 from_emitters;  // the part of `arriving` that comes from surfaces that emit light
+    float pad4 DEFAULT(0.0);
     vec3 albedo;    // mean over the area of its points
     float area;     // m², of its points that have an area
     vec3 indirect;  // irradiance from the other surfels, sum over all bounces
@@ -225,7 +238,7 @@ struct VplRecord {
 // Where the flux of a path, or of all surfels, went. emitted = absorbed + escaped + truncated + roulette, up to
 // rounding; of surfels also up to the balance of the form factors, and without roulette.
 struct FluxAccount {
-    vec3 emitted;  // of surfels: flux of the lights that arrives at the cells
+    vec3 emitted;  // of surfels: flux of the lights that arrives at the cells, and that the cells emit
     uint spent;  // of surfels: 1 if too little flux is left for another bounce
     vec3 absorbed;
     float pad1 DEFAULT(0.0);

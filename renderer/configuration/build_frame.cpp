@@ -8,6 +8,7 @@
 #include "renderer/passes/output/accumulate.hpp"
 #include "renderer/passes/output/tone_map.hpp"
 #include "renderer/passes/shading/deferred.hpp"
+#include "renderer/passes/shading/emission.hpp"
 #include "renderer/passes/shading/forward.hpp"
 #include "renderer/passes/shading/transparent.hpp"
 #include "renderer/passes/surfaces/depth_prepass.hpp"
@@ -56,9 +57,36 @@ ValueHandle<CameraView> add_camera(FrameGraph& graph, const Configuration& confi
     return add_refined_view(graph, frame.request, *frame.refinement);
 }
 
+/// The configured VPLs, if any is needed. The light that surfaces emit is direct light, but VPLs carry it.
+struct WantedVpls {
+    VplSettings settings;
+    ShownLight shown;
+
+    [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
+    /// About how many VPLs there will be.
+    [[nodiscard]] std::uint32_t count(const FrameContents& contents) const {
+        const std::uint32_t on_emitters = contents.emitters ? emitting_surfels(settings.count) : 0;
+        return (shown.reflected ? settings.count : 0) + on_emitters;
+    }
+};
+
+WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& contents) {
+    WantedVpls wanted{configuration.vpls,
+                      {.emitted = contents.emitters && configuration.show != Show::indirect,
+                       .reflected = configuration.indirect && configuration.show != Show::direct}};
+    if (contents.emitters) {
+        wanted.settings.placement = VplPlacement::surfels;
+    }
+    if (!wanted.shown.reflected) {
+        wanted.settings.bounces = 0;
+    }
+    return wanted;
+}
+
 /// Places VPLs and finds their light. Returns what their depth maps are made of.
-MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const VplSettings& settings, const LitScene& lit,
+MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                       FrameHandles& frame) {
+    const VplSettings& settings = wanted.settings;
     if (settings.placement == VplPlacement::paths) {
         const ValueHandle<VplPlan> plan =
             add_vpl_paths(graph, frame.metrics, frame.lights, frame.refinement, settings);
@@ -69,22 +97,28 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const VplSettings& settings, 
     const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, frame.refinement, settings);
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
-    frame.vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, lit.lights, settings.bounces);
+    frame.vpls =
+        add_surfel_light(graph, gpu, lit.tracing, visibility, lit.lights, settings.bounces, wanted.shown);
     return {surfels.plan, surfels.surfels, motion, surfels.set};
 }
 
-/// The indirect light, if the picture shows any.
+/// The light of the wanted VPLs, if any.
 std::optional<VplLight> add_vpls(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                                 const LitScene& lit, FrameHandles& frame) {
-    if (!configuration.indirect || configuration.show == Show::direct) {
+                                 const WantedVpls& wanted, const FrameContents& contents, const LitScene& lit,
+                                 FrameHandles& frame) {
+    if (!wanted.any()) {
         return std::nullopt;
     }
-    const MappedVpls mapped = place_vpls(graph, gpu, configuration.vpls, lit, frame);
+    const MappedVpls mapped = place_vpls(graph, gpu, wanted, lit, frame);
     VplLight light{.vpls = *frame.vpls,
                    .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
-                                               configuration.visibility, configuration.geometry_bound)};
+                                               configuration.visibility, configuration.geometry_bound),
+                   .emitters = contents.emitters};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
+        if (contents.emitters) {
+            light.rays = lit.tracing;
+        }
     } else if (configuration.visibility.method == VplVisibility::rays) {
         light.rays = lit.tracing;
     }
@@ -147,8 +181,17 @@ TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& vi
 
 }  // namespace
 
+FrameContents contents_of(const World& world) {
+    FrameContents contents;
+    for (const auto& [entity, instance] : world.view<MeshInstance>()) {
+        contents.emitters |= std::ranges::any_of(
+            instance.mesh->primitives, [](const Primitive& primitive) { return emits(*primitive.material); });
+    }
+    return contents;
+}
+
 FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                         const FrameExtent& extent) {
+                         const FrameExtent& extent, const FrameContents& contents) {
     FrameHandles frame;
     frame.request = graph.import_value<ViewRequest>("view request");
     frame.target = graph.texture("target", {extent.target, Format::rgba8}, Lifetime::imported);
@@ -158,14 +201,15 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const FrameView view = add_view_upload(graph, gpu, camera, extent.size);
     const SceneData seen = add_view_cull(graph, gpu, lit.scene, camera);
 
-    const std::optional<VplLight> vpls = add_vpls(graph, gpu, configuration, lit, frame);
+    const WantedVpls wanted = wanted_vpls(configuration, contents);
+    const std::uint32_t vpl_count = wanted.count(contents);
+    const std::optional<VplLight> vpls = add_vpls(graph, gpu, configuration, wanted, contents, lit, frame);
     if (vpls) {
-        frame.interleave =
-            std::max(interleaving(configuration.interleave, configuration.vpls.count, extent.target),
-                     extent.least_interleave);
+        frame.interleave = std::max(interleaving(configuration.interleave, vpl_count, extent.target),
+                                    extent.least_interleave);
     }
     // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
-    const bool gathers = vpls && (frame.interleave > 1 || configuration.vpls.count > most_asked(*vpls));
+    const bool gathers = vpls && (frame.interleave > 1 || vpl_count > most_asked(*vpls));
 
     const ShadingPathInfo& path = info_of(configuration.path);
     const FoundSurfaces found = find_surfaces(graph, gpu, path.surfaces, seen, view, gathers);
@@ -194,11 +238,15 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         lighting.vpls.reset();
     }
 
-    const ShadedSurfaces solid =
+    ShadedSurfaces solid =
         found.gbuffer
             ? ShadedSurfaces{add_deferred(graph, gpu, *found.gbuffer, lighting, view), found.gbuffer->depth}
             : add_forward(graph, gpu, seen, lighting, view, found.depth());
-    TextureHandle radiance = add_transparent(graph, gpu, seen, of_blended, view, solid);
+    const bool shows_emitters = contents.emitters && configuration.show != Show::indirect;
+    if (shows_emitters) {
+        solid.radiance = add_emission(graph, gpu, seen, view, solid);
+    }
+    TextureHandle radiance = add_transparent(graph, gpu, seen, of_blended, view, solid, shows_emitters);
     if (frame.refinement) {
         radiance = add_accumulate(graph, gpu, radiance, *frame.refinement, extent.size);
     }

@@ -41,9 +41,16 @@ struct FrameExtent {
     std::uint32_t least_interleave = 1;  ///< lower bound for the interleave factor n
 };
 
+/// What a world contains, as far as the passes of its frames depend on it.
+struct FrameContents {
+    bool emitters = false;  ///< surfaces that emit light
+    bool operator==(const FrameContents&) const = default;
+};
+[[nodiscard]] FrameContents contents_of(const World& world);
+
 /// Declares all passes of a frame with a valid configuration and one size. `gpu` must outlive the graph.
 /// Throws gl::ProgramError if a shader does not compile.
 [[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                                       const FrameExtent& extent);
+                                       const FrameExtent& extent, const FrameContents& contents);
 
 }  // namespace candela

@@ -16,12 +16,14 @@ sys.dont_write_bytecode = True  # otherwise importing the modules would leave fi
 from atrium import atrium
 from glass import glass
 from halls import fins, hall
-from rooms import cornell, corner, furnace, two_rooms
+from rooms import cornell, corner, furnace, lamp, neon, two_rooms
 
 SHIPPED = {
     "cornell": cornell,
+    "lamp": lamp,
     "corner": corner,
     "two-rooms": two_rooms,
+    "neon": neon,
     "furnace": furnace,
     "glass": glass,
     "fins": fins,

@@ -27,6 +27,10 @@ class Scene:
         items.append(item)
         return len(items) - 1
 
+    def use(self, extension):
+        if extension not in self.document["extensionsUsed"]:
+            self.document["extensionsUsed"].append(extension)
+
     def accessor(self, rows, component_type, code, target):
         """One value or vector per row, in a separate buffer view."""
         view = {"buffer": 0, "byteOffset": len(self.data), "target": target}
@@ -51,6 +55,16 @@ class Scene:
         if texture is not None:
             pbr["baseColorTexture"] = {"index": texture}
         return self.add("materials", {"name": name, "pbrMetallicRoughness": pbr, **properties})
+
+    def emitter(self, name, colour, radiance, **properties):
+        """A material that emits `radiance` (linear RGB, cd/m2) and reflects `colour`."""
+        strength = max(radiance)
+        self.use("KHR_materials_emissive_strength")
+        emission = {
+            "emissiveFactor": [channel / strength for channel in radiance],
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": strength}},
+        }
+        return self.material(name, colour, **emission, **properties)
 
     def texture(self, name, png):
         """A texture that repeats."""

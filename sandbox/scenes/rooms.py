@@ -1,7 +1,9 @@
 """Small scenes of a few walls."""
 
+import math
+
 from gltf_writer import Scene
-from shapes import block, box, flat, looking, room, turn
+from shapes import block, box, flat, lathe, looking, room, turn
 
 WHITE = [0.725, 0.71, 0.68]
 RED = [0.63, 0.065, 0.05]
@@ -10,31 +12,62 @@ BLUE = [0.1, 0.2, 0.55]
 DAYLIGHT = [1.0, 0.92, 0.8]
 
 
-def cornell():
-    """The Cornell box (Goral et al. 1984) with its later measured data, scaled to 2 m and open towards +Z."""
+def cornell_box(ceiling):
+    """The Cornell box (Goral et al. 1984) with its later measured data, scaled to 2 m and open towards +Z, without a
+    light. `ceiling`: its quads."""
     scene = Scene()
     white, red, green = scene.material("white", WHITE), scene.material("red", RED), scene.material("green", GREEN)
 
     walls = {
-        "floor": (white, [(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]),
-        "ceiling": (white, [(-1, 2, -1), (1, 2, -1), (1, 2, 1), (-1, 2, 1)]),
-        "back wall": (white, [(-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1)]),
-        "left wall": (red, [(-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)]),
-        "right wall": (green, [(1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)]),
+        "floor": (white, [[(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]]),
+        "ceiling": (white, ceiling),
+        "back wall": (white, [[(-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1)]]),
+        "left wall": (red, [[(-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)]]),
+        "right wall": (green, [[(1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)]]),
     }
-    for name, (material, quad) in walls.items():
-        scene.place(name, flat([quad]), material)
+    for name, (material, quads) in walls.items():
+        scene.place(name, flat(quads), material)
     short, tall = flat(box(0.6, 0.6, 0.6)), flat(box(0.6, 1.2, 0.6))
     scene.place("short block", short, white, translation=[0.33, 0.0, 0.39], rotation=turn(-17))
     scene.place("tall block", tall, white, translation=[-0.33, 0.0, -0.26], rotation=turn(17))
+    return scene
 
+
+def look_into_cornell_box(scene):
+    """The opening, 2.9 m away, fills a square picture except for a thin margin."""
+    scene.camera(39.3, 0.01, translation=[0.0, 1.0, 3.9])
+
+
+def cornell():
+    """The Cornell box with a point light."""
+    scene = cornell_box([ceiling_quad(-1, 1, -1, 1)])
     # Far enough below the ceiling that the ceiling is not overexposed there, and far enough above the tall block that
     # the block's shadow reaches the walls. 4 cd at 1.6 m give pi / 2 lux on the floor, a radiance of 0.36. That is
     # middle grey after indirect light is added and the picture is tone-mapped.
     scene.light("ceiling light", "point", DAYLIGHT, 4.0, translation=[0.0, 1.6, 0.0])
-    # The opening, 2.9 m away, fills a square picture except for a thin margin.
-    scene.camera(39.3, 0.01, translation=[0.0, 1.0, 3.9])
+    look_into_cornell_box(scene)
     return scene
+
+
+def lamp():
+    """The Cornell box with its own lamp, a rectangle in the ceiling. Its size is the measured one (130 mm x 105 mm in a
+    box 552.8 mm wide); its radiance is the measured spectrum in linear RGB, with the value that is usual for it."""
+    x, z = 130 / 552.8, 105 / 552.8
+    ceiling = [
+        ceiling_quad(-1, 1, -1, -z),
+        ceiling_quad(-1, 1, z, 1),
+        ceiling_quad(-1, -x, -z, z),
+        ceiling_quad(x, 1, -z, z),
+    ]
+    scene = cornell_box(ceiling)
+    scene.place("lamp", flat([ceiling_quad(-x, x, -z, z)]), scene.emitter("lamp", [0.78] * 3, [17.0, 12.0, 4.0]))
+    look_into_cornell_box(scene)
+    return scene
+
+
+def ceiling_quad(x0, x1, z0, z1):
+    """A part of the Cornell box's ceiling."""
+    return [(x0, 2, z0), (x1, 2, z0), (x1, 2, z1), (x0, 2, z1)]
 
 
 def corner():
@@ -90,4 +123,25 @@ def furnace():
     scene.place("room", flat(room((-1, -1, -1), (1, 1, 1))), grey)
     scene.light("light", "point", [1.0, 1.0, 1.0], 2.0, translation=[0.2, 0.3, -0.1])
     scene.camera(80, 0.01, translation=[0.0, 0.0, 0.9])
+    return scene
+
+
+def neon():
+    """A room of 4 m x 2.6 m x 4 m in which two neon tubes on the walls and a ball on the floor glow. There are no other
+    lights."""
+    scene = Scene()
+    white, wood = scene.material("white", WHITE), scene.material("wood", [0.45, 0.26, 0.12])
+    pink = scene.emitter("pink neon", [0.6] * 3, [24.0, 3.0, 9.0])
+    blue = scene.emitter("blue neon", [0.6] * 3, [2.0, 8.0, 28.0])
+    warm = scene.emitter("warm glass", [0.7] * 3, [9.0, 6.0, 2.7])
+    scene.place("room", flat(room((-2, 0, -2), (2, 2.6, 2))), white)
+    scene.place("table", flat(box(1.0, 0.7, 0.6)), wood, translation=[-0.5, 0.0, -0.7], rotation=turn(20))
+    scene.place("stool", flat(box(0.35, 0.45, 0.35)), wood, translation=[0.3, 0.0, 0.6], rotation=turn(40))
+    scene.place("pink tube", flat(block((-1.2, 1.75, -1.88), (1.2, 1.8, -1.83))), pink)
+    scene.place("blue tube", flat(block((-1.88, 0.7, -1.0), (-1.83, 0.75, 1.4))), blue)
+    angles = [math.pi * ring / 16 for ring in range(1, 16)]
+    sides = [(0.18 * math.sin(angle), -0.18 * math.cos(angle)) for angle in angles]
+    ball = lathe([(0, -0.18), *sides, (0, 0.18)], 32)
+    scene.place("ball", ball, warm, translation=[0.95, 0.18, -0.1])
+    scene.camera(65, 0.01, **looking((1.7, 1.5, 1.8), (-0.3, 0.75, -0.6)))
     return scene

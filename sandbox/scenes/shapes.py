@@ -81,7 +81,8 @@ def pane(width, height, repeats=None):
 
 
 def lathe(profile, segments):
-    """A surface of revolution about +Y, with smooth normals. `profile` is a list of (radius, height), bottom first."""
+    """A surface of revolution about +Y, with smooth normals. `profile` is a list of (radius, height), bottom first; it
+    may begin and end on the axis."""
     surface = Surface()
     for ring, (radius, height) in enumerate(profile):
         below, above = profile[max(ring - 1, 0)], profile[min(ring + 1, len(profile) - 1)]
@@ -96,7 +97,8 @@ def lathe(profile, segments):
     for ring in range(len(profile) - 1):
         for segment in range(segments):
             corner = ring * row + segment
-            surface.indices += [corner + i for i in (0, 1, row + 1, 0, row + 1, row)]
+            surface.indices += [corner + i for i in (0, 1, row + 1)] if profile[ring][0] > 0 else []
+            surface.indices += [corner + i for i in (0, row + 1, row)] if profile[ring + 1][0] > 0 else []
     return surface
 
 

@@ -45,9 +45,18 @@ vec3 irradiance_from_vpl(Vpl vpl, Surface surface) { return vpl.flux * visible_g
 
 layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints { LitPoint lit_points[]; };
 
+// Whether the points of a cell are evaluated one by one: near the cell, and always if it emits light (EMITTERS), as
+// that light is direct.
+bool is_resolved(Vpl vpl, Surface surface) {
+#ifdef EMITTERS
+    if (vpl.map == NO_MAP) return true;
+#endif
+    return is_near(vpl.map_origin - surface.position, vpl.area);
+}
+
 // π times the unoccluded irradiance from the cell of a surfel.
 vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
-    if (!is_near(vpl.map_origin - surface.position, vpl.area)) {
+    if (!is_resolved(vpl, surface)) {
         return vpl.flux * disc_term(vpl.position, vpl.normal, vpl.radius2, surface.position, surface.normal);
     }
     vec3 sum = vec3(0.0);

@@ -1,4 +1,4 @@
-// Base colour at a ray hit. Images are read from one texel buffer, since a shader cannot select among textures by
+// Base colour and emission at a ray hit. Images are read from one texel buffer, since a shader cannot select among textures by
 // index. They have a reduced resolution, which is enough for diffuse bounces.
 #include "bindings.glsl"
 #include "maths.glsl"
@@ -21,26 +21,43 @@ int wrap(int x, int size, uint mode) {
     return clamp(x, 0, size - 1);
 }
 
-// Texel at `at`, wrapped as the material says; linear colour and alpha.
-vec4 texel(Material material, ivec2 at) {
-    int x = wrap(at.x, int(material.texel_width), (material.flags >> MATERIAL_WRAP_U_SHIFT) & MATERIAL_WRAP_MASK);
-    int y = wrap(at.y, int(material.texel_height), (material.flags >> MATERIAL_WRAP_V_SHIFT) & MATERIAL_WRAP_MASK);
-    vec4 stored = unpackUnorm4x8(texels[material.first_texel + uint(y) * material.texel_width + uint(x)]);
+// An image in the texel buffer.
+struct TexelImage {
+    uint first;
+    uvec2 size;
+    uint wraps;  // of u in the lowest bits, then of v
+};
+
+// Texel at `at`, wrapped; linear colour and alpha.
+vec4 texel(TexelImage image, ivec2 at) {
+    int x = wrap(at.x, int(image.size.x), image.wraps & MATERIAL_WRAP_MASK);
+    int y = wrap(at.y, int(image.size.y), (image.wraps >> MATERIAL_WRAP_BITS) & MATERIAL_WRAP_MASK);
+    vec4 stored = unpackUnorm4x8(texels[image.first + uint(y) * image.size.x + uint(x)]);
     return vec4(srgb_decode(stored.rgb), stored.a);
 }
 
-vec4 bilinear_texel(Material material, vec2 uv) {
-    vec2 at = uv * vec2(material.texel_width, material.texel_height) - 0.5;
+vec4 bilinear_texel(TexelImage image, vec2 uv) {
+    vec2 at = uv * vec2(image.size) - 0.5;
     ivec2 corner = ivec2(floor(at));
     vec2 f = at - vec2(corner);
-    vec4 top = mix(texel(material, corner), texel(material, corner + ivec2(1, 0)), f.x);
-    vec4 bottom = mix(texel(material, corner + ivec2(0, 1)), texel(material, corner + ivec2(1, 1)), f.x);
+    vec4 top = mix(texel(image, corner), texel(image, corner + ivec2(1, 0)), f.x);
+    vec4 bottom = mix(texel(image, corner + ivec2(0, 1)), texel(image, corner + ivec2(1, 1)), f.x);
     return mix(top, bottom, f.y);
 }
 
 vec4 colour_at(Material material, vec2 uv) {
     if (material.texel_width == 0u) return material.base_colour;
-    return material.base_colour * bilinear_texel(material, uv);
+    TexelImage image = TexelImage(material.first_texel, uvec2(material.texel_width, material.texel_height),
+                                  material.flags >> MATERIAL_BASE_COLOUR_WRAP_SHIFT);
+    return material.base_colour * bilinear_texel(image, uv);
+}
+
+// Radiance that a surface emits.
+vec3 emission_at(Material material, vec2 uv) {
+    if (material.emissive == vec3(0.0) || material.emissive_width == 0u) return material.emissive;
+    TexelImage image = TexelImage(material.first_emissive_texel, uvec2(material.emissive_width, material.emissive_height),
+                                  material.flags >> MATERIAL_EMISSIVE_WRAP_SHIFT);
+    return material.emissive * bilinear_texel(image, uv).rgb;
 }
 
 vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {

@@ -21,6 +21,9 @@ void main() {
     surfaces[0] = unpack_surface(fragment_surface(colour.rgb), gl_FragCoord.xyz, view.target_size, view.world_from_clip);
     reflect_radiance(surfaces, pixels, reflected);
 #ifdef BLENDED
+#ifdef EMISSION
+    reflected[0] += fragment_emission();
+#endif
     cover = vec4(colour.a);
     reflected[0] *= colour.a;
 #endif

@@ -20,6 +20,15 @@ vec4 fragment_colour() {
     return colour;
 }
 
+#ifdef EMISSION
+
+layout(binding = UNIT_EMISSION) uniform sampler2D emission;
+
+// Radiance that the surface emits.
+vec3 fragment_emission() { return materials[material_index].emissive * texture(emission, uv).rgb; }
+
+#endif
+
 PackedSurface fragment_surface(vec3 albedo) {
     vec3 facing = gl_FrontFacing ? normal : -normal;
     return pack_surface(albedo, normalize(facing));

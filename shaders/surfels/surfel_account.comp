@@ -23,7 +23,7 @@ shared vec3 reflected[SURFEL_GROUP];
 
 // Flux that a cell reflects after the last bounce, which no surfel gathers any more.
 vec3 left_over(uint id, CellLight cell) {
-    if (bounce < 2u) return cell.direct;
+    if (bounce < 2u) return cell.direct - cell.emitted;
     return cell.area * bounced[((bounce + 1u) % 2u) * surfel_count + id].rgb;
 }
 
@@ -35,11 +35,11 @@ void main() {
         CellLight cell = cells[id];
         vec3 left = left_over(id, cell);
         vec3 indirect = cell.area * cell.indirect;
-        emitted[lane] += cell.arriving;
-        absorbed[lane] += cell.arriving - cell.direct + (1.0 - cell.albedo) * indirect;
+        emitted[lane] += cell.arriving - cell.from_emitters + cell.emitted;
+        absorbed[lane] += cell.arriving + cell.emitted - cell.direct + (1.0 - cell.albedo) * indirect;
         escaped[lane] += rows[id].y * (cell.direct + cell.albedo * indirect - left);
         truncated[lane] += left;
-        reflected[lane] += cell.direct;
+        reflected[lane] += cell.direct - cell.emitted;
     }
     barrier();
     if (lane > 0u) return;

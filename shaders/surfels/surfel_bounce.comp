@@ -21,10 +21,11 @@ uniform uint bounce;  // 2 or more
 // Irradiance from the flux of the lights that a cell reflects, before the scales.
 vec3 from_lit_cell(Vpl from, uint other) {
     CellLight cell = cells[other];
-    if (cell.direct == vec3(0.0)) return vec3(0.0);
+    vec3 reflected = cell.direct - cell.emitted;
+    if (reflected == vec3(0.0)) return vec3(0.0);
     Vpl to = surfels[other];
     if (!is_near(to.position - from.position, to.area)) {
-        return cell.direct / PI * disc_term(cell.centre, to.normal, cell.radius2, from.position, from.normal);
+        return reflected / PI * disc_term(cell.centre, to.normal, cell.radius2, from.position, from.normal);
     }
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < to.point_count; ++i) {

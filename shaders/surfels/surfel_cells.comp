@@ -1,4 +1,5 @@
-// Sums up the points of a cell: its flux, mean albedo, area, and the disc that its directly reflected flux comes from.
+// Sums up the points of a cell: its flux, mean albedo, area, and the disc that its emitted and directly
+// reflected flux comes from.
 // One invocation a surfel.
 #include "surfels/surfel.glsl"
 
@@ -15,6 +16,8 @@ void main() {
     Vpl surfel = surfels[id];
     vec3 arriving = vec3(0.0);
     vec3 direct = vec3(0.0);
+    vec3 emitted = vec3(0.0);
+    vec3 from_emitters = vec3(0.0);
     vec3 albedo = vec3(0.0);
     float area = 0.0;
     float weight = 0.0;
@@ -22,7 +25,9 @@ void main() {
     float second = 0.0;
     for (uint i = 0u; i < surfel.point_count; ++i) {
         DirectPoint point = direct_points[surfel.first_point + i];
-        vec3 flux = point.albedo * point.arriving;
+        vec3 flux = point.albedo * point.arriving + point.emitted;
+        emitted += point.emitted;
+        from_emitters += point.from_emitters;
         arriving += point.arriving;
         direct += flux;
         albedo += point.area * point.albedo;
@@ -33,7 +38,8 @@ void main() {
         first += w * off;
         second += w * dot(off, off);
     }
-    CellLight cell = CellLight(surfel.position, surfel.radius2, arriving, 0.0, direct, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
+    CellLight cell = CellLight(surfel.position, surfel.radius2, arriving, 0.0, direct, 0.0, emitted, 0.0,
+                               from_emitters, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
     if (area > 0.0) cell.albedo = albedo / area;
     if (weight > 0.0) {
         vec3 mean = first / weight;

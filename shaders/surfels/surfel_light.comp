@@ -1,16 +1,19 @@
-// Flux of the lights at the points of the surfels' cells, with one shadow ray to each light. One invocation a cell
+// Flux of the lights at the points of the surfels' cells, with one shadow ray to each light, and flux that the points
+// emit: π times radiance times area. One invocation a cell
 // point.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
 #include "scene/materials.glsl"
 #include "types.glsl"
+#include "vpls/disc.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
 layout(std430, binding = BINDING_SEEN_POINTS) readonly restrict buffer Seen { uint seen[]; };
 
 uniform uint point_count;
@@ -31,6 +34,49 @@ vec3 irradiance_from(Light light, CellPoint point) {
     return cos_surface * incident.irradiance;
 }
 
+uniform uint surfel_count;
+uniform uint emitting_count;   // surfels that emit light: the last ones
+uniform uint emitter_shares;   // a cell point receives the light of one in so many of them, and of those near its cell
+                               // if there are few enough: shares is POINTS_A_SURFEL
+
+// Irradiance from the cell of a surfel that emits light, unoccluded.
+vec3 irradiance_from_cell(Vpl emitter, CellPoint point) {
+    vec3 sum = vec3(0.0);
+    for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
+        CellPoint from = cell_points[i];
+        float term = disc_term(from.position, from.normal, from.area / PI, point.position, point.normal);
+        if (term > 0.0) sum += from.area * term * emission_at(materials[from.material], from.uv);
+    }
+    return sum;
+}
+
+// Irradiance from the cell of a surfel that emits light.
+vec3 visible_from_cell(Vpl emitter, CellPoint point) {
+    vec3 irradiance = irradiance_from_cell(emitter, point);
+    if (irradiance == vec3(0.0)) return irradiance;
+    vec3 origin = point.position + ray_offset * point.normal;
+    vec3 target = emitter.map_origin + ray_offset * emitter.normal;
+    return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : irradiance;
+}
+
+// Irradiance from surfaces that emit light. The points of a cell share the emitting surfels that are not near: together
+// they receive the light of all of them.
+vec3 irradiance_from_emitters(uint id, CellPoint point) {
+    Vpl own = surfels[point.surfel];
+    bool covers_all = emitter_shares <= own.point_count;
+    uint share = (covers_all ? id - own.first_point : id) % emitter_shares;
+    // How many points of the cell have the same share.
+    float same = float((own.point_count - 1u - share) / emitter_shares + 1u);
+    float weight = covers_all ? float(own.point_count) / same : float(emitter_shares);
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < emitting_count; ++i) {
+        Vpl emitter = surfels[surfel_count - emitting_count + i];
+        bool near = emitter_shares == POINTS_A_SURFEL && is_near(emitter.position - own.position, own.area + emitter.area);
+        if (near || i % emitter_shares == share) sum += (near ? 1.0 : weight) * visible_from_cell(emitter, point);
+    }
+    return sum;
+}
+
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= point_count) return;
@@ -42,6 +88,11 @@ void main() {
     uint end = min(light_count, lights_before + lights_now);
     for (uint i = lights_before; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);
     vec3 arriving = area * irradiance;
-    if (lights_before > 0u) arriving += direct_points[id].arriving;
-    direct_points[id] = DirectPoint(arriving, area, colour.rgb, 0.0);
+    if (lights_before > 0u) {
+        direct_points[id].arriving += arriving;
+        return;
+    }
+    vec3 emitted = area * PI * emission_at(material, point.uv);
+    vec3 from_emitters = emitting_count > 0u && area > 0.0 ? area * irradiance_from_emitters(id, point) : vec3(0.0);
+    direct_points[id] = DirectPoint(arriving + from_emitters, area, colour.rgb, 0.0, emitted, 0.0, from_emitters, 0.0);
 }

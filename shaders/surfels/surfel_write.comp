@@ -1,4 +1,4 @@
-// Turns surfels into VPLs: each has the total flux that its cell reflects, and the position and width of the part of
+// Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the part of
 // the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
 #include "surfels/surfel.glsl"
 
@@ -11,6 +11,9 @@ layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { 
 layout(std430, binding = BINDING_LIT_POINTS) writeonly restrict buffer LitPoints { LitPoint lit_points[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
 
+uniform float emitted_share;    // 1 if the VPLs show the light that surfaces emit, else 0
+uniform float reflected_share;  // and the light that they reflect
+
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= surfel_count) return;
@@ -19,7 +22,8 @@ void main() {
     for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {
         CellPoint point = cell_points[i];
         DirectPoint direct = direct_points[i];
-        vec3 flux = direct.albedo * (direct.arriving + direct.area * cell.indirect);
+        vec3 reflected = direct.albedo * (direct.arriving + direct.area * cell.indirect);
+        vec3 flux = emitted_share * direct.emitted + reflected_share * reflected;
         lit_points[i] = LitPoint(point.position, point.area, point.normal, 0.0, flux, 0.0);
     }
     vec3 spread = cell.area * cell.albedo * cell.indirect;
@@ -34,6 +38,6 @@ void main() {
         float between = share * (1.0 - share) * dot(apart, apart) * 6.0 / PI;
         vpl.radius2 = min(mix(vpl.radius2, cell.radius2, share) + between, vpl.radius2);
     }
-    vpl.flux = cell.direct + spread;
+    vpl.flux = emitted_share * cell.emitted + reflected_share * (cell.direct - cell.emitted + spread);
     vpls[id] = vpl;
 }

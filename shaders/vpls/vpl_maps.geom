@@ -15,6 +15,7 @@ flat out uint mapped_vpl;
 void main() {
     Vpl vpl = vpls[vpl_id[0]];
     if (vpl.normal == vec3(0.0)) return;  // not in use: the path ended before this bounce
+    if (vpl.map == NO_MAP) return;
     if (!may_have_changed_above(vpl.map_origin, vpl.normal)) return;
     VplTile tile = vpl_tile(vpl.map);
     for (uint i = 0u; i < 4u; ++i) {

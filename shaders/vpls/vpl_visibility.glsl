@@ -1,10 +1,27 @@
 // Visibility between a VPL and a surface: from the VPL's depth map (VPL_VISIBILITY_MAPS), by a shadow ray
-// (VPL_VISIBILITY_RAYS), or always 1.
+// (VPL_VISIBILITY_RAYS), or always 1. VPLs on surfaces that emit light have no maps (EMITTERS): their shadows are those
+// of direct light, and a map's texels would be seen.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
+
+#if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && defined(EMITTERS))
+
+#include "scene/bvh.glsl"
+
+float visibility_by_ray(Vpl vpl, Surface surface) {
+    vec3 target = vpl.map_origin + vpl_constants.ray_offset * vpl.normal;
+    vec3 origin = surface.position + vpl_constants.ray_offset * surface.normal;
+    // At least as high above the VPL's plane as the target.
+    origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;
+    vec3 to_vpl = target - origin;
+    float t_min = vpl_constants.crease_slack / max(length(to_vpl), 1e-30);
+    return any_hit(origin, to_vpl, t_min, 1.0) ? 0.0 : 1.0;
+}
+
+#endif
 
 #if defined(VPL_VISIBILITY_MAPS)
 
@@ -30,6 +47,9 @@ float lift_above_map(float aside, float distance, float sine) {
 
 // Share of the VPL's light that reaches the surface, in [0, 1], from four depth comparisons.
 float vpl_visibility(Vpl vpl, Surface surface) {
+#ifdef EMITTERS
+    if (vpl.map == NO_MAP) return visibility_by_ray(vpl, surface);
+#endif
     vec3 from_vpl = surface.position - vpl_map_origin(vpl);
     vec3 tangent, bitangent;
     basis_around(vpl.normal, tangent, bitangent);
@@ -55,17 +75,7 @@ float vpl_visibility(Vpl vpl, Surface surface) {
 
 #elif defined(VPL_VISIBILITY_RAYS)
 
-#include "scene/bvh.glsl"
-
-float vpl_visibility(Vpl vpl, Surface surface) {
-    vec3 target = vpl.position + vpl_constants.ray_offset * vpl.normal;
-    vec3 origin = surface.position + vpl_constants.ray_offset * surface.normal;
-    // At least as high above the VPL's plane as the target.
-    origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;
-    vec3 to_vpl = target - origin;
-    float t_min = vpl_constants.crease_slack / max(length(to_vpl), 1e-30);
-    return any_hit(origin, to_vpl, t_min, 1.0) ? 0.0 : 1.0;
-}
+float vpl_visibility(Vpl vpl, Surface surface) { return visibility_by_ray(vpl, surface); }
 
 #else
 

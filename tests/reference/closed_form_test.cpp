@@ -18,6 +18,16 @@ TEST_SUITE("reference: closed forms") {
         CHECK(plane_under_directional_light());
     }
 
+    TEST_CASE("a plane under a rectangle that emits light") {
+        CHECK(plane_under_rectangle());
+    }
+    TEST_CASE("a sphere that emits light everywhere is equally bright everywhere") {
+        for (const double albedo : {0.2, 0.8}) {
+            CAPTURE(albedo);
+            CHECK(glowing_sphere(albedo));
+        }
+    }
+
     TEST_CASE("a sphere lit from its centre is equally bright everywhere") {
         for (const double albedo : {0.2, 0.5, 0.9}) {
             CAPTURE(albedo);

@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
 
+#include "tests/area_lights.hpp"
 #include "tests/reference/pictures.hpp"
 
 namespace candela::reference {
@@ -195,6 +196,47 @@ bool plane_under_directional_light(Defect defect) {
     const double cosine = glm::normalize(glm::dvec3(to_light)).y;
     return shows(
         scene, [&](glm::dvec3) { return 2.0 * cosine; }, defect);
+}
+
+bool plane_under_rectangle() {
+    candela::Scene scene = ground();
+    constexpr float half = 0.3F;
+    add(scene.world, upside_down_at(lamp), MeshInstance{square(half, emitter(glm::vec3(1.0F)))});
+    const auto corner = [](float x, float z) { return glm::dvec3(lamp + half * glm::vec3(x, 0.0F, z)); };
+    const std::array corners{corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
+
+    const glm::uvec2 size(96, 64);
+    const sandbox::Picture expected =
+        flipped(expected_picture(scene, size, glm::dvec3(0.0), {0, 1, 0}, [&](glm::dvec3 at) {
+            return glm::dvec3(0.5 / pi * irradiance_of_polygon(corners, at, {0, 1, 0}));
+        }));
+    const Estimate estimate = trace_inside(scene, size, 64, 0, Defect::none);
+    double sum = 0.0;
+    double squares = 0.0;
+    const auto count = static_cast<double>(expected.pixels.size());
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
+        const auto truth = static_cast<double>(expected.pixels[i].r);
+        const double error = static_cast<double>(estimate.direct.pixels[i].r) / truth - 1.0;
+        sum += error;
+        squares += error * error;
+    }
+    const NoisyMean mean{1.0 + sum / count, std::sqrt(squares) / count};
+    return mean.error < 1e-3 && is_within(mean, 1.0, float_tolerance);
+}
+
+bool glowing_sphere(double albedo) {
+    candela::Scene scene;
+    constexpr double radiance = 2.0;
+    const auto material = emitter(glm::vec3(static_cast<float>(radiance)), static_cast<float>(albedo));
+    add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 4, material)});
+    scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+    const Estimate estimate = trace_inside(scene, {16, 16}, 256, std::nullopt, Defect::none);
+    const double direct = radiance * (1.0 + albedo);
+    // Every way finds an emitter, and only the weights of the two ways vary: 256 samples have 1 % of noise.
+    const double seen = candela::mean(candela::Picture{{16, 16}, estimate.direct.pixels});
+    MESSAGE("direct ", seen, " for ", direct);
+    return std::abs(seen / direct - 1.0) < 0.005 &&
+           is_within(mean_indirect(estimate, estimate.hit), radiance / (1.0 - albedo) - direct, 1e-3);
 }
 
 bool sphere_furnace(double albedo, Defect defect) {

@@ -14,6 +14,13 @@ namespace candela::reference {
 [[nodiscard]] bool plane_under_spot_light(Defect defect = Defect::none);
 [[nodiscard]] bool plane_under_directional_light(Defect defect = Defect::none);
 
+/// A plane of albedo 1/2 under a rectangle that emits light: Lambert's formula, in the mean of the picture.
+[[nodiscard]] bool plane_under_rectangle();
+
+/// A closed sphere of this albedo that emits light everywhere: radiance L / (1 - ρ), everywhere, of which L
+/// is emitted, ρ L direct and the rest indirect.
+[[nodiscard]] bool glowing_sphere(double albedo);
+
 /// A sphere lit from its centre: after B bounces the indirect light is direct · (ρ + ... + ρᴮ), and with
 /// unlimited bounces the total is direct / (1 - ρ), everywhere.
 [[nodiscard]] bool sphere_furnace(double albedo, Defect defect = Defect::none);

@@ -70,6 +70,9 @@ class Geometry {
     [[nodiscard]] Sight look(const Ray& ray) const;
 
     [[nodiscard]] const Triangle& triangle(std::uint32_t index) const { return triangles_[index]; }
+    [[nodiscard]] std::uint32_t triangle_count() const {
+        return static_cast<std::uint32_t>(triangles_.size());
+    }
     [[nodiscard]] const SurfaceMaterial& material(const Triangle& triangle) const {
         return materials_[triangle.material];
     }

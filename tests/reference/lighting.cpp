@@ -56,21 +56,6 @@ float share_of_looking_around(const SceneContent& scene, const Surface& receiver
     return around / (around + from_light);
 }
 
-/// Whether two surfaces see each other.
-bool are_connected(const Geometry& geometry, const Surface& a, const Surface& b) {
-    const glm::vec3 between = b.position - a.position;
-    const bool face_each_other = glm::dot(a.normal, between) > 0.0F && glm::dot(a.face, between) > 0.0F &&
-                                 glm::dot(b.face, between) < 0.0F;
-    if (!face_each_other) return false;
-    // The ray ends above `b`, too: at a slant it would otherwise hit the triangle of `b` itself.
-    const float offset = geometry.ray_offset();
-    const glm::vec3 origin = a.position + offset * a.face;
-    const glm::vec3 way = b.position + offset * b.face - origin;
-    const float share = offset / glm::length(way);
-    return !geometry.is_blocked(
-        {.origin = origin, .direction = way, .nearest = share, .farthest = 1.0F - share});
-}
-
 /// Keeps the states of lights that contribute at least the faint share of the sum of `powers`.
 void drop_faint(std::vector<LightState>& states, const std::vector<float>& powers) {
     const float least = faint_share * std::accumulate(powers.begin(), powers.end(), 0.0F);

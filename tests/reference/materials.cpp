@@ -58,7 +58,9 @@ std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& mate
         index_.try_emplace(material.get(), static_cast<std::uint32_t>(materials_.size()));
     if (is_new) {
         materials_.push_back({.base_colour = material->base_colour,
-                              .texture = texture_of(*material),
+                              .texture = texture_of(material->base_colour_texture),
+                              .emissive = material->emissive,
+                              .emissive_texture = texture_of(material->emissive_texture),
                               .double_sided = material->double_sided,
                               .alpha_mode = material->alpha_mode,
                               .alpha_cutoff = material->alpha_cutoff});
@@ -66,10 +68,10 @@ std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& mate
     return found->second;
 }
 
-std::shared_ptr<const Texture> MaterialList::texture_of(const Material& material) {
-    if (!material.base_colour_texture) return nullptr;
-    std::shared_ptr<const Texture>& texture = textures_[material.base_colour_texture.get()];
-    if (!texture) texture = std::make_shared<const Texture>(*material.base_colour_texture);
+std::shared_ptr<const Texture> MaterialList::texture_of(const std::shared_ptr<const Image>& image) {
+    if (!image) return nullptr;
+    std::shared_ptr<const Texture>& texture = textures_[image.get()];
+    if (!texture) texture = std::make_shared<const Texture>(*image);
     return texture;
 }
 

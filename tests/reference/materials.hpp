@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <candela/scene/components.hpp>
@@ -32,6 +33,8 @@ class Texture {
 struct SurfaceMaterial {
     glm::vec4 base_colour;
     std::shared_ptr<const Texture> texture;  ///< null: none
+    glm::vec3 emissive;
+    std::shared_ptr<const Texture> emissive_texture;  ///< null: none
     bool double_sided;
     AlphaMode alpha_mode;
     float alpha_cutoff;
@@ -39,6 +42,10 @@ struct SurfaceMaterial {
     /// Linear RGB, with alpha.
     [[nodiscard]] glm::vec4 colour(glm::vec2 uv) const {
         return texture ? base_colour * texture->at(uv) : base_colour;
+    }
+    /// Radiance that it emits.
+    [[nodiscard]] glm::vec3 emission(glm::vec2 uv) const {
+        return emissive_texture ? emissive * glm::vec3(emissive_texture->at(uv)) : emissive;
     }
     [[nodiscard]] bool is_hole(glm::vec2 uv) const {
         return alpha_mode == AlphaMode::mask && colour(uv).a < alpha_cutoff;
@@ -53,7 +60,7 @@ class MaterialList {
     [[nodiscard]] std::vector<SurfaceMaterial> take() { return std::move(materials_); }
 
  private:
-    [[nodiscard]] std::shared_ptr<const Texture> texture_of(const Material& material);
+    [[nodiscard]] std::shared_ptr<const Texture> texture_of(const std::shared_ptr<const Image>& image);
 
     std::vector<SurfaceMaterial> materials_;
     std::unordered_map<const Material*, std::uint32_t> index_;

@@ -63,12 +63,26 @@ glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen
     return sum / static_cast<double>(samples);
 }
 
+/// What a surface emits, and what it reflects of the light of emitters.
+glm::vec3 light_from_emitters(const Trace& trace, const Surface& surface, Sampler& sampler) {
+    glm::dvec3 sum(0.0);
+    for (std::uint32_t i = 0; i < trace.settings.samples; ++i) {
+        sampler.start(i);
+        sum += light_of_emitters(trace.scene, surface, sampler);
+    }
+    return surface.emission + surface.albedo * glm::vec3(sum / static_cast<double>(trace.settings.samples));
+}
+
 /// Sums the direct light of all layers, and records what distinguishes the pixel from its neighbours.
-glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, PixelTrait& trait) {
+glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, Sampler sampler,
+                     PixelTrait& trait) {
     glm::vec3 sum(0.0F);
     for (const SeenSurface& layer : seen) {
         Direct direct = direct_light(trace.scene, layer.surface, trace.settings.defect);
         sum += layer.weight * direct.radiance;
+        if (trace.scene.emitters.any()) {
+            sum += layer.weight * light_from_emitters(trace, layer.surface, sampler);
+        }
         trait.layers.push_back(
             {layer.surface.position, layer.surface.face, layer.part, std::move(direct.states)});
     }
@@ -80,7 +94,8 @@ void trace_pixel(Trace& trace, glm::uvec2 pixel) {
     const auto seen = seen_surfaces(trace.scene.geometry, trace.viewpoint.through(pixel));
     if (seen.empty()) return;
     trace.estimate.hit[i] = 1;
-    trace.estimate.direct.pixels[i] = add_direct(trace, seen, trace.traits[i]);
+    trace.estimate.direct.pixels[i] =
+        add_direct(trace, seen, Sampler(pixel_seed(trace.settings.seed, pixel, 2)), trace.traits[i]);
     if (trace.settings.bounces == 0U) return;
     for (std::uint32_t half = 0; half < 2; ++half) {
         const Sampler sampler(pixel_seed(trace.settings.seed, pixel, half));

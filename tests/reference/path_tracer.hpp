@@ -32,7 +32,8 @@ struct Settings {
 
 /// Linear radiance, without tone mapping. All pictures are black where nothing is hit.
 struct Estimate {
-    sandbox::Picture direct;                 ///< exact: every light is a point or a direction
+    /// Exact for points and directions; that of emitting surfaces is sampled, `samples` times a pixel.
+    sandbox::Picture direct;
     sandbox::Picture indirect;               ///< the mean of both halves
     std::array<sandbox::Picture, 2> halves;  ///< independent estimates of the indirect light
     std::vector<std::uint8_t> hit;           ///< 1 where the pixel's centre shows a surface

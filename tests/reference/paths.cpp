@@ -52,6 +52,7 @@ glm::vec3 indirect_light(const SceneContent& scene, const Surface& seen, Sampler
             radiance += carried * light_by_looking_around(scene, at, *struck, sampler, settings.defect);
         at = *struck;
         carried *= at.albedo;
+        if (counts && scene.emitters.any()) radiance += carried * light_of_emitters(scene, at, sampler);
     }
     return seen.albedo * radiance;
 }

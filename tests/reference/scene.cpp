@@ -18,6 +18,7 @@ std::vector<PlacedCamera> cameras_of(const World& world) {
 
 SceneContent::SceneContent(const World& world)
     : geometry(world),
+      emitters(geometry),
       lights(lights_of(world)),
       emission(lights, geometry.bounds()),
       cameras(cameras_of(world)) {}

@@ -4,6 +4,7 @@
 
 #include <candela/scene/components.hpp>
 #include "tests/reference/emission.hpp"
+#include "tests/reference/emitters.hpp"
 #include "tests/reference/geometry.hpp"
 #include "tests/reference/lights.hpp"
 
@@ -20,6 +21,7 @@ struct SceneContent {
     explicit SceneContent(const World& world);
 
     Geometry geometry;
+    Emitters emitters;
     std::vector<Light> lights;
     Emission emission;
     std::vector<PlacedCamera> cameras;

@@ -10,6 +10,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -80,6 +81,12 @@ std::shared_ptr<const Material> diffuse(glm::vec3 albedo, bool double_sided) {
     return std::make_shared<const Material>(std::move(material));
 }
 
+std::shared_ptr<const Material> emitter(glm::vec3 radiance, float albedo) {
+    Material material = *diffuse(glm::vec3(albedo));
+    material.emissive = radiance;
+    return std::make_shared<const Material>(std::move(material));
+}
+
 std::shared_ptr<const Mesh> square(float half, std::shared_ptr<const Material> material) {
     Primitive primitive{.vertices = {}, .indices = {}, .material = std::move(material)};
     add_quad(primitive, {{{-half, 0, -half}, {-half, 0, half}, {half, 0, half}, {half, 0, -half}}});
@@ -140,6 +147,11 @@ std::shared_ptr<const Mesh> soup(std::size_t count, std::uint32_t seed, float ex
 
 Transform looking(glm::vec3 from, glm::vec3 target, glm::vec3 up) {
     return {.translation = from, .rotation = glm::quatLookAt(glm::normalize(target - from), up)};
+}
+
+Transform upside_down_at(glm::vec3 position) {
+    return {.translation = position,
+            .rotation = glm::angleAxis(std::numbers::pi_v<float>, glm::vec3(1.0F, 0.0F, 0.0F))};
 }
 
 Transform at(glm::vec3 position) {

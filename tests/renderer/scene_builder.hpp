@@ -22,6 +22,9 @@ namespace candela {
 /// A diffuse material without an image.
 [[nodiscard]] std::shared_ptr<const Material> diffuse(glm::vec3 albedo, bool double_sided = false);
 
+/// A material that emits this radiance, on its front.
+[[nodiscard]] std::shared_ptr<const Material> emitter(glm::vec3 radiance, float albedo = 0.0F);
+
 /// A square in the plane y = 0 that faces +Y, from -half to half. Its texture covers it once, u along x, v
 /// along z.
 [[nodiscard]] std::shared_ptr<const Mesh> square(float half, std::shared_ptr<const Material> material);
@@ -45,6 +48,8 @@ Entity add(World& world, Components... components) {
     return entity;
 }
 [[nodiscard]] Transform at(glm::vec3 position);
+/// The same, upside down: +Y becomes -Y.
+[[nodiscard]] Transform upside_down_at(glm::vec3 position);
 
 /// A world, its camera, and a light for the test to modify.
 struct Scene {

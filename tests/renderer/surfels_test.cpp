@@ -40,7 +40,7 @@ void add_parallelogram(SurfelGround& ground, std::uint32_t item, glm::vec3 corne
 
 /// The six sides of a cube with edges of 2 m, each with its own normal.
 SurfelGround cube() {
-    SurfelGround ground{.triangles = {}, .item_of = {}, .double_sided = {false}};
+    SurfelGround ground{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
     for (int axis = 0; axis < 3; ++axis) {
         for (const float side : {-1.0F, 1.0F}) {
             glm::vec3 normal(0.0F), u(0.0F);
@@ -76,7 +76,7 @@ TEST_SUITE("surfels: placement") {
     TEST_CASE("cells cover the area of all surfaces, and have about equal areas") {
         for (const std::uint32_t count : {24U, 100U, 1000U}) {
             CAPTURE(count);
-            const SurfelSet set = place_surfels(cube(), count, test_seed());
+            const SurfelSet set = place_surfels(cube(), {.reflecting = count}, test_seed());
             CHECK(set.surfels.size() <= count);
             CHECK(set.surfels.size() > 0.8 * count);
             CHECK(total_area(set) == doctest::Approx(24.0).epsilon(1e-4));
@@ -93,7 +93,7 @@ TEST_SUITE("surfels: placement") {
     }
 
     TEST_CASE("a cell is flat, on one side of the surface, and near its surfel") {
-        const SurfelSet set = place_surfels(cube(), 200, test_seed());
+        const SurfelSet set = place_surfels(cube(), {.reflecting = 200}, test_seed());
         const float width = std::sqrt(24.0F / 200.0F);
         std::size_t points = 0;
         for (const gpu::Vpl& surfel : set.surfels) {
@@ -110,11 +110,11 @@ TEST_SUITE("surfels: placement") {
     }
 
     TEST_CASE("double-sided surfaces have surfels on both sides, others on their front") {
-        SurfelGround sheet{.triangles = {}, .item_of = {}, .double_sided = {false}};
+        SurfelGround sheet{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
         add_parallelogram(sheet, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         for (const bool both : {false, true}) {
             sheet.double_sided[0] = both;
-            const SurfelSet set = place_surfels(sheet, 50, 0);
+            const SurfelSet set = place_surfels(sheet, {.reflecting = 50}, 0);
             const auto front = std::ranges::count_if(
                 set.surfels, [](const gpu::Vpl& surfel) { return surfel.normal.z > 0.5F; });
             CHECK(total_area(set) == doctest::Approx(both ? 2.0 : 1.0).epsilon(1e-4));
@@ -124,10 +124,10 @@ TEST_SUITE("surfels: placement") {
     }
 
     TEST_CASE("no cell extends to another item, even in the same plane") {
-        SurfelGround two{.triangles = {}, .item_of = {}, .double_sided = {false}};
+        SurfelGround two{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
         add_parallelogram(two, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
-        const SurfelSet set = place_surfels(two, 40, test_seed());
+        const SurfelSet set = place_surfels(two, {.reflecting = 40}, test_seed());
         for (std::size_t i = 0; i < set.surfels.size(); ++i) {
             const gpu::Vpl& surfel = set.surfels[i];
             for (std::uint32_t p = 0; p < surfel.point_count; ++p) {
@@ -137,10 +137,10 @@ TEST_SUITE("surfels: placement") {
     }
 
     TEST_CASE("another seed gives another set, and empty input gives none") {
-        CHECK(place_surfels(cube(), 100, 1).surfels[0].position !=
-              place_surfels(cube(), 100, 2).surfels[0].position);
-        CHECK(place_surfels(cube(), 0, 1).surfels.empty());
-        CHECK(place_surfels({}, 100, 1).surfels.empty());
+        CHECK(place_surfels(cube(), {.reflecting = 100}, 1).surfels[0].position !=
+              place_surfels(cube(), {.reflecting = 100}, 2).surfels[0].position);
+        CHECK(place_surfels(cube(), {.reflecting = 0}, 1).surfels.empty());
+        CHECK(place_surfels({}, {.reflecting = 100}, 1).surfels.empty());
     }
 
     TEST_CASE("an item's shape does not depend on its rotation, bit for bit") {

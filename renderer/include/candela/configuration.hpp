@@ -16,7 +16,10 @@ enum class Show : std::uint8_t { total, direct, indirect };
 
 /// How VPLs are placed. Names in JSON: paths, surfels.
 enum class VplPlacement : std::uint8_t {
-    paths,   ///< where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997)
+    /// Where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997). Paths do not start
+    /// at
+    /// surfaces that emit light: a world with such surfaces always has surfels.
+    paths,
     surfels  ///< evenly on all surfaces, independent of the lights; they gather their light
 };
 

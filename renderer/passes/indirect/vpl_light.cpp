@@ -4,7 +4,7 @@ namespace candela {
 
 std::uint32_t most_asked(const VplLight& light) {
     if (light.rays) {
-        return 64;
+        return light.maps ? 512 : 64;  // few need rays: see emitting_surfels
     }
     return light.vpls.points ? 2048 : 8192;
 }
@@ -14,10 +14,13 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
     if (light.vpls.points) {
         words.emplace_back("SURFELS");
     }
+    if (light.emitters) {
+        words.emplace_back("EMITTERS");
+    }
     if (light.maps) {
         words.emplace_back("VPL_VISIBILITY_MAPS");
     }
-    if (light.rays) {
+    if (light.rays && !light.maps) {
         words.emplace_back("VPL_VISIBILITY_RAYS");
     }
     return words;

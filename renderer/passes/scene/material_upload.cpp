@@ -32,10 +32,10 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
         .size = {image.width, image.height},
         .format = Format::srgb8_alpha8,
         .mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)))};
-    gl::Texture texture(gpu.device(), "base colour", desc);
+    gl::Texture texture(gpu.device(), "material", desc);
     texture.upload(std::as_bytes(std::span(image.texels)));
     texture.generate_mips();
-    gl::Sampler sampler(gpu.device(), "base colour",
+    gl::Sampler sampler(gpu.device(), "material",
                         {.min_filter = GL_LINEAR_MIPMAP_LINEAR,
                          .wrap_u = wrap_mode(image.wrap_u),
                          .wrap_v = wrap_mode(image.wrap_v),
@@ -65,13 +65,18 @@ std::uint32_t pack(const glm::u8vec4& texel) {
            static_cast<std::uint32_t>(texel.a) << 24U;
 }
 
-std::uint32_t material_flags(const Material& material) {
-    std::uint32_t flags = material.double_sided ? MATERIAL_DOUBLE_SIDED : 0U;
-    if (const Image* image = material.base_colour_texture.get()) {
-        flags |= static_cast<std::uint32_t>(image->wrap_u) << MATERIAL_WRAP_U_SHIFT;
-        flags |= static_cast<std::uint32_t>(image->wrap_v) << MATERIAL_WRAP_V_SHIFT;
+std::uint32_t wrap_bits(const Image* image) {
+    if (image == nullptr) {
+        return 0;
     }
-    return flags;
+    return static_cast<std::uint32_t>(image->wrap_u) | static_cast<std::uint32_t>(image->wrap_v)
+                                                           << MATERIAL_WRAP_BITS;
+}
+
+std::uint32_t material_flags(const Material& material) {
+    return (material.double_sided ? MATERIAL_DOUBLE_SIDED : 0U) |
+           wrap_bits(material.base_colour_texture.get()) << MATERIAL_BASE_COLOUR_WRAP_SHIFT |
+           wrap_bits(material.emissive_texture.get()) << MATERIAL_EMISSIVE_WRAP_SHIFT;
 }
 
 bool is_masked(const Material& material) {
@@ -92,19 +97,29 @@ std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& mat
     if (!is_new) {
         return found->second;
     }
-    const std::uint32_t image = material->base_colour_texture ? add_image(material->base_colour_texture) : 0;
+    const MaterialImages images{.base_colour = add_image(material->base_colour_texture),
+                                .emissive = add_image(material->emissive_texture)};
+    const UploadedImage& colour = images_[images.base_colour];
+    const UploadedImage& emissive = images_[images.emissive];
     materials_.push_back(material);
-    image_of_.push_back(image);
+    images_of_.push_back(images);
     records_.push_back({.base_colour = material->base_colour,
-                        .first_texel = images_[image].first_texel,
-                        .texel_width = images_[image].width,
-                        .texel_height = images_[image].height,
+                        .first_texel = colour.first_texel,
+                        .texel_width = colour.width,
+                        .texel_height = colour.height,
                         .flags = material_flags(*material),
-                        .alpha_cutoff = is_masked(*material) ? material->alpha_cutoff : 0.0F});
+                        .alpha_cutoff = is_masked(*material) ? material->alpha_cutoff : 0.0F,
+                        .first_emissive_texel = emissive.first_texel,
+                        .emissive_width = emissive.width,
+                        .emissive_height = emissive.height,
+                        .emissive = material->emissive});
     return found->second;
 }
 
 std::uint32_t MaterialTable::add_image(const std::shared_ptr<const Image>& image) {
+    if (!image) {
+        return 0;
+    }
     const auto [found, is_new] =
         image_index_.try_emplace(image.get(), static_cast<std::uint32_t>(images_.size()));
     if (!is_new) {
@@ -119,8 +134,8 @@ std::uint32_t MaterialTable::add_image(const std::shared_ptr<const Image>& image
     return found->second;
 }
 
-std::shared_ptr<const MaterialTexture> MaterialTable::texture(std::uint32_t material) const {
-    return images_[image_of_[material]].texture;
+std::shared_ptr<const MaterialTexture> MaterialTable::texture(std::uint32_t image) const {
+    return images_[image].texture;
 }
 
 glm::vec3 mean_albedo(const Material& material) {

@@ -11,6 +11,12 @@
 
 namespace candela {
 
+/// Numbers of images in a MaterialTable; 0: no image.
+struct MaterialImages {
+    std::uint32_t base_colour = 0;
+    std::uint32_t emissive = 0;
+};
+
 /// The distinct materials of a scene, in the order in which they are added, with their images on the GPU: as
 /// textures for rasterisation, and reduced in one buffer of texels for tracing.
 class MaterialTable {
@@ -20,10 +26,12 @@ class MaterialTable {
     /// Index of the material in the table; adds it if it is new.
     [[nodiscard]] std::uint32_t index_of(const std::shared_ptr<const Material>& material);
 
-    /// Number of the material's image, equal for materials that share an image; 0: no image.
-    [[nodiscard]] std::uint32_t image_index(std::uint32_t material) const { return image_of_[material]; }
-    /// The material's image on the GPU; null if it has none.
-    [[nodiscard]] std::shared_ptr<const MaterialTexture> texture(std::uint32_t material) const;
+    /// The numbers of a material's images, equal for materials that share an image; 0: no image.
+    [[nodiscard]] const MaterialImages& images_of(std::uint32_t material) const {
+        return images_of_[material];
+    }
+    /// An image on the GPU, by its number; null for 0.
+    [[nodiscard]] std::shared_ptr<const MaterialTexture> texture(std::uint32_t image) const;
 
     [[nodiscard]] const std::vector<std::shared_ptr<const Material>>& materials() const { return materials_; }
     [[nodiscard]] std::span<const gpu::Material> records() const { return records_; }
@@ -42,7 +50,7 @@ class MaterialTable {
     Gpu* gpu_;
     std::vector<std::shared_ptr<const Material>> materials_;
     std::vector<gpu::Material> records_;
-    std::vector<std::uint32_t> image_of_;
+    std::vector<MaterialImages> images_of_;
     std::vector<UploadedImage> images_{1};  // the first means "no image"
     std::vector<std::uint32_t> texels_;
     std::unordered_map<const Material*, std::uint32_t> material_index_;

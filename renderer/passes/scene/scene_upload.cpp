@@ -79,8 +79,9 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
     const auto key = [&](std::uint32_t i) {
         const SceneLayout::Drawable& drawable = drawables[i];
         const Material& material = *drawable.primitive->material;
-        return std::tuple(material.alpha_mode, materials.image_index(drawable.material),
-                          material.double_sided, geometry.items[drawable.item].mirrored);
+        const MaterialImages& images = materials.images_of(drawable.material);
+        return std::tuple(material.alpha_mode, images.base_colour, material.double_sided,
+                          geometry.items[drawable.item].mirrored, emits(material), images.emissive);
     };
     std::vector<SceneLayout::Drawable> ordered;
     for (const std::uint32_t i : stable_order(drawables.size(), key)) {
@@ -114,7 +115,8 @@ PackedMeshes pack_meshes(const std::vector<SceneLayout::Drawable>& drawables) {
 
 bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
     return a.alpha != AlphaMode::blend && a.alpha == b.alpha && a.texture == b.texture &&
-           a.double_sided == b.double_sided && a.mirrored == b.mirrored;
+           a.emission == b.emission && a.double_sided == b.double_sided && a.mirrored == b.mirrored &&
+           a.emits == b.emits;
 }
 
 /// Number of drawables whose alpha mode is at most `last`, in the order of the enum.
@@ -130,12 +132,15 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
     for (std::uint32_t draw = 0; draw < drawables.size(); ++draw) {
         const SceneLayout::Drawable& drawable = drawables[draw];
         const Material& material = *drawable.primitive->material;
+        const MaterialImages& images = materials.images_of(drawable.material);
         SceneLayout::Group group{.first_draw = draw,
                                  .draw_count = 1,
                                  .alpha = material.alpha_mode,
-                                 .texture = materials.texture(drawable.material),
+                                 .texture = materials.texture(images.base_colour),
+                                 .emission = materials.texture(images.emissive),
                                  .double_sided = material.double_sided,
-                                 .mirrored = geometry.items[drawable.item].mirrored};
+                                 .mirrored = geometry.items[drawable.item].mirrored,
+                                 .emits = emits(material)};
         if (group.alpha == AlphaMode::blend) {
             group.centre = (drawable.bounds.lower + drawable.bounds.upper) * 0.5F;
         }

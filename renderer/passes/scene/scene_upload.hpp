@@ -30,7 +30,7 @@ struct ScenePlacement {
     bool operator==(const ScenePlacement&) const = default;
 };
 
-/// A base-colour image on the GPU, with mip levels; the sampler has its wrap modes.
+/// An image of a material on the GPU, with mip levels; the sampler has its wrap modes.
 struct MaterialTexture {
     gl::Texture texture;
     gl::Sampler sampler;
@@ -51,9 +51,11 @@ struct SceneLayout {
         std::uint32_t first_draw;
         std::uint32_t draw_count;
         AlphaMode alpha;
-        std::shared_ptr<const MaterialTexture> texture;  ///< null: none
+        std::shared_ptr<const MaterialTexture> texture;   ///< base colour; null: none
+        std::shared_ptr<const MaterialTexture> emission;  ///< emissive texture; null: none
         bool double_sided;
         bool mirrored;
+        bool emits;
         glm::vec3 centre{0.0F};  ///< blended draws: centre of the bounding box, local space
     };
     SceneGeometry geometry;
@@ -80,7 +82,7 @@ struct SceneData {
     BufferHandle<std::uint32_t> instance_ids;
     BufferHandle<gpu::DrawCommand> draws;  ///< by drawable
     BufferHandle<gpu::Material> materials;
-    BufferHandle<std::uint32_t> texels;     ///< reduced base-colour images, for tracing
+    BufferHandle<std::uint32_t> texels;     ///< reduced images of the materials, for tracing
     BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
 };
 

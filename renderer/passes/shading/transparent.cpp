@@ -60,7 +60,7 @@ void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
 }  // namespace
 
 TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                              const FrameView& view, const ShadedSurfaces& surfaces) {
+                              const FrameView& view, const ShadedSurfaces& surfaces, bool emission) {
     return graph.add("transparent", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_lighting(pass, lighting);
@@ -70,6 +70,9 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         pass.read(surfaces.depth, Usage::depth_target);
         std::vector<std::string> variant = lighting_variant(lighting);
         variant.emplace_back("BLENDED");
+        if (emission) {
+            variant.emplace_back("EMISSION");
+        }
         const gl::Program& program =
             gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant);
         const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);

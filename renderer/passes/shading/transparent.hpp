@@ -11,9 +11,10 @@ namespace candela {
 
 /// Adds node `transparent` (raster): draws the blended surfaces over the solid ones: radiance = alpha · lit +
 /// (1 - alpha) · behind (Porter and Duff's "over" operator, 1984), where alpha is that of the base colour and
-/// `lit` the radiance that `forward` gives for an opaque surface. It is the same in every shading path.
-/// Blended surfaces are tested against `surfaces.depth` and do not write depth. Returns the radiance with
-/// them. Depends on meshes, placement, materials, lighting, view and `surfaces`.
+/// `lit` the radiance that `forward` gives for an opaque surface, and with `emission` what it emits. It is
+/// the same in every shading path. Blended surfaces are tested against `surfaces.depth` and do not write
+/// depth. Returns the radiance with them. Depends on meshes, placement, materials, lighting, view and
+/// `surfaces`.
 ///
 /// Drawables are drawn one by one, from far to near by the view-space depth of the centre of their bounding
 /// box; equal depths keep their order. The back faces of a double-sided drawable are drawn before its front
@@ -22,6 +23,6 @@ namespace candela {
 /// place no VPLs. While the scene has any, gl::GlError is thrown for more than 16,384 lights.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                             const Lighting& lighting, const FrameView& view,
-                                            const ShadedSurfaces& surfaces);
+                                            const ShadedSurfaces& surfaces, bool emission);
 
 }  // namespace candela

@@ -10,6 +10,17 @@ void multi_draw(const gl::Functions& gl, std::size_t first, std::size_t count) {
     gl.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), 0);
 }
 
+/// Binds an image of a material, or white if there is none.
+void bind_image(const Gpu& gpu, GLuint unit, const MaterialTexture* image) {
+    if (image != nullptr) {
+        image->texture.bind(unit);
+        image->sampler.bind(unit);
+    } else {
+        gpu.white().bind(unit);
+        gpu.gl().BindSampler(unit, 0);
+    }
+}
+
 }  // namespace
 
 std::vector<ResourceHandle> read_surfaces(Pass& pass, const SceneData& scene) {
@@ -38,12 +49,9 @@ void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
 
 void draw_group(const Gpu& gpu, const SceneLayout::Group& group) {
     const gl::Functions& gl = gpu.gl();
-    if (group.texture) {
-        group.texture->texture.bind(UNIT_BASE_COLOUR);
-        group.texture->sampler.bind(UNIT_BASE_COLOUR);
-    } else {
-        gpu.white().bind(UNIT_BASE_COLOUR);
-        gl.BindSampler(UNIT_BASE_COLOUR, 0);
+    bind_image(gpu, UNIT_BASE_COLOUR, group.texture.get());
+    if (group.emits) {
+        bind_image(gpu, UNIT_EMISSION, group.emission.get());
     }
     gl.FrontFace(group.mirrored ? GL_CW : GL_CCW);
     multi_draw(gl, group.first_draw, group.draw_count);
@@ -89,11 +97,12 @@ SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
     return {&opaque, &gpu.program(stages, defined)};
 }
 
-void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs) {
+void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs,
+                   bool (*is_drawn)(const SceneLayout::Group&)) {
     const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
-        if (group.alpha == AlphaMode::blend) {
+        if (group.alpha == AlphaMode::blend || !is_drawn(group)) {
             continue;
         }
         if (group.double_sided) {

@@ -23,7 +23,7 @@ void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
 /// Draws the masked surfaces with the bound program. Requires bind_meshes; binds the images.
 void draw_masked_depth(const Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws one group with the bound program. Binds its image and sets the winding of its front faces.
+/// Draws one group with the bound program. Binds its images and sets the winding of its front faces.
 void draw_group(const Gpu& gpu, const SceneLayout::Group& group);
 
 /// Clears the bound targets, colour to 0 and depth to 0 (reversed: infinitely far), and turns the depth test
@@ -56,8 +56,10 @@ struct SurfacePrograms {
 [[nodiscard]] SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
                                                std::vector<std::string> defined = {});
 
-/// Draws all opaque and masked surfaces, grouped by image. Culls the back faces of single-sided surfaces.
-/// Binds meshes and images.
-void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs);
+/// Draws the opaque and masked surfaces, grouped by image: those of groups for which `is_drawn` holds. Culls
+/// the back faces of single-sided surfaces. Binds meshes and images.
+void draw_surfaces(
+    Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs,
+    bool (*is_drawn)(const SceneLayout::Group&) = [](const SceneLayout::Group&) { return true; });
 
 }  // namespace candela

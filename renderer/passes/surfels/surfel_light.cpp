@@ -110,6 +110,15 @@ void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std
 /// drivers stop all loops of an invocation after 65,535 iterations in total.
 constexpr std::uint32_t most_shadow_rays = 64;
 
+/// The points of a cell share the emitting surfels, so that each traces a few rays to them:
+/// `most_shadow_rays` at most.
+void set_emitters(const gl::Program& program, const VplPlan& plan) {
+    const std::uint32_t least = groups(plan.emitting_count, most_shadow_rays);
+    program.set("surfel_count", plan.vpl_count);
+    program.set("emitting_count", plan.emitting_count);
+    program.set("emitter_shares", std::max(POINTS_A_SURFEL, least));
+}
+
 void light_points(const gl::Functions& gl, const gl::Program& program, std::uint32_t points,
                   std::uint32_t lights) {
     program.set("point_count", points);
@@ -152,6 +161,7 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             }
             lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
             const auto light_count = static_cast<std::uint32_t>(run.value(lights.table).entries.size());
+            set_emitters(lighter, run.value(surfels.plan));
             light_points(gpu.gl(), lighter, points, light_count);
             dispatch_surfels(gpu.gl(), adder, count);
         });
@@ -231,7 +241,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
 }
 
 Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const SurfelVisibility& visibility,
-                      const SceneLights& lights, std::uint32_t bounces) {
+                      const SceneLights& lights, std::uint32_t bounces, ShownLight shown) {
     const Surfels& surfels = visibility.surfels;
     const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, lights);
     return graph.add("surfel-bounce", [&](Pass& pass) {
@@ -242,6 +252,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
         pass.parameter(bounces);
+        pass.parameter(shown);
         const BouncePrograms programs{.first = &gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
                                       .further = &gpu.program({"surfels/surfel_bounce.comp"}),
                                       .account = &gpu.program({"surfels/surfel_account.comp"})};
@@ -267,6 +278,8 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
                 return;
             }
             gather_bounces(gpu.gl(), programs, count, bounces);
+            writer.set("emitted_share", shown.emitted ? 1.0F : 0.0F);
+            writer.set("reflected_share", shown.reflected ? 1.0F : 0.0F);
             dispatch_surfels(gpu.gl(), writer, count);
         });
         return out;

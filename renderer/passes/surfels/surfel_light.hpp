@@ -39,14 +39,22 @@ struct SurfelColumns {
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                                      const Surfels& surfels, ValueHandle<SceneMotion> motion);
 
+/// Which light the VPLs of surfels show. Surfels gather all light in any case.
+struct ShownLight {
+    bool emitted = true;
+    bool reflected = true;
+    bool operator==(const ShownLight&) const = default;
+};
+
 /// Adds two nodes. `surfel-light` (compute): light of the real lights at each point of the surfels' cells,
-/// with one shadow ray per point and light. `surfel-bounce` (compute): surfels gather the light that other
-/// surfels reflect, bounce by bounce (Jacobi iteration of the radiosity equation; Goral et al., "Modeling the
-/// Interaction of Light Between Diffuse Surfaces", 1984), up to `bounces` or until less than 0.1 % of the
-/// first reflected light is left; then they are written as VPLs. They depend on surfels, visibility, lights
-/// and BVH.
+/// with one shadow ray per point and light, light that the points emit, and light of the surfels that emit,
+/// shared among the points of a cell. `surfel-bounce` (compute):
+/// surfels gather the light that other surfels reflect, bounce by bounce (Jacobi iteration of the radiosity
+/// equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up to
+/// `bounces` or until less than 0.1 % of the first reflected light is left; then they are written as VPLs.
+/// They depend on surfels, visibility, lights and BVH.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const SurfelVisibility& visibility, const SceneLights& lights,
-                                    std::uint32_t bounces);
+                                    std::uint32_t bounces, ShownLight shown);
 
 }  // namespace candela

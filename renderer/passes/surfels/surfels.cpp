@@ -245,7 +245,8 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points
     return set;
 }
 
-SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t seed) {
+SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t points_a_surfel,
+                         std::uint32_t seed) {
     constexpr int rounds = 2;
     const auto spacing = static_cast<float>(std::sqrt(all.area_before.back() / count));
     const std::vector<PlacedPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
@@ -258,10 +259,58 @@ SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t se
     return collect(grid, points, owners);
 }
 
+/// About `count` surfels with `points_a_surfel` points each on average.
+SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::uint32_t points_a_surfel,
+                        std::uint32_t seed) {
+    const Sides all = sides_of(ground);
+    if (all.sides.empty() || count == 0) {
+        return {};
+    }
+    constexpr int attempts = 4;
+    std::uint32_t wanted = count;
+    SurfelSet set = spread_surfels(all, wanted, points_a_surfel, seed);
+    for (int i = 1; i < attempts && set.surfels.size() > count; ++i) {
+        wanted = static_cast<std::uint32_t>(std::uint64_t{wanted} * count / set.surfels.size());
+        set = spread_surfels(all, std::max(wanted, 1U), points_a_surfel, seed);
+    }
+    return set;
+}
+
+/// The triangles that emit light, or those that do not.
+SurfelGround part_of(const SurfelGround& ground, bool emitting) {
+    SurfelGround part{
+        .triangles = {}, .item_of = {}, .double_sided = ground.double_sided, .emits = ground.emits};
+    for (std::size_t i = 0; i < ground.triangles.size(); ++i) {
+        if (ground.emits[ground.triangles[i].material] == emitting) {
+            part.triangles.push_back(ground.triangles[i]);
+            part.item_of.push_back(ground.item_of[i]);
+        }
+    }
+    return part;
+}
+
+/// Appends surfels that emit light. They get no depth maps.
+void append_emitting(SurfelSet& set, const SurfelSet& more) {
+    const auto surfels = static_cast<std::uint32_t>(set.surfels.size());
+    const auto points = static_cast<std::uint32_t>(set.points.size());
+    for (gpu::Vpl surfel : more.surfels) {
+        surfel.map = NO_MAP;
+        surfel.first_point += points;
+        set.surfels.push_back(surfel);
+    }
+    for (gpu::CellPoint point : more.points) {
+        point.surfel += surfels;
+        set.points.push_back(point);
+    }
+    set.item_of.insert(set.item_of.end(), more.item_of.begin(), more.item_of.end());
+    set.emitting_count = static_cast<std::uint32_t>(more.surfels.size());
+}
+
 VplPlan plan_of(const SurfelSet& set) {
     VplPlan plan;
     plan.vpl_count = static_cast<std::uint32_t>(set.surfels.size());
     plan.point_count = static_cast<std::uint32_t>(set.points.size());
+    plan.emitting_count = set.emitting_count;
     return plan;
 }
 
@@ -270,7 +319,7 @@ VplPlan plan_of(const SurfelSet& set) {
 struct SurfelKey {
     SceneGeometry geometry;
     std::vector<glm::mat3> shapes;
-    std::uint32_t count = 0;
+    SurfelCounts counts;
     std::uint32_t seed = 0;
     bool operator==(const SurfelKey&) const = default;
 };
@@ -306,18 +355,18 @@ SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& 
     }
     for (const auto& material : layout.materials) {
         ground.double_sided.push_back(material->double_sided);
+        ground.emits.push_back(emits(*material));
     }
     return ground;
 }
 
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
-                     const VplSettings& settings) {
-    SurfelKey key{layout.geometry, shapes_of(placement), settings.count, settings.seed};
+                     const SurfelCounts& counts, std::uint32_t seed) {
+    SurfelKey key{layout.geometry, shapes_of(placement), counts, seed};
     if (last != nullptr && last->key == key) {
         return *last;
     }
-    auto set = std::make_shared<const SurfelSet>(
-        place_surfels(ground_of(layout, key.shapes), settings.count, settings.seed));
+    auto set = std::make_shared<const SurfelSet>(place_surfels(ground_of(layout, key.shapes), counts, seed));
     return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
 }
 
@@ -359,16 +408,16 @@ ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
         if (refinement) {
             pass.read(*refinement);
         }
-        pass.parameter(settings.count);
+        const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
+                                  .emitting = emitting_surfels(settings.count)};
+        pass.parameter(counts);
         pass.parameter(settings.seed);
-        pass.parameter(settings.bounces > 0);
         pass.remembers();
         const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
-            VplSettings of_set = settings;
-            of_set.seed += refinement ? run.value(*refinement).surfel_set : 0;
-            of_set.count = of_set.bounces > 0 ? of_set.count : 0;
-            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), of_set));
+            const std::uint32_t set = refinement ? run.value(*refinement).surfel_set : 0;
+            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), counts,
+                                settings.seed + set));
         });
         return out;
     });
@@ -400,18 +449,9 @@ glm::mat3 shape_of(const glm::mat4& world) {
     return is_flat ? glm::mat3(world) : glm::mat3(rounded);
 }
 
-SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::uint32_t seed) {
-    const Sides all = sides_of(ground);
-    if (all.sides.empty() || count == 0) {
-        return {};
-    }
-    constexpr int attempts = 4;
-    std::uint32_t wanted = count;
-    SurfelSet set = spread_surfels(all, wanted, seed);
-    for (int i = 1; i < attempts && set.surfels.size() > count; ++i) {
-        wanted = static_cast<std::uint32_t>(std::uint64_t{wanted} * count / set.surfels.size());
-        set = spread_surfels(all, std::max(wanted, 1U), seed);
-    }
+SurfelSet place_surfels(const SurfelGround& ground, const SurfelCounts& counts, std::uint32_t seed) {
+    SurfelSet set = place_surfels(part_of(ground, false), counts.reflecting, POINTS_A_SURFEL, seed);
+    append_emitting(set, place_surfels(part_of(ground, true), counts.emitting, POINTS_AN_EMITTER, seed));
     return set;
 }
 

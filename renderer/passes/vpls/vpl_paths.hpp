@@ -14,13 +14,14 @@
 
 namespace candela {
 
-/// surfels.
+/// The VPLs of a frame: on paths, or surfels.
 struct VplPlan {
     std::vector<gpu::Path> paths;
-    std::vector<float> weights;     ///< by VPL: share of its light's flux on its path, without albedos
-    std::uint32_t vpl_count = 0;    ///< records of VPLs; some are empty, where paths left the scene
-    std::uint32_t max_bounces = 0;  ///< of the longest path
-    std::uint32_t point_count = 0;  ///< points of all cells of surfels
+    std::vector<float> weights;        ///< by VPL: share of its light's flux on its path, without albedos
+    std::uint32_t vpl_count = 0;       ///< records of VPLs; some are empty, where paths left the scene
+    std::uint32_t max_bounces = 0;     ///< of the longest path
+    std::uint32_t point_count = 0;     ///< points of all cells of surfels
+    std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
     bool operator==(const VplPlan&) const = default;
 };
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/shading/forward.hpp"
+#include "renderer/passes/view/view.hpp"
+
+namespace candela {
+
+/// Adds node `emission` (raster): draws the visible solid surfaces that emit light again and adds what they
+/// emit. Blended surfaces add it themselves: add_transparent. Depends on meshes, materials, view, and the
+/// shaded surfaces. Returns the radiance, modified in place.
+[[nodiscard]] TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                         const FrameView& view, const ShadedSurfaces& surfaces);
+
+}  // namespace candela
