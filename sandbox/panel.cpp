@@ -196,6 +196,12 @@ void draw_vpls(const VplReport& vpls) {
     text(fmt::format("unaccounted for: {:.1e}", relative_residual(vpls.flux)));
 }
 
+void draw_warnings(const std::vector<std::string>& warnings) {
+    if (warnings.empty()) return;
+    if (!ImGui::CollapsingHeader("Left out of this scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    for (const std::string& warning : warnings) ImGui::TextWrapped("%s", warning.c_str());
+}
+
 }  // namespace
 
 void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Playback* playback,
@@ -215,6 +221,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
             draw_playback(*playback);
         if (ImGui::CollapsingHeader("Passes", ImGuiTreeNodeFlags_DefaultOpen)) draw_passes(frame);
         if (ImGui::CollapsingHeader("Energy: lights in, surfaces out")) draw_account(renderer);
+        draw_warnings(warnings);
         ImGui::PopItemWidth();
     }
     ImGui::End();

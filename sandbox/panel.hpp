@@ -14,6 +14,8 @@ namespace candela::sandbox {
 class Panel {
  public:
     bool visible = true;
+    /// What the scene's file asks for and the picture lacks.
+    std::vector<std::string> warnings;
     /// The errors of the configuration that was last requested, in the panel or elsewhere.
     std::vector<std::string> errors;
 

@@ -44,6 +44,7 @@ class WindowSession {
           renderer_(open_renderer(gui_, window, scene)),
           interaction_(scene.world, camera) {
         apply(renderer_, configuration);
+        panel_.warnings = scene.warnings;
         if (scene.animation) playback_.emplace(*scene.animation);
     }
 

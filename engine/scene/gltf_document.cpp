@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
@@ -286,6 +287,43 @@ std::vector<unsigned char> read_uri(const std::string& uri, const std::filesyste
     return bytes;
 }
 
+/// Whether any material has the member at `path`, with a value for which `counts` holds.
+bool any_material(const Json& document, const char* path, bool (*counts)(const Json& value)) {
+    const Json::json_pointer pointer(path);
+    const Json none = Json::array();
+    const Json& materials = document.contains("materials") ? document.at("materials") : none;
+    return std::ranges::any_of(materials, [&](const Json& material) {
+        return material.contains(pointer) && counts(material.at(pointer));
+    });
+}
+
+/// A warning for each kind of thing that the file asks for explicitly and the import leaves out.
+std::vector<std::string> omissions(const Json& document) {
+    const auto any = [](const Json&) { return true; };
+    const auto above_0 = [](const Json& value) { return value.get<double>() > 0.0; };
+    const auto below_1 = [](const Json& value) { return value.get<double>() < 1.0; };
+    std::vector<std::string> warnings;
+    for (const char* member : {"animations", "skins"}) {
+        if (document.contains(member)) {
+            warnings.push_back(fmt::format("{} are ignored", member));
+        }
+    }
+    if (any_material(document, "/pbrMetallicRoughness/metallicFactor", above_0) ||
+        any_material(document, "/pbrMetallicRoughness/metallicRoughnessTexture", any)) {
+        warnings.emplace_back("metalness is ignored: all surfaces are diffuse");
+    }
+    if (any_material(document, "/pbrMetallicRoughness/roughnessFactor", below_1)) {
+        warnings.emplace_back("roughness is ignored: all surfaces are diffuse");
+    }
+    if (any_material(document, "/normalTexture", any)) {
+        warnings.emplace_back("normal maps are ignored");
+    }
+    if (any_material(document, "/occlusionTexture", any)) {
+        warnings.emplace_back("occlusion textures are ignored");
+    }
+    return warnings;
+}
+
 Document read_document(Bytes bytes, const std::filesystem::path& base_directory) {
     const Container container = split(bytes);
     Json json = parse_json(container.json);
@@ -294,11 +332,7 @@ Document read_document(Bytes bytes, const std::filesystem::path& base_directory)
     document.warnings = check_extensions(json);
     std::vector<tinygltf::Buffer> buffers = load_buffers(json, container.binary, base_directory);
     std::vector<tinygltf::Image> images = describe_images(json);
-    for (const char* member : {"animations", "skins"}) {
-        if (json.contains(member)) {
-            document.warnings.push_back(fmt::format("{} are ignored", member));
-        }
-    }
+    std::ranges::move(omissions(json), std::back_inserter(document.warnings));
     document.model = parse_model(std::move(json));
     document.model.buffers = std::move(buffers);
     document.model.images = std::move(images);

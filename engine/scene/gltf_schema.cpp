@@ -225,6 +225,8 @@ std::vector<Rule> rules() {
         {"materials.[].pbrMetallicRoughness.baseColorTexture", has({"index"})},
         {"materials.[].pbrMetallicRoughness.baseColorTexture.index", texture},
         {"materials.[].pbrMetallicRoughness.baseColorTexture.texCoord", index},
+        {"materials.[].pbrMetallicRoughness.metallicFactor", number(unit)},
+        {"materials.[].pbrMetallicRoughness.roughnessFactor", number(unit)},
         {"materials.[].pbrMetallicRoughness.metallicRoughnessTexture", has({"index"})},
         {"materials.[].pbrMetallicRoughness.metallicRoughnessTexture.index", texture},
         {"materials.[].normalTexture", has({"index"})},

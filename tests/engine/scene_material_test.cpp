@@ -105,6 +105,24 @@ TEST_SUITE("glTF materials") {
               std::vector<std::string>{"material 0: its emissive texture has no PNG or JPEG image; ignored"});
     }
 
+    TEST_CASE("one warning for each kind of thing that materials ask for and that is ignored") {
+        GltfBuilder file = right_triangle();
+        file.document["images"][0] = data_uri(png(four_colours, 2, 2));
+        file.document["textures"] = Json::parse(R"([{"source": 0}])");
+        // The values that describe a diffuse surface need no warning, nor do defaults.
+        file.document["materials"] =
+            Json::parse(R"([{}, {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1}}])");
+        CHECK(Imported(file).report.warnings.empty());
+        file.document["materials"] = Json::parse(R"([
+            {"pbrMetallicRoughness": {"metallicFactor": 0.5, "roughnessFactor": 0.2}, "normalTexture": {"index": 0}},
+            {"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}, "normalTexture": {"index": 0},
+             "occlusionTexture": {"index": 0}}])");
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{"metalness is ignored: all surfaces are diffuse",
+                                       "roughness is ignored: all surfaces are diffuse",
+                                       "normal maps are ignored", "occlusion textures are ignored"});
+    }
+
     TEST_CASE("alpha modes and their cutoff") {
         struct Alpha {
             const char* json;

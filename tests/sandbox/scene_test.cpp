@@ -1,6 +1,8 @@
 #include "sandbox/scene.hpp"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -51,6 +53,17 @@ TEST_SUITE("scene") {
         CHECK(scene.warnings.empty());
         CHECK(cameras(scene.world).size() == 1);
         CHECK(scene.world.count<PointLight>() == 1);
+    }
+
+    TEST_CASE("a scene without light comes with a warning, one that only a surface lights does not") {
+        const std::filesystem::path path = std::filesystem::temp_directory_path() / "candela-dark.gltf";
+        std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scenes": [{}]})";
+        CHECK(load_scene(path).warnings ==
+              std::vector<std::string>{"the scene has no light: the picture is black"});
+        std::filesystem::remove(path);
+        for (const char* lit : {"lamp.gltf", "neon.gltf"}) {
+            CHECK(load_scene(shipped_file("scenes", lit)).warnings.empty());
+        }
     }
 
     TEST_CASE("cameras are chosen by name, else by index, else the first") {
