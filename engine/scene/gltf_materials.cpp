@@ -99,6 +99,44 @@ ImageKey image_key(const tinygltf::Model& model, const tinygltf::Texture& textur
     return {texture.source, to_wrap(sampler.wrapS, texture.sampler), to_wrap(sampler.wrapT, texture.sampler)};
 }
 
+/// How a material uses a texture: the members of glTF's textureInfo and of its extension
+/// KHR_texture_transform, which may override the coordinate set.
+struct TextureUse {
+    int index = -1;
+    int coordinate_set = 0;
+    glm::mat3 transform{1.0F};
+};
+
+glm::vec2 read_pair(const tinygltf::Value& extension, const char* member, glm::vec2 otherwise) {
+    if (!extension.Has(member)) {
+        return otherwise;
+    }
+    const tinygltf::Value& pair = extension.Get(member);
+    return {static_cast<float>(pair.Get(0).GetNumberAsDouble()),
+            static_cast<float>(pair.Get(1).GetNumberAsDouble())};
+}
+
+/// Scales, then rotates counter-clockwise as seen with v pointing down, then moves.
+TextureUse texture_use(const tinygltf::TextureInfo& info) {
+    TextureUse use{info.index, info.texCoord, glm::mat3(1.0F)};
+    const auto found = info.extensions.find(texture_transform_extension);
+    if (found == info.extensions.end()) {
+        return use;
+    }
+    const tinygltf::Value& extension = found->second;
+    if (extension.Has("texCoord")) {
+        use.coordinate_set = extension.Get("texCoord").GetNumberAsInt();
+    }
+    const glm::vec2 scale = read_pair(extension, "scale", glm::vec2(1.0F));
+    const glm::vec2 offset = read_pair(extension, "offset", glm::vec2(0.0F));
+    const double angle = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0.0;
+    const auto cosine = static_cast<float>(std::cos(angle));
+    const auto sine = static_cast<float>(std::sin(angle));
+    use.transform = glm::mat3(glm::vec3(cosine * scale.x, -sine * scale.x, 0.0F),
+                              glm::vec3(sine * scale.y, cosine * scale.y, 0.0F), glm::vec3(offset, 1.0F));
+    return use;
+}
+
 /// Reads the images of materials. Textures with the same image and wrapping share one.
 class ImageReader {
  public:
@@ -106,18 +144,18 @@ class ImageReader {
         : document_(document), base_directory_(base_directory) {}
 
     /// The image of a texture; null, with a warning that starts with `label`, if it cannot be used.
-    std::shared_ptr<const Image> read(int index, int coordinate_set, const std::string& label) {
-        if (index < 0) {
+    std::shared_ptr<const Image> read(const TextureUse& use, const std::string& label) {
+        if (use.index < 0) {
             return nullptr;
         }
-        const tinygltf::Texture& texture = document_.model.textures[static_cast<std::size_t>(index)];
+        const tinygltf::Texture& texture = document_.model.textures[static_cast<std::size_t>(use.index)];
         if (texture.source < 0) {
             document_.warnings.push_back(fmt::format("{} has no PNG or JPEG image; ignored", label));
             return nullptr;
         }
-        if (coordinate_set != 0) {
-            document_.warnings.push_back(
-                fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label, coordinate_set));
+        if (use.coordinate_set != 0) {
+            document_.warnings.push_back(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored",
+                                                     label, use.coordinate_set));
             return nullptr;
         }
         const ImageKey key = image_key(document_.model, texture);
@@ -127,6 +165,8 @@ class ImageReader {
         }
         return image;
     }
+
+    void warn(std::string warning) { document_.warnings.push_back(std::move(warning)); }
 
  private:
     Document& document_;
@@ -151,8 +191,10 @@ AlphaMode to_alpha_mode(std::string_view name) {
     return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-Material read_material(const tinygltf::Material& source, const std::string& label, ImageReader& images) {
+ReadMaterial read_material(const tinygltf::Material& source, const std::string& label, ImageReader& images) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    const TextureUse base_colour = texture_use(pbr.baseColorTexture);
+    const TextureUse emissive = texture_use(source.emissiveTexture);
     Material material;
     material.name = source.name;
     for (int i = 0; i < 4; ++i) {
@@ -165,29 +207,30 @@ Material read_material(const tinygltf::Material& source, const std::string& labe
             throw SceneError(fmt::format("{}: its emission is too large", label));
         }
     }
-    material.base_colour_texture =
-        images.read(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord, label + ": its texture");
+    material.base_colour_texture = images.read(base_colour, label + ": its texture");
     if (material.emissive != glm::vec3(0.0F)) {
-        material.emissive_texture = images.read(source.emissiveTexture.index, source.emissiveTexture.texCoord,
-                                                label + ": its emissive texture");
+        material.emissive_texture = images.read(emissive, label + ": its emissive texture");
+    }
+    if (material.base_colour_texture && material.emissive_texture &&
+        base_colour.transform != emissive.transform) {
+        images.warn(label + ": its emissive texture is transformed like its base colour");
     }
     material.double_sided = source.doubleSided;
     material.alpha_mode = to_alpha_mode(source.alphaMode);
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-    return material;
+    const glm::mat3 transform = material.base_colour_texture ? base_colour.transform : emissive.transform;
+    return {std::make_shared<const Material>(std::move(material)), transform};
 }
 
 }  // namespace
 
-std::vector<std::shared_ptr<const Material>> read_materials(Document& document,
-                                                            const std::filesystem::path& base_directory) {
+std::vector<ReadMaterial> read_materials(Document& document, const std::filesystem::path& base_directory) {
     ImageReader images(document, base_directory);
-    std::vector<std::shared_ptr<const Material>> materials;
+    std::vector<ReadMaterial> materials;
     for (const tinygltf::Material& source : document.model.materials) {
-        const std::string label = fmt::format("material {}", materials.size());
-        materials.push_back(std::make_shared<const Material>(read_material(source, label, images)));
+        materials.push_back(read_material(source, fmt::format("material {}", materials.size()), images));
     }
-    materials.push_back(std::make_shared<const Material>());
+    materials.push_back({std::make_shared<const Material>()});
     return materials;
 }
 

@@ -4,16 +4,24 @@
 #include <string>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
+
 #include <candela/scene/components.hpp>
 #include "engine/scene/gltf_document.hpp"
 
 namespace candela::gltf {
 
+/// A material, and what KHR_texture_transform does to the texture coordinates of surfaces that have it.
+struct ReadMaterial {
+    std::shared_ptr<const Material> material;
+    glm::mat3 uv_transform{1.0F};  ///< of (u, v, 1)
+};
+
 /// The document's materials in its order, followed by the default material (white, single-sided). Textures
-/// with the same image and wrapping share one Image; images that no base colour uses are not loaded. A
-/// base-colour texture that cannot be used is left out, with an entry in the document's warnings. Throws
+/// with the same image and wrapping share one Image; images that no material uses are not loaded. A
+/// texture that cannot be used is left out, with an entry in the document's warnings. Throws
 /// SceneError, which names the image or sampler and the problem.
-[[nodiscard]] std::vector<std::shared_ptr<const Material>> read_materials(
-    Document& document, const std::filesystem::path& base_directory);
+[[nodiscard]] std::vector<ReadMaterial> read_materials(Document& document,
+                                                       const std::filesystem::path& base_directory);
 
 }  // namespace candela::gltf

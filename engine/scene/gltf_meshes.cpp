@@ -168,7 +168,7 @@ Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive
 }
 
 Mesh read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& source,
-               const std::vector<std::shared_ptr<const Material>>& materials, Omissions& omissions) {
+               const std::vector<ReadMaterial>& materials, Omissions& omissions) {
     Mesh mesh;
     mesh.name = source.name;
     for (const tinygltf::Primitive& part : source.primitives) {
@@ -179,8 +179,12 @@ Mesh read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& source,
         if (primitive.indices.empty()) {
             continue;
         }
-        primitive.material =
+        const ReadMaterial& read =
             part.material < 0 ? materials.back() : materials[static_cast<std::size_t>(part.material)];
+        primitive.material = read.material;
+        for (Vertex& vertex : primitive.vertices) {
+            vertex.uv = glm::vec2(read.uv_transform * glm::vec3(vertex.uv, 1.0F));
+        }
         mesh.primitives.push_back(std::move(primitive));
     }
     return mesh;
@@ -203,8 +207,8 @@ void report(const Omissions& omissions, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-std::vector<std::shared_ptr<const Mesh>> read_meshes(
-    Document& document, const std::vector<std::shared_ptr<const Material>>& materials) {
+std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document,
+                                                     const std::vector<ReadMaterial>& materials) {
     Omissions omissions;
     std::vector<std::shared_ptr<const Mesh>> meshes;
     for (const tinygltf::Mesh& source : document.model.meshes) {

@@ -6,6 +6,7 @@
 
 #include <candela/scene/components.hpp>
 #include "engine/scene/gltf_document.hpp"
+#include "engine/scene/gltf_materials.hpp"
 
 namespace candela::gltf {
 
@@ -16,6 +17,6 @@ namespace candela::gltf {
 /// of content that is left out, such as points and lines, is added to the document's warnings once. Throws
 /// SceneError, which names the mesh and the problem.
 [[nodiscard]] std::vector<std::shared_ptr<const Mesh>> read_meshes(
-    Document& document, const std::vector<std::shared_ptr<const Material>>& materials);
+    Document& document, const std::vector<ReadMaterial>& materials);
 
 }  // namespace candela::gltf

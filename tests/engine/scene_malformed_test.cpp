@@ -277,6 +277,18 @@ TEST_SUITE("malformed glTF") {
              "materials[0].pbrMetallicRoughness.metallicFactor is 2, which is out of range"},
             {"/materials/0/pbrMetallicRoughness/roughnessFactor", "\"rough\"",
              "materials[0].pbrMetallicRoughness.roughnessFactor is not a number"},
+            {"/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform",
+             R"({"offset": [1]})",
+             "materials[0].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.offset is "
+             "not 2 numbers"},
+            {"/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform",
+             R"({"rotation": "half"})",
+             "materials[0].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.rotation "
+             "is not a number"},
+            {"/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform",
+             R"({"texCoord": -1})",
+             "materials[0].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.texCoord "
+             "is -1, which is out of range"},
             {"/materials/0/emissiveFactor/1", "-0.5",
              "materials[0].emissiveFactor holds a member that is -0.5, which is out of range"},
             {"/materials/0/emissiveFactor/1", "1e39",

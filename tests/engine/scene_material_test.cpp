@@ -105,6 +105,46 @@ TEST_SUITE("glTF materials") {
               std::vector<std::string>{"material 0: its emissive texture has no PNG or JPEG image; ignored"});
     }
 
+    TEST_CASE("texture transforms move the texture coordinates") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        file.primitive()["attributes"]["TEXCOORD_0"] =
+            file.add_accessor(std::vector<float>{0, 0, 1, 0, 0.25F, 1}, 5126, "VEC2", 2);
+        file.document["extensionsUsed"] = Json::parse(R"(["KHR_texture_transform"])");
+        const auto transform = [&](const char* json) {
+            file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
+                {"KHR_texture_transform", Json::parse(json)}};
+            const Imported imported(file);
+            CHECK(imported.report.warnings.empty());
+            std::vector<glm::vec2> uvs;
+            for (const Vertex& vertex : imported.primitive().vertices) {
+                uvs.push_back(vertex.uv);
+            }
+            return uvs;
+        };
+        const std::vector<glm::vec2> plain = transform("{}");
+        const auto check = [&](const char* json, auto expected) {
+            const std::vector<glm::vec2> moved = transform(json);
+            REQUIRE(moved.size() == plain.size());
+            for (std::size_t i = 0; i < plain.size(); ++i) {
+                CHECK(glm::length(moved[i] - expected(plain[i])) < 1e-6F);
+            }
+        };
+        check(R"({"offset": [0.25, -1]})", [](glm::vec2 uv) { return uv + glm::vec2(0.25F, -1.0F); });
+        check(R"({"scale": [2, 3]})", [](glm::vec2 uv) { return uv * glm::vec2(2.0F, 3.0F); });
+        // A quarter turn counter-clockwise, with v pointing down: (1, 0) becomes (0, -1).
+        check(R"({"rotation": 1.5707963267948966})", [](glm::vec2 uv) { return glm::vec2(uv.y, -uv.x); });
+        // Scaled first, moved last.
+        check(R"({"rotation": 1.5707963267948966, "scale": [2, 3], "offset": [0.5, 0]})",
+              [](glm::vec2 uv) { return glm::vec2(3.0F * uv.y + 0.5F, -2.0F * uv.x); });
+
+        // Only one set of texture coordinates is kept.
+        file.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
+        file.document["materials"][0]["emissiveTexture"]["index"] = 0;
+        CHECK(
+            Imported(file).report.warnings ==
+            std::vector<std::string>{"material 0: its emissive texture is transformed like its base colour"});
+    }
+
     TEST_CASE("one warning for each kind of thing that materials ask for and that is ignored") {
         GltfBuilder file = right_triangle();
         file.document["images"][0] = data_uri(png(four_colours, 2, 2));
