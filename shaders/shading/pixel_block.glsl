@@ -3,7 +3,7 @@
 // shadow rays to VPLs, whose cost exceeds that of any fetch, it shades one.
 #include "bindings.glsl"
 
-#ifdef VPL_VISIBILITY_RAYS
+#if defined(VPL_VISIBILITY_RAYS) || defined(EMITTERS)
 #define SURFACES 1
 #define GROUP_SIDE PIXEL_BLOCK
 #else

@@ -228,6 +228,23 @@ TEST_SUITE("emission") {
         CHECK(render(scene, {16, 12}).at(8, 6).r == doctest::Approx(0.75F).epsilon(1e-3));
     }
 
+    TEST_CASE_FIXTURE(EmissionFixture, "a lamp of 80 thousand triangles lights all of a room") {
+        Scene scene = cornell_box();
+        scene.world.destroy(scene.light);
+        add(scene.world, at({0.0F, 1.5F, 0.0F}),
+            MeshInstance{sphere_outwards(0.2F, 6, emitter(glm::vec3(5.0F)))});
+        // Emitters have rays in both cases. Rays along so fine a surface take thousands of steps: an
+        // invocation that traces several of them would reach the limit of software drivers and stop.
+        Configuration configuration = small_configuration(Show::direct);
+        configuration.interleave = Interleave::eight;
+        configuration.visibility.method = VplVisibility::rays;
+        configure(configuration);
+        const Picture expected = render(scene, {128, 128});
+        configuration.visibility = {VplVisibility::maps, 16};
+        configure(configuration);
+        CHECK(worst_error(render(scene, {128, 128}), expected, mean(expected)) < 1e-3);
+    }
+
     TEST_CASE_FIXTURE(EmissionFixture, "shadows of a lamp converge to the share of it that is visible") {
         // A wall that hides exactly one half of the lamp from a point below it: half of the light arrives.
         Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
