@@ -126,6 +126,13 @@ def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
     return table
 
 
+def emitter_table(rows: Sequence[Row]) -> list[Row]:
+    """For each scene that only surfaces light, errors of direct, indirect and all light."""
+    columns = ("direct_rel_mse", "indirect_rel_mse", "total_rel_mse", "total_bias", "reference_noise")
+    lit = select(rows, suite="emitters")
+    return [{"scene": row["scene"], "vpls": row["vpls"], **{name: row[name] for name in columns}} for row in lit]
+
+
 def visibility_costs(rows: Sequence[Row]) -> list[Row]:
     """For each scene, the error of the indirect light without VPL visibility, with maps and with rays, for the largest
     number of VPLs that all three were measured with. The reference has the same number of bounces."""

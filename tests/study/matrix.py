@@ -288,6 +288,12 @@ def placement_groups() -> list[Group]:
     return [Group("placement", scene, SQUARE, Reference(samples=512), 0, points) for scene in scenes]
 
 
+def emitter_groups() -> list[Group]:
+    """Scenes that only surfaces light."""
+    points = tuple(point(vpls, lever="surfels") for vpls in (256, 512, 1024))
+    return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in ("lamp", "neon")]
+
+
 def quick_groups() -> list[Group]:
     """The points that the checks of --quick use. The references have enough samples that their noise stays below the
     limits of the checks.

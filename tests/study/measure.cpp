@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <candela/headless_context.hpp>
+#include "renderer/configuration/build_frame.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "sandbox/capture.hpp"
 #include "sandbox/scene.hpp"
@@ -57,13 +58,19 @@ struct Truth {
     Picture total;
     Mask hit;
     Mask off_edges;  ///< the pixels of `hit` away from the edges of shadows and silhouettes
+    /// Surfaces emit light: VPLs carry a part of the direct light.
+    bool emitters = false;
 };
 
 Truth truth_of(Reference reference) {
     reference::Estimate& estimate = reference.estimate;
-    Truth truth{std::move(estimate.direct),   std::move(reference.direct_fine),
-                std::move(estimate.indirect), {},
-                std::move(estimate.hit),      {}};
+    Truth truth{.direct = std::move(estimate.direct),
+                .direct_fine = std::move(reference.direct_fine),
+                .indirect = std::move(estimate.indirect),
+                .total = {},
+                .hit = std::move(estimate.hit),
+                .off_edges = {},
+                .emitters = false};
     truth.total = sum(truth.direct, truth.indirect);
     truth.off_edges = truth.hit;
     for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {
@@ -81,10 +88,10 @@ Picture render(Bench& bench, Configuration configuration, Show show) {
 }
 
 /// Only direct light; settings that it does not depend on have their defaults.
-Configuration direct_part(Configuration configuration) {
+Configuration direct_part(Configuration configuration, bool emitters) {
     configuration.show = Show::direct;
     configuration.indirect = false;
-    configuration.vpls = {};
+    configuration.vpls = {.count = emitters ? configuration.vpls.count : VplSettings{}.count};
     configuration.visibility = {};
     configuration.refinement = {};
     return configuration;
@@ -98,8 +105,8 @@ struct DirectLight {
 /// Direct light at pixel centres, and its mean over fine_side² points per pixel. With one point per pixel, a
 /// pixel at a shadow edge is completely right or completely wrong, so that in a small dark picture a few
 /// pixels dominate the error. The points are the same as those of the reference.
-DirectLight render_direct(Bench& bench, const Configuration& configuration) {
-    bench.configure(direct_part(configuration));
+DirectLight render_direct(Bench& bench, const Configuration& direct_only) {
+    bench.configure(direct_only);
     bench.frame({});
     DirectLight light{finite_picture(bench), {}};
     Picture fine = Picture{light.centre.size, std::vector<glm::vec3>(light.centre.pixels.size())};
@@ -115,21 +122,25 @@ DirectLight render_direct(Bench& bench, const Configuration& configuration) {
     return light;
 }
 
-/// Renders direct light once per path and kind of shadows, as it does not depend on VPLs.
+/// Renders direct light once per path and kind of shadows, as it does not depend on VPLs; with emitters also
+/// once per number of VPLs.
 class DirectLights {
  public:
+    explicit DirectLights(bool emitters) : emitters_(emitters) {}
+
     const DirectLight& of(const Configuration& configuration, const std::function<Bench()>& make_bench) {
-        const Configuration key = direct_part(configuration);
+        const Configuration key = direct_part(configuration, emitters_);
         const auto known =
             std::find_if(known_.begin(), known_.end(), [&](const auto& each) { return each.first == key; });
         if (known != known_.end()) {
             return known->second;
         }
         Bench bench = make_bench();
-        return known_.emplace_back(key, render_direct(bench, configuration)).second;
+        return known_.emplace_back(key, render_direct(bench, key)).second;
     }
 
  private:
+    bool emitters_;
     std::deque<std::pair<Configuration, DirectLight>> known_;
 };
 
@@ -141,14 +152,15 @@ struct Seeds {
     Picture first;  ///< all light with the first seed
 };
 
-/// Direct light does not depend on the seed, and the total is the sum, so one frame per seed is enough.
+/// Direct light does not depend on the seed, and the total is the sum, so one frame per seed is enough. With
+/// emitters it takes two: which pixels evaluate which VPLs depends on what is shown.
 Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector<std::uint32_t>& seeds,
                     const Picture& direct, const Truth& truth) {
     Seeds result;
     for (const std::uint32_t seed : seeds) {
         configuration.vpls.seed = seed;
         const Picture indirect = render(bench, configuration, Show::indirect);
-        Picture total = sum(direct, indirect);
+        Picture total = truth.emitters ? render(bench, configuration, Show::total) : sum(direct, indirect);
         result.indirect.push_back(measure(indirect, truth.indirect, truth.hit));
         result.total.push_back(measure(total, truth.total, truth.hit));
         result.flip.push_back(flip(total, truth.total, truth.hit).mean);
@@ -294,15 +306,16 @@ Json time_point(Bench& bench, const Point& point, std::uint32_t round) {
 int measure(const MeasureStudy& study) {
     std::vector<Point> points = read_points(read_json(study.points), study.points.string());
     const Reference reference = read_reference_of(study.scene, study.reference);
-    const Truth truth = truth_of(reference);
     const sandbox::Scene scene = sandbox::load_scene(study.scene);
+    Truth truth = truth_of(reference);
+    truth.emitters = contents_of(scene.world).emitters;
     const auto context = HeadlessContext::create(study.context);
     context->make_current();
     Darkroom darkroom(context->get_proc(), reference.request.size, study.pictures);
     darkroom.develop("reference", truth.total);
     const auto fresh_bench = [&] { return Bench(context->get_proc(), scene.world, reference.request.size); };
 
-    DirectLights direct_lights;
+    DirectLights direct_lights(truth.emitters);
     // Each point has its own renderer, so that its memory does not include leftovers of another point.
     std::erase_if(points, [&](const Point& point) {
         return !attempt(point, [&] {

@@ -191,6 +191,15 @@ def placement(table_rows: Sequence[Row]) -> str:
     return element("h2", "Paths and surfels") + element("p", note) + table(columns, table_rows)
 
 
+def emitters(table_rows: Sequence[Row]) -> str:
+    if not table_rows:
+        return ""
+    columns = {"scene": "", "vpls": "surfels", "direct_rel_mse": "relMSE, direct", "indirect_rel_mse": "relMSE, indirect",
+               "total_rel_mse": "relMSE, total", "total_bias": "bias, total",
+               "reference_noise": "the reference's own noise, relMSE"}
+    return element("h2", "Scenes lit by surfaces") + table(columns, table_rows)
+
+
 def gathering(table_rows: Sequence[Row], camera: Sequence[Row]) -> str:
     if not table_rows:
         return ""
@@ -236,6 +245,7 @@ class Findings:
     gathering: Sequence[Row]
     camera: Sequence[Row]
     placement: Sequence[Row]
+    emitters: Sequence[Row]
 
 
 def write(
@@ -255,6 +265,7 @@ def write(
         default_choice(found.best),
         charts(found.charts),
         placement(found.placement),
+        emitters(found.emitters),
         gathering(found.gathering, found.camera),
         flicker(found.flicker),
         visibility_costs(out, rows, found.visibility),

@@ -25,7 +25,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "gather", "placement", "motion"]
+SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
 
@@ -67,6 +67,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
         "growth": matrix.growth_groups(),
         "gather": matrix.gather_groups(),
         "placement": matrix.placement_groups(),
+        "emitters": matrix.emitter_groups(),
         "motion": [],
     }
     wanted = parts or SUITES
@@ -128,13 +129,15 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     gathering, camera = analysis.gather_table(rows, tracer), analysis.camera_flicker(played)
     extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
     placement = analysis.placement_table(rows, matrix.PLACEMENTS)
-    extra |= {"placement": placement, "gathering": gathering, "camera": camera}
+    emitters = analysis.emitter_table(rows)
+    extra |= {"placement": placement, "gathering": gathering, "camera": camera, "emitters": emitters}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    found = page.Findings(made, best, flicker, costs, gathering, camera, placement)
+    found = page.Findings(made, best, flicker, costs, gathering, camera, placement, emitters)
     page.write(study.out, rows, found, study.machine, machine.provenance(STUDY))
-    for part, lines in {"gathering": gathering + camera, "placement": placement}.items():
+    printed = {"gathering": gathering + camera, "placement": placement, "emitters": emitters}
+    for part, lines in printed.items():
         for line in lines:
             print(f"study: {part},", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
     print(f"study: {study.out / 'index.html'}")
