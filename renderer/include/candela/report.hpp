@@ -46,7 +46,7 @@ struct EnergyAccount {
 
 /// Counts of the VPLs and of the work done for them.
 struct VplReport {
-    std::uint32_t requested = 0;   ///< VplSettings::count
+    std::uint32_t requested = 0;   ///< VplSettings::count; those on emitting surfaces come in addition
     std::uint32_t alive = 0;       ///< VPLs with a flux above zero
     std::uint32_t paths = 0;       ///< light paths; 0 with surfels
     std::uint32_t rays = 0;        ///< path segments, including those that hit nothing; 0 with surfels
