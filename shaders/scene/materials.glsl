@@ -1,5 +1,5 @@
-// Base colour and emission at a ray hit. Images are read from one texel buffer, since a shader cannot select among textures by
-// index. They have a reduced resolution, which is enough for diffuse bounces.
+// Base colour and emission at a ray hit. Images are read from one texel buffer, since a shader cannot select among
+// textures by index. They have a reduced resolution, which is enough for diffuse bounces.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "types.glsl"
@@ -55,8 +55,9 @@ vec4 colour_at(Material material, vec2 uv) {
 // Radiance that a surface emits.
 vec3 emission_at(Material material, vec2 uv) {
     if (material.emissive == vec3(0.0) || material.emissive_width == 0u) return material.emissive;
-    TexelImage image = TexelImage(material.first_emissive_texel, uvec2(material.emissive_width, material.emissive_height),
-                                  material.flags >> MATERIAL_EMISSIVE_WRAP_SHIFT);
+    uvec2 size = uvec2(material.emissive_width, material.emissive_height);
+    TexelImage image =
+        TexelImage(material.first_emissive_texel, size, material.flags >> MATERIAL_EMISSIVE_WRAP_SHIFT);
     return material.emissive * bilinear_texel(image, uv).rgb;
 }
 

@@ -1,6 +1,5 @@
-// Flux of the lights at the points of the surfels' cells, with one shadow ray to each light, and flux that the points
-// emit: π times radiance times area. One invocation a cell
-// point.
+// Flux at the points of the surfels' cells: of the lights, with one shadow ray to each; of surfaces that emit light; and
+// the flux that the points emit themselves, π times radiance times area. One invocation a cell point.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
@@ -21,6 +20,13 @@ uniform uint light_count;
 uniform uint lights_before;  // in the dispatches before this one
 uniform uint lights_now;     // at most
 uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
+uniform uint surfel_count;
+uniform uint emitting_count;  // surfels that emit light: the last ones
+uniform uint emitter_shares;  // a cell point receives the light of one in so many of them, and of all near its cell
+
+// Most emitting surfels for which each cell point sums all that are near. With more, an invocation would have more rays
+// and points in its loops than software drivers run through.
+const uint MOST_NEAR_EMITTERS = 256u;
 
 bool is_hidden(Light light, vec3 origin, vec3 direction) {
     return any_hit(origin, direction, 0.0, distance_to(light, origin) - ray_offset);
@@ -33,11 +39,6 @@ vec3 irradiance_from(Light light, CellPoint point) {
     if (is_hidden(light, point.position + ray_offset * point.normal, incident.direction)) return vec3(0.0);
     return cos_surface * incident.irradiance;
 }
-
-uniform uint surfel_count;
-uniform uint emitting_count;   // surfels that emit light: the last ones
-uniform uint emitter_shares;   // a cell point receives the light of one in so many of them, and of those near its cell
-                               // if there are few enough: shares is POINTS_A_SURFEL
 
 // Irradiance from the cell of a surfel that emits light, unoccluded.
 vec3 irradiance_from_cell(Vpl emitter, CellPoint point) {
@@ -68,10 +69,11 @@ vec3 irradiance_from_emitters(uint id, CellPoint point) {
     // How many points of the cell have the same share.
     float same = float((own.point_count - 1u - share) / emitter_shares + 1u);
     float weight = covers_all ? float(own.point_count) / same : float(emitter_shares);
+    bool sums_near = emitting_count <= MOST_NEAR_EMITTERS;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < emitting_count; ++i) {
         Vpl emitter = surfels[surfel_count - emitting_count + i];
-        bool near = emitter_shares == POINTS_A_SURFEL && is_near(emitter.position - own.position, own.area + emitter.area);
+        bool near = sums_near && is_near(emitter.position - own.position, own.area + emitter.area);
         if (near || i % emitter_shares == share) sum += (near ? 1.0 : weight) * visible_from_cell(emitter, point);
     }
     return sum;
