@@ -3,7 +3,7 @@
 // shadow rays to VPLs, whose cost exceeds that of any fetch, it shades one.
 #include "bindings.glsl"
 
-#if defined(VPL_VISIBILITY_RAYS) || defined(EMITTERS)
+#ifdef VPL_VISIBILITY_RAYS
 #define SURFACES 1
 #define GROUP_SIDE PIXEL_BLOCK
 #else

@@ -6,8 +6,11 @@
 layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
 layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
 
-// `depth`: the pixel's window depth; above 0, as 0 means that there is no surface.
+// `depth`: the pixel's window depth. 0 means that there is no surface; the result is then a surface at the near plane,
+// whose light is to be discarded. Depth 0 itself is at infinity, from where a ray would visit every node of the BVH: more
+// than software drivers allow, which then stop all loops of the neighbouring invocations, too.
 Surface visible_surface(ivec2 at, float depth, vec3 albedo) {
     PackedSurface stored = PackedSurface(albedo, texelFetch(surface_normal, at, 0).rg);
-    return unpack_surface(stored, vec3(vec2(at) + 0.5, depth), view.target_size, view.world_from_clip);
+    vec3 window = vec3(vec2(at) + 0.5, depth > 0.0 ? depth : 1.0);
+    return unpack_surface(stored, window, view.target_size, view.world_from_clip);
 }

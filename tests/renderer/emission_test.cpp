@@ -233,8 +233,8 @@ TEST_SUITE("emission") {
         scene.world.destroy(scene.light);
         add(scene.world, at({0.0F, 1.5F, 0.0F}),
             MeshInstance{sphere_outwards(0.2F, 6, emitter(glm::vec3(5.0F)))});
-        // Emitters have rays in both cases. Rays along so fine a surface take thousands of steps: an
-        // invocation that traces several of them would reach the limit of software drivers and stop.
+        // Emitters have rays in both cases. With maps, an invocation shades four pixels, of which some show
+        // no surface: rays from there must not use up the loops that software drivers allow.
         Configuration configuration = small_configuration(Show::direct);
         configuration.interleave = Interleave::eight;
         configuration.visibility.method = VplVisibility::rays;
