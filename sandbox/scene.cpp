@@ -64,9 +64,8 @@ Entity add_framing_camera(World& world, float aspect) {
 }
 
 bool has_light(const World& world) {
-    const auto glows = [](const Primitive& primitive) { return emits(*primitive.material); };
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
-        if (std::ranges::any_of(instance.mesh->primitives, glows)) return true;
+        if (emits(*instance.mesh)) return true;
     }
     return world.count<PointLight>() + world.count<SpotLight>() + world.count<DirectionalLight>() > 0;
 }

@@ -75,8 +75,6 @@
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
 #define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
-#define POINTS_A_SURFEL 16u    // of its cell, on average
-#define POINTS_AN_EMITTER 64u  // of the cell of a surfel that emits light, on average
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
 #define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from

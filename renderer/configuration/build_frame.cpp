@@ -184,8 +184,7 @@ TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& vi
 FrameContents contents_of(const World& world) {
     FrameContents contents;
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
-        contents.emitters |= std::ranges::any_of(
-            instance.mesh->primitives, [](const Primitive& primitive) { return emits(*primitive.material); });
+        contents.emitters |= emits(*instance.mesh);
     }
     return contents;
 }

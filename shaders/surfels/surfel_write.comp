@@ -1,5 +1,5 @@
-// Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the part of
-// the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
+// Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the
+// part of the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;

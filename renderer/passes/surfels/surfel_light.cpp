@@ -116,7 +116,7 @@ void set_emitters(const gl::Program& program, const VplPlan& plan) {
     const std::uint32_t least = groups(plan.emitting_count, most_shadow_rays);
     program.set("surfel_count", plan.vpl_count);
     program.set("emitting_count", plan.emitting_count);
-    program.set("emitter_shares", std::max(POINTS_A_SURFEL, least));
+    program.set("emitter_shares", std::max(points_a_surfel, least));
 }
 
 void light_points(const gl::Functions& gl, const gl::Program& program, std::uint32_t points,

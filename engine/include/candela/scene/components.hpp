@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -96,6 +97,12 @@ struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
 };
+
+/// Whether the mesh may emit light.
+[[nodiscard]] inline bool emits(const Mesh& mesh) {
+    return std::ranges::any_of(mesh.primitives,
+                               [](const Primitive& primitive) { return emits(*primitive.material); });
+}
 
 /// A mesh placed by the entity's Transform. `mesh` is never null.
 struct MeshInstance {
