@@ -206,11 +206,11 @@ Quality Renderer::State::quality_now(const World& world, const ViewRequest& requ
 }
 
 FrameContents Renderer::State::contents_now(const World& world) {
-    const Tick revision = world.revision<MeshInstance>();
-    if (world_ == &world && revision == meshes_revision_) {
+    const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>()};
+    if (world_ == &world && revisions == contents_revisions_) {
         return contents_;
     }
-    meshes_revision_ = revision;
+    contents_revisions_ = revisions;
     return contents_of(world);
 }
 

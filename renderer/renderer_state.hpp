@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -58,9 +59,9 @@ class Renderer::State {
     gl::GraphBackend backend_;
     GraphRuntime runtime_;
     Configuration configuration_;
-    FrameContents contents_;  // of the world in the last frame
-    Tick meshes_revision_ = 0;
-    glm::uvec2 size_{1};  // of the target
+    FrameContents contents_;                    // of the world in the last frame
+    std::array<Tick, 2> contents_revisions_{};  // of the components that determine the contents
+    glm::uvec2 size_{1};                        // of the target
     Quality quality_;
     Quality quality_in_motion_;
     ViewRequest last_request_;

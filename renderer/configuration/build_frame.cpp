@@ -186,6 +186,9 @@ FrameContents contents_of(const World& world) {
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         contents.emitters |= emits(*instance.mesh);
     }
+    for (const auto& [entity, light] : world.view<DirectionalLight>()) {
+        contents.suns |= light.casts_shadow;
+    }
     return contents;
 }
 
@@ -219,6 +222,8 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     Lighting lighting{.lights = frame.lights,
                       .buffers = lit.buffers,
                       .shadows = lit.shadows,
+                      .sun_rays = contents.suns && configuration.shadows.enabled ? std::optional(lit.tracing)
+                                                                                 : std::nullopt,
                       .vpls = vpls,
                       .lists = frame.lists,
                       .show = configuration.show};

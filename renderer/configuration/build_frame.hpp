@@ -44,6 +44,7 @@ struct FrameExtent {
 /// What a world contains, as far as the passes of its frames depend on it.
 struct FrameContents {
     bool emitters = false;  ///< surfaces that emit light
+    bool suns = false;      ///< directional lights that cast shadows
     bool operator==(const FrameContents&) const = default;
 };
 [[nodiscard]] FrameContents contents_of(const World& world);

@@ -1,6 +1,8 @@
 // Look-up in the shadow maps of lights. Depth is reversed: 1 at the near plane, 0 at infinity (orthographic maps: at
-// their far end). A receiver is lit where its depth is greater than or equal to the map's.
+// their far end). A receiver is lit where its depth is greater than or equal to the map's. SUN_RAYS: the scene has
+// directional lights with shadows.
 #include "bindings.glsl"
+#include "scene/bvh.glsl"
 #include "types.glsl"
 
 layout(std430, binding = BINDING_SHADOWS) readonly restrict buffer Shadows { Shadow shadows[]; };
@@ -31,22 +33,56 @@ float cube_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position
     return texture(shadow_cubes, vec4(lifted, float(shadow.layer)), reference);
 }
 
-float map_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) {
-    float depth = shadow.kind == SHADOW_PERSPECTIVE ? dot(position - light_position, shadow.axis) : 1.0;
+float spot_shadow(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) {
+    float depth = dot(position - light_position, shadow.axis);
     vec3 lifted = position + normal * normal_offset(shadow.texel * depth, dot(normal, shadow.axis));
     vec4 clip = shadow.from_world * vec4(lifted, 1.0);
     if (clip.w <= 0.0) return 1.0;
     vec3 at = clip.xyz / clip.w;
-    // Perspective depth is near / distance, so a relative bias scales it. Orthographic depth is linear over the map's
-    // range.
-    float bias = crease_bias * (shadow.kind == SHADOW_PERSPECTIVE ? at.z : 1.0);
-    return texture(shadow_maps, vec4(at.xy * 0.5 + 0.5, float(shadow.layer), clamp(at.z + bias, 0.0, 1.0)));
+    float reference = clamp(at.z * (1.0 + crease_bias), 0.0, 1.0);
+    return texture(shadow_maps, vec4(at.xy * 0.5 + 0.5, float(shadow.layer), reference));
 }
+
+#ifdef SUN_RAYS
+
+vec3 row(mat4 m, int i) { return vec3(m[0][i], m[1][i], m[2][i]); }
+
+// Change of depth on the receiver's plane per step in x and y, in the map's clip space. The rows of the matrix are
+// orthogonal.
+vec2 receiver_slope(mat4 from_world, vec3 normal) {
+    vec3 x = row(from_world, 0);
+    vec3 y = row(from_world, 1);
+    vec3 z = row(from_world, 2);
+    return -vec2(dot(normal, x) / dot(x, x), dot(normal, y) / dot(y, y)) * dot(z, z) / dot(normal, z);
+}
+
+// Where the 4 × 4 texels around the receiver agree, the map decides. Elsewhere a shadow's edge may be near, and a ray
+// finds it exactly, however close the camera is.
+float sun_shadow(Shadow shadow, vec3 position, vec3 normal) {
+    vec3 lifted = position + normal * normal_offset(shadow.texel, dot(normal, shadow.axis));
+    vec3 at = (shadow.from_world * vec4(lifted, 1.0)).xyz;
+    vec2 slope = receiver_slope(shadow.from_world, normal);
+    float texel = 2.0 / float(textureSize(shadow_maps, 0).x);
+    float lit = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        vec2 off = texel * (2.0 * vec2(i & 1, i >> 1) - 1.0);
+        // Depth is linear over the map's range, so the bias is absolute.
+        float reference = clamp(at.z + dot(slope, off) + crease_bias, 0.0, 1.0);
+        lit += texture(shadow_maps, vec4((at.xy + off) * 0.5 + 0.5, float(shadow.layer), reference));
+    }
+    if (lit == 0.0 || lit == 4.0) return 0.25 * lit;
+    return any_hit(position + shadow.ray_offset * normal, -shadow.axis, 0.0, 1.0 / 0.0) ? 0.0 : 1.0;
+}
+
+#endif
 
 // Share of the light that reaches the position, in [0, 1]. `normal` must face the light.
 float shadow_visibility(int index, vec3 position, vec3 normal, vec3 light_position) {
     if (index < 0) return 1.0;
     Shadow shadow = shadows[index];
     if (shadow.kind == SHADOW_CUBE) return cube_shadow(shadow, position, normal, light_position);
-    return map_shadow(shadow, position, normal, light_position);
+#ifdef SUN_RAYS
+    if (shadow.kind == SHADOW_ORTHOGRAPHIC) return sun_shadow(shadow, position, normal);
+#endif
+    return spot_shadow(shadow, position, normal, light_position);
 }

@@ -3,13 +3,12 @@
 // of direct light, and a map's texels would be seen.
 #include "bindings.glsl"
 #include "maths.glsl"
+#include "scene/bvh.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
 
 #if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && defined(EMITTERS))
-
-#include "scene/bvh.glsl"
 
 float visibility_by_ray(Vpl vpl, Surface surface) {
     vec3 target = vpl.map_origin + vpl_constants.ray_offset * vpl.normal;

@@ -58,7 +58,7 @@ const std::vector<Layout>& layouts() {
         {"Shadow",
          sizeof(gpu::Shadow),
          {MEMBER(Shadow, from_world), MEMBER(Shadow, axis), MEMBER(Shadow, texel), MEMBER(Shadow, near_plane),
-          MEMBER(Shadow, layer), MEMBER(Shadow, kind), MEMBER(Shadow, pad0)}},
+          MEMBER(Shadow, layer), MEMBER(Shadow, kind), MEMBER(Shadow, ray_offset)}},
         {"ViewConstants",
          sizeof(gpu::ViewConstants),
          {MEMBER(ViewConstants, clip_from_world), MEMBER(ViewConstants, world_from_clip),

@@ -48,7 +48,8 @@ void gather_directional_lights(const World& world, const SceneMetrics& metrics,
 ShadowShape shadow_of_directional(const gpu::Light& light, const SceneMetrics& metrics) {
     return {.kind = SHADOW_ORTHOGRAPHIC,
             .half_extent = light.shape,
-            .depth = 2.0F * glm::length(metrics.centre() - light.position)};
+            .depth = 2.0F * glm::length(metrics.centre() - light.position),
+            .ray_offset = metrics.ray_offset()};
 }
 
 }  // namespace

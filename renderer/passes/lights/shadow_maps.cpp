@@ -67,7 +67,8 @@ void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::
                             .texel = 2.0F / static_cast<float>(resolution),
                             .near_plane = near_plane,
                             .layer = plan.cubes,
-                            .kind = SHADOW_CUBE});
+                            .kind = SHADOW_CUBE,
+                            .ray_offset = 0.0F});
     const glm::mat4 projection = reversed_perspective(1.0F, near_plane);
     for (std::uint32_t face = 0; face < cube_faces; ++face) {
         const glm::mat4 view = look_along(light.position, faces[face].direction, faces[face].up);
@@ -87,7 +88,8 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape
                        .texel = 0.0F,
                        .near_plane = near_plane,
                        .layer = plan.maps,
-                       .kind = shape.kind};
+                       .kind = shape.kind,
+                       .ray_offset = shape.ray_offset};
     if (shape.kind == SHADOW_PERSPECTIVE) {
         const float tangent = margin * shape.tangent;
         shadow.texel = 2.0F * tangent / texels;

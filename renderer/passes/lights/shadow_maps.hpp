@@ -52,10 +52,11 @@ struct ShadowMaps {
 /// Adds nodes `shadow-plan` (CPU: plan_shadows) and `shadow-maps` (raster): depth of the scene as seen from
 /// every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on Curved Surfaces", 1978).
 /// A point light has the six faces of a cube, a spot light the cone or a cube, a directional light the
-/// rectangle that the scene covers. Both sides of all triangles are drawn, without holes of masks and without
+/// rectangle that the scene covers; where its map shows an edge, shading traces a ray (sun_shadow in
+/// shaders/lights/shadow.glsl). Both sides of all triangles are drawn, without holes of masks and without
 /// blended surfaces. Views whose content is unchanged are kept: if a light moves, only its views are drawn;
-/// if a mesh moves, all are. Depends on meshes, materials, lights and the scene's metrics.
-/// shaders/lights/shadow.glsl derives the bias.
+/// if a mesh moves, all are; if the camera moves, none. Depends on meshes, materials, lights and the scene's
+/// metrics. shaders/lights/shadow.glsl derives the bias.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

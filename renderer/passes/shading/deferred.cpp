@@ -19,11 +19,12 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, 
         pass.run([=, &gpu, &program](Execution& run) {
             const gl::Functions& gl = gpu.gl();
             program.use();
-            for (std::uint32_t part = 0; part < lighting_parts(run, lighting); ++part) {
+            const LightingParts parts = lighting_parts(run, lighting);
+            for (std::uint32_t part = 0; part < parts.count; ++part) {
                 if (part > 0) {
                     gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
                 }
-                begin_lighting_part(program, part);
+                begin_lighting_part(program, parts, part);
                 gl.DispatchCompute(groups(view.size.x, PIXEL_BLOCK), groups(view.size.y, PIXEL_BLOCK), 1);
             }
         });

@@ -10,7 +10,7 @@ namespace candela {
 
 /// Adds node `deferred` (compute): shades the G-buffer with the evaluator in shaders/shading/lighting.glsl,
 /// by all lights or by the light list of each pixel's cell. Takes several dispatches if lists are longer than
-/// `most_visited`. Depends on the G-buffer, the lighting and the view. Returns reflected radiance, rgba32f,
+/// lighting_parts. Depends on the G-buffer, the lighting and the view. Returns reflected radiance, rgba32f,
 /// `view.size` pixels, alpha 1 where there is a surface.
 [[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer,
                                          const Lighting& lighting, const FrameView& view);

@@ -29,11 +29,12 @@ ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             } else {
                 begin_surfaces(gpu);
             }
-            for (std::uint32_t part = 0; part < lighting_parts(run, lighting); ++part) {
+            const LightingParts parts = lighting_parts(run, lighting);
+            for (std::uint32_t part = 0; part < parts.count; ++part) {
                 if (part == 1) {
                     begin_adding(gpu);
                 }
-                programs.each([&](const gl::Program& program) { begin_lighting_part(program, part); });
+                programs.each([&](const gl::Program& program) { begin_lighting_part(program, parts, part); });
                 draw_surfaces(gpu, run, scene, programs);
             }
         });

@@ -18,7 +18,7 @@ struct ShadedSurfaces {
 
 /// Adds node `forward` (raster): rasterises the solid surfaces and shades each fragment with the evaluator in
 /// shaders/shading/lighting.glsl. Draws the scene several times, adding up, if light lists are longer than
-/// `most_visited`. With the depth of a pre-pass, only visible fragments are shaded. Depends on meshes,
+/// lighting_parts. With the depth of a pre-pass, only visible fragments are shaded. Depends on meshes,
 /// materials, lighting, view and `prepass_depth`. Textures of `view.size` pixels.
 [[nodiscard]] ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          const Lighting& lighting, const FrameView& view,

@@ -14,6 +14,10 @@ std::uint32_t light_count(const LightTable& lights) {
     return static_cast<std::uint32_t>(lights.entries.size());
 }
 
+bool casts_sun_rays(const LightTable::Entry& entry) {
+    return entry.casts_shadow && entry.light.kind == LIGHT_DIRECTIONAL;
+}
+
 }  // namespace
 
 LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
@@ -57,6 +61,9 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
     if (lighting.show == Show::indirect) {
         words.emplace_back("DIRECT_HIDDEN");
     }
+    if (lighting.sun_rays) {
+        words.emplace_back("SUN_RAYS");
+    }
     if (lighting.lists) {
         words.emplace_back("LIGHT_LIST_CELLS");
     }
@@ -73,6 +80,9 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.read(lighting.buffers.shadows, {Usage::storage, BINDING_SHADOWS});
     pass.read(lighting.shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
     pass.read(lighting.shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
+    if (lighting.sun_rays) {
+        read_tracing(pass, *lighting.sun_rays);
+    }
     if (lighting.vpls) {
         read_vpl_light(pass, *lighting.vpls);
     }
@@ -86,14 +96,19 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.parameter(lighting.most_vpls);
 }
 
-std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting) {
-    const std::uint32_t shown = lighting.show == Show::indirect ? 0 : light_count(run.value(lighting.lights));
-    return std::max((shown + most_visited - 1) / most_visited, 1U);
+LightingParts lighting_parts(const Execution& run, const Lighting& lighting) {
+    constexpr std::int64_t few_suns = 8;
+    const LightTable& lights = run.value(lighting.lights);
+    const bool many_rays =
+        lighting.sun_rays && std::ranges::count_if(lights.entries, casts_sun_rays) > few_suns;
+    const std::uint32_t entries = many_rays ? 8 : 8192;
+    const std::uint32_t shown = lighting.show == Show::indirect ? 0 : light_count(lights);
+    return {.count = std::max(groups(shown, entries), 1U), .entries = entries};
 }
 
-void begin_lighting_part(const gl::Program& program, std::uint32_t part) {
-    program.set("lights_before", part * most_visited);
-    program.set("lights_now", most_visited);
+void begin_lighting_part(const gl::Program& program, const LightingParts& parts, std::uint32_t part) {
+    program.set("lights_before", part * parts.entries);
+    program.set("lights_now", parts.entries);
 }
 
 }  // namespace candela

@@ -34,6 +34,7 @@ struct Lighting {
     ValueHandle<LightTable> lights;
     LightBuffers buffers;
     ShadowMaps shadows;
+    std::optional<Tracing> sun_rays{};  ///< none: there are no directional lights with shadows
     /// VPLs that are evaluated while shading; none: no indirect light, or it was gathered before.
     std::optional<VplLight> vpls{};
     std::optional<TextureHandle> indirect{};  ///< irradiance gathered before: see GatheredVpls, IndirectLight
@@ -43,20 +44,22 @@ struct Lighting {
     Show show = Show::total;
 };
 
-/// Most entries of its light list that a surface evaluates in one dispatch or draw. An invocation shades up
-/// to four surfaces, so this keeps its loops within the limit described at `most_asked`.
-inline constexpr std::uint32_t most_visited = 8192;
-
 /// Names to define in shaders that include lighting.glsl.
 [[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
 
 /// For a pass whose shader includes lighting.glsl.
 void read_lighting(Pass& pass, const Lighting& lighting);
 
-/// Number of dispatches or draws that a shading pass needs, at least 1. Each adds the light of up to
-/// `most_visited` entries of the light lists; the first one also adds the indirect light.
-/// `begin_lighting_part` sets the uniforms of a part.
-[[nodiscard]] std::uint32_t lighting_parts(const Execution& run, const Lighting& lighting);
-void begin_lighting_part(const gl::Program& program, std::uint32_t part);
+/// The dispatches or draws of a shading pass. Each adds the light of some entries of the light lists; the
+/// first one also adds the indirect light. With at most 8,192 entries, or 8 if there are more than 8 suns
+/// whose shadows need rays, the loops of an invocation stay within the limit described at `most_asked`.
+struct LightingParts {
+    std::uint32_t count = 1;
+    std::uint32_t entries = 0;  ///< of a light list, in each part
+};
+[[nodiscard]] LightingParts lighting_parts(const Execution& run, const Lighting& lighting);
+
+/// Sets the uniforms of a part.
+void begin_lighting_part(const gl::Program& program, const LightingParts& parts, std::uint32_t part);
 
 }  // namespace candela
