@@ -124,7 +124,8 @@ void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 s
                                      {rendered_size(size, quality), size, quality.interleave}, contents);
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = frame;
-    if (size != size_ || quality != quality_ || !same_radiance(configuration, configuration_)) {
+    if (size != size_ || quality != quality_ || contents != contents_ ||
+        !same_radiance(configuration, configuration_)) {
         ++refinement_clock_.epoch;
     }
     configuration_ = configuration;
@@ -206,7 +207,8 @@ Quality Renderer::State::quality_now(const World& world, const ViewRequest& requ
 }
 
 FrameContents Renderer::State::contents_now(const World& world) {
-    const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>()};
+    const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>(),
+                               world.revision<Environment>()};
     if (world_ == &world && revisions == contents_revisions_) {
         return contents_;
     }
@@ -294,8 +296,9 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls) const {
     const VplPlan& plan = runtime_.value(vpls.plan);
     auto placed = backend_.buffer(runtime_.object(vpls.vpls)).download<gpu::Vpl>();
     auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
-    placed.resize(plan.vpl_count);
-    accounts.resize(vpls.points ? std::min(plan.vpl_count, 1U) : plan.paths.size());
+    const std::uint32_t in_scene = plan.vpl_count - plan.sky_count;
+    placed.resize(in_scene);
+    accounts.resize(vpls.points ? std::min(in_scene, 1U) : plan.paths.size());
     const auto alive =
         std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
     return {.requested = configuration_.vpls.count,

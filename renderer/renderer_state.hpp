@@ -60,7 +60,7 @@ class Renderer::State {
     GraphRuntime runtime_;
     Configuration configuration_;
     FrameContents contents_;                    // of the world in the last frame
-    std::array<Tick, 2> contents_revisions_{};  // of the components that determine the contents
+    std::array<Tick, 3> contents_revisions_{};  // of the components that determine the contents
     glm::uvec2 size_{1};                        // of the target
     Quality quality_;
     Quality quality_in_motion_;

@@ -60,6 +60,7 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
         run.state = std::move(captured.state);
         if (out && is_written(*out, frame, frames)) capture.write(numbered(*out, frame), picture);
     }
+    run.environment = environment_of(scene.world);
     write_documents(options, run, renderer);
 
     fmt::print("{} on {}, {}x{}\n", run.context, run.state.gl_renderer, size.x, size.y);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <string_view>
 #include <system_error>
@@ -79,6 +80,24 @@ glm::ivec2 parse_size(const std::string& text) {
     fail("--size", text, fmt::format("is no size from 1x1 to {0}x{0}", largest_side));
 }
 
+/// "R,G,B", or else the name of a file.
+SkyChoice parse_sky(const std::string& text) {
+    std::vector<float> channels;
+    std::size_t from = 0;
+    while (from <= text.size()) {
+        const std::size_t comma = std::min(text.find(',', from), text.size());
+        const std::optional<float> channel =
+            parse_number(std::string_view(text).substr(from, comma - from), 0.0F);
+        if (!channel || !std::isfinite(*channel)) break;
+        channels.push_back(*channel);
+        from = comma + 1;
+    }
+    if (channels.size() == 3 && from > text.size()) return glm::vec3(channels[0], channels[1], channels[2]);
+    std::error_code ignored;
+    if (fs::exists(text, ignored)) return fs::path(text);
+    fail("--environment", text, "is neither three numbers R,G,B, none of them negative, nor a file");
+}
+
 /// Checks the path of an output file: the format is known and the folder exists.
 fs::path parse_output(std::string_view flag, const std::string& text,
                       const std::vector<std::string_view>& extensions) {
@@ -123,6 +142,10 @@ void declare(CLI::App& app, Options& options) {
                "default: headless 1, or as many as the script has; no end in a window");
     add_number(app, "--samples", options.samples, 1,
                "average N frames jittered within the pixel; default: 1");
+    app.add_option_function<std::string>(
+           "--environment", [&options](const std::string& text) { options.environment = parse_sky(text); },
+           "the sky: radiance from everywhere, or an equirectangular picture; default: that of the scene")
+        ->type_name("R,G,B|FILE.hdr|.exr");
     app.add_option("--camera", options.camera, "default: the scene's first, else one that sees all of it")
         ->type_name("NAME|INDEX");
     add_choice<std::optional<Show>, Show>(

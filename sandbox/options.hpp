@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include <candela/configuration.hpp>
+#include "sandbox/environment.hpp"
 
 namespace candela::sandbox {
 
@@ -21,10 +22,11 @@ struct Options {
     std::optional<std::filesystem::path> scene;  ///< default: the script's, else the shipped Cornell box
     bool headless = false;                       ///< also set by a `context` without windows
     ContextChoice context = ContextChoice::automatic;
-    std::optional<glm::ivec2> size;     ///< pixels; default: 1280x720 in a window, 512x512 headless
-    std::optional<int> frames;          ///< default: headless 1 or the script's length, unlimited in a window
-    int samples = 1;                    ///< number of averaged frames, jittered within the pixel
-    std::optional<std::string> camera;  ///< name or index; default: the scene's first
+    std::optional<glm::ivec2> size;  ///< pixels; default: 1280x720 in a window, 512x512 headless
+    std::optional<int> frames;       ///< default: headless 1 or the script's length, unlimited in a window
+    int samples = 1;                 ///< number of averaged frames, jittered within the pixel
+    std::optional<SkyChoice> environment;  ///< default: that of the scene
+    std::optional<std::string> camera;     ///< name or index; default: the scene's first
 
     std::optional<Show> show;
     std::optional<ShadingPath> path;

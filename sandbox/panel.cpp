@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/components.hpp>
+#include "sandbox/environment.hpp"
 #include "sandbox/report.hpp"
 
 namespace candela::sandbox {
@@ -156,6 +157,22 @@ void draw_lights(World& world, std::optional<Entity>& selected) {
     draw_emission(world, *selected, &DirectionalLight::illuminance, "lux");
 }
 
+void draw_sky(World& world) {
+    const Entity entity = environment_entity(world);
+    if (entity == Entity{}) {
+        if (ImGui::Button("add a sky")) set_environment(world, {.radiance = default_sky, .picture = nullptr});
+        return;
+    }
+    world.edit<Environment>(entity, [](Environment& environment) {
+        constexpr float any = std::numeric_limits<float>::max();
+        ImGui::DragFloat3("sky", &environment.radiance.r, 0.01F, 0.0F, any, "%.3g",
+                          ImGuiSliderFlags_AlwaysClamp);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("radiance of the sky, cd/m²; multiplies its picture, if it has one");
+        if (environment.picture) ImGui::SliderAngle("rotation", &environment.rotation, -180.0F, 180.0F);
+    });
+}
+
 void draw_passes(const FrameReport& frame) {
     if (!ImGui::BeginTable("passes", 3, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) return;
     ImGui::TableSetupColumn("pass");
@@ -198,7 +215,7 @@ void draw_vpls(const VplReport& vpls) {
 
 void draw_warnings(const std::vector<std::string>& warnings) {
     if (warnings.empty()) return;
-    if (!ImGui::CollapsingHeader("Left out of this scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (!ImGui::CollapsingHeader("About this scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
     for (const std::string& warning : warnings) ImGui::TextWrapped("%s", warning.c_str());
 }
 
@@ -217,6 +234,7 @@ void Panel::draw(Renderer& renderer, World& world, Interaction& interaction, Pla
         ImGui::Separator();
         draw_cameras(world, interaction);
         draw_lights(world, interaction.selected);
+        draw_sky(world);
         if (playback != nullptr && ImGui::CollapsingHeader("Animation", ImGuiTreeNodeFlags_DefaultOpen))
             draw_playback(*playback);
         if (ImGui::CollapsingHeader("Passes", ImGuiTreeNodeFlags_DefaultOpen)) draw_passes(frame);

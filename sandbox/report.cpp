@@ -50,6 +50,14 @@ OrderedJson to_json(const LightReport& lights) {
             {"overflowed_tiles", 0}};
 }
 
+OrderedJson to_json(const Environment& environment) {
+    return {{"radiance", {environment.radiance.r, environment.radiance.g, environment.radiance.b}},
+            {"picture", environment.picture
+                            ? OrderedJson({environment.picture->width, environment.picture->height})
+                            : OrderedJson(nullptr)},
+            {"rotation", environment.rotation}};
+}
+
 OrderedJson to_json(const MemoryUse& memory) {
     return {{"texture_bytes", memory.texture_bytes},
             {"buffer_bytes", memory.buffer_bytes},
@@ -99,6 +107,7 @@ std::string to_json(const RunReport& report) {
         {"context", report.context},
         {"scene", report.scene},
         {"animation", report.animation ? OrderedJson(*report.animation) : OrderedJson(nullptr)},
+        {"environment", report.environment ? to_json(*report.environment) : OrderedJson(nullptr)},
         {"triangles", report.state.triangles},
         {"size", {report.size.x, report.size.y}},
         {"config", OrderedJson::parse(write_configuration(report.configuration))},

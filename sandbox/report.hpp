@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include <candela/renderer.hpp>
+#include <candela/scene/components.hpp>
 
 namespace candela::sandbox {
 
@@ -20,7 +21,8 @@ struct RunReport {
     glm::ivec2 size{0};                    ///< pixels
     Configuration configuration;
     std::vector<FrameReport> frames;
-    Report state;  ///< after the last frame
+    Report state;                              ///< after the last frame
+    std::optional<Environment> environment{};  ///< after the last frame
 };
 
 /// As JSON; energies per colour channel, times in milliseconds, memory in bytes.

@@ -63,13 +63,6 @@ Entity add_framing_camera(World& world, float aspect) {
     return entity;
 }
 
-bool has_light(const World& world) {
-    for (const auto& [entity, instance] : world.view<MeshInstance>()) {
-        if (emits(*instance.mesh)) return true;
-    }
-    return world.count<PointLight>() + world.count<SpotLight>() + world.count<DirectionalLight>() > 0;
-}
-
 }  // namespace
 
 fs::path shipped_file(const std::string& folder, const std::string& name) {
@@ -81,9 +74,6 @@ fs::path shipped_file(const std::string& folder, const std::string& name) {
 Scene load_scene(const fs::path& path) {
     Scene scene{path, {}, {}, {}};
     scene.warnings = import_gltf(path, scene.world).warnings;
-    if (!has_light(scene.world)) {
-        scene.warnings.emplace_back("the scene has no light: the picture is black");
-    }
     return scene;
 }
 

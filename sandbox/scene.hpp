@@ -16,7 +16,7 @@ namespace candela::sandbox {
 struct Scene {
     std::filesystem::path path;
     World world;
-    std::vector<std::string> warnings;   ///< what the import left out, and a lack of light; one per line
+    std::vector<std::string> warnings;   ///< what the import left out, and what the app added; one per line
     std::optional<Animation> animation;  ///< refers to entities of `world`
 };
 

@@ -17,6 +17,7 @@
 #include "sandbox/animation_script.hpp"
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/config_watch.hpp"
+#include "sandbox/environment.hpp"
 #include "sandbox/headless.hpp"
 #include "sandbox/report.hpp"
 #include "sandbox/scene.hpp"
@@ -101,13 +102,16 @@ float aspect(glm::ivec2 size) {
     return static_cast<float>(size.x) / static_cast<float>(size.y);
 }
 
-/// The scene given by the options, else by the script, else the default scene; with the script's animation.
+/// The scene given by the options, else by the script, else the default scene; with the chosen sky and the
+/// script's animation.
 Scene open_scene(const Options& options) {
     std::optional<Script> script;
     if (options.animate) script = load_script(*options.animate);
     const std::filesystem::path by_default =
         script ? scene_of(*script).value_or(default_scene()) : default_scene();
     Scene scene = load_scene(options.scene.value_or(by_default));
+    if (options.environment) set_sky(scene, *options.environment);
+    light_if_dark(scene);
     if (script) scene.animation.emplace(std::move(*script), scene.world);
     return scene;
 }

@@ -56,8 +56,9 @@ class WindowSession {
         if (!options_.out && !options_.report && !options_.describe_graph) return;
         collect(true);
         const Configuration configuration = renderer_.configuration();
-        const RunReport run{"window", scene_.path.string(), animation_of(scene_), pixels_, configuration,
-                            frames_,  renderer_.report()};
+        const RunReport run{
+            "window", scene_.path.string(), animation_of(scene_),        pixels_, configuration,
+            frames_,  renderer_.report(),   environment_of(scene_.world)};
         if (options_.out) write_picture(numbered(*options_.out, std::max(frame_ - 1, 0)));
         write_documents(options_, run, renderer_);
         check_energy(run.scene, run.state);

@@ -110,11 +110,13 @@ struct TileDepth {
 };
 
 #define NO_MAP 0xffffffffu
+#define IN_SKY 0xfffffffeu
 
-// A VPL or a surfel. Members "of surfels" are unused in traced VPLs, and the reverse.
+// A VPL or a surfel, or a patch of the sky (shaders/sky/sky_patch.glsl). Members "of surfels" are unused in traced VPLs,
+// and the reverse.
 struct Vpl {
     vec3 position;     // metres, on the surface
-    uint map;          // slot of its depth map in the atlas, or NO_MAP: rays find its visibility
+    uint map;          // slot of its depth map in the atlas, or NO_MAP: rays find its visibility; or IN_SKY
     vec3 normal;       // unit; it emits into this half-space
     float radius2;     // m², squared radius of the disc that it emits from; of surfels
     vec3 flux;         // reflected flux; of surfels also emitted; zero: sends nothing, or not in use

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "engine/scene/gltf_document.hpp"
+#include "engine/scene/gltf_environment.hpp"
 #include "engine/scene/gltf_materials.hpp"
 #include "engine/scene/gltf_meshes.hpp"
 #include "engine/scene/gltf_nodes.hpp"
@@ -58,8 +59,14 @@ ImportReport import_document(gltf::Document document, const std::filesystem::pat
                              World& into) {
     const auto materials = gltf::read_materials(document, base_directory);
     const auto meshes = gltf::read_meshes(document, materials);
+    const std::optional<Environment> environment = gltf::read_environment(document.model, base_directory);
     World grown = into;  // a copy, so that running out of memory halfway leaves the world as it was
     ImportReport report = create_entities(gltf::read_nodes(document.model, meshes), grown);
+    if (environment) {
+        report.entities.push_back(grown.create());
+        grown.set(report.entities.back(), Name{"environment"});
+        grown.set(report.entities.back(), *environment);
+    }
     report.warnings = std::move(document.warnings);
     into = std::move(grown);
     return report;

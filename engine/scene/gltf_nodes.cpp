@@ -29,13 +29,6 @@ const tinygltf::Node& node_at(const tinygltf::Model& model, int index) {
     return model.nodes[static_cast<std::size_t>(index)];
 }
 
-const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
-    if (model.scenes.empty()) {
-        throw SceneError("it has no scene");
-    }
-    return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
-}
-
 /// The parent of each node; -1 for a root.
 std::vector<int> find_parents(const tinygltf::Model& model) {
     std::vector<int> parents(model.nodes.size(), -1);
@@ -242,6 +235,13 @@ void put_ahead(const std::vector<int>& nodes, std::optional<std::size_t> parent,
 }
 
 }  // namespace
+
+const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
+    if (model.scenes.empty()) {
+        throw SceneError("it has no scene");
+    }
+    return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
+}
 
 std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
                                      const std::vector<std::shared_ptr<const Mesh>>& meshes) {

@@ -23,6 +23,9 @@ struct StagedEntity {
     std::optional<Camera> camera;
 };
 
+/// The scene that the file names as default, else its first. Throws SceneError if there is none.
+[[nodiscard]] const tinygltf::Scene& default_scene(const tinygltf::Model& model);
+
 /// The nodes of the default scene (the first scene if no default is given), parents before children, siblings
 /// in the file's order. A sheared node makes two entities with its name, the first the parent of the second
 /// (see decompose). A node without a name gets the name of its camera, light or mesh, or else `node N`.

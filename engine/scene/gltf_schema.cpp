@@ -291,6 +291,9 @@ std::vector<Rule> rules() {
         {"nodes.[].extensions.KHR_lights_punctual", has({"light"})},
         {"nodes.[].extensions.KHR_lights_punctual.light", light},
         {"scenes.[].nodes.[]", node},
+        {"scenes.[].extensions.CANDELA_environment.radiance", numbers(3, not_negative)},
+        {"scenes.[].extensions.CANDELA_environment.rotation", number(any)},
+        {"scenes.[].extensions.CANDELA_environment.uri", text()},
         {"scene", scene},
     };
 }

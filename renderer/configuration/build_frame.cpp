@@ -11,6 +11,8 @@
 #include "renderer/passes/shading/emission.hpp"
 #include "renderer/passes/shading/forward.hpp"
 #include "renderer/passes/shading/transparent.hpp"
+#include "renderer/passes/sky/background.hpp"
+#include "renderer/passes/sky/sky_patches.hpp"
 #include "renderer/passes/surfaces/depth_prepass.hpp"
 #include "renderer/passes/surfaces/gbuffer.hpp"
 #include "renderer/passes/surfels/surfel_light.hpp"
@@ -31,9 +33,11 @@ struct LitScene {
     LightBuffers buffers;
     SceneLights lights;
     ShadowMaps shadows;
+    std::optional<Sky> sky;
 };
 
-LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration, FrameHandles& frame) {
+LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
+                   const FrameContents& contents, FrameHandles& frame) {
     const SceneData scene = add_scene_upload(graph, gpu);
     const Tracing tracing = add_bvh(graph, gpu, scene);
     frame.metrics = tracing.metrics;
@@ -43,7 +47,12 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
     frame.shadows = shadows.plan;
     frame.drawn_shadows = shadows.drawn;
     const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
-    return {scene, tracing, buffers, {frame.lights, buffers.lights}, shadows};
+    return {.scene = scene,
+            .tracing = tracing,
+            .buffers = buffers,
+            .lights = {frame.lights, buffers.lights},
+            .shadows = shadows,
+            .sky = contents.sky ? std::optional(add_sky(graph)) : std::nullopt};
 }
 
 ValueHandle<CameraView> add_camera(FrameGraph& graph, const Configuration& configuration, const LitScene& lit,
@@ -52,12 +61,15 @@ ValueHandle<CameraView> add_camera(FrameGraph& graph, const Configuration& confi
     if (!configuration.refinement.enabled) {
         return camera;
     }
+    const auto environment = lit.sky ? std::optional(lit.sky->environment) : std::nullopt;
     frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
-    frame.refinement = add_refinement(graph, *frame.refinement_clock, lit.scene, frame.lights, camera);
+    frame.refinement =
+        add_refinement(graph, *frame.refinement_clock, lit.scene, {frame.lights, environment}, camera);
     return add_refined_view(graph, frame.request, *frame.refinement);
 }
 
-/// The configured VPLs, if any is needed. The light that surfaces emit is direct light, but VPLs carry it.
+/// The configured VPLs, if any is needed. The light of the sky and of surfaces that emit it is direct light,
+/// but VPLs carry it.
 struct WantedVpls {
     VplSettings settings;
     ShownLight shown;
@@ -66,15 +78,17 @@ struct WantedVpls {
     /// About how many VPLs there will be.
     [[nodiscard]] std::uint32_t count(const FrameContents& contents) const {
         const std::uint32_t on_emitters = contents.emitters ? emitting_surfels(settings.count) : 0;
-        return (shown.reflected ? settings.count : 0) + on_emitters;
+        const std::uint32_t in_sky = contents.sky ? sky_patches(settings.count) : 0;
+        return (shown.reflected ? settings.count : 0) + (shown.emitted ? on_emitters + in_sky : 0);
     }
 };
 
 WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& contents) {
+    const bool has_emission = contents.emitters || contents.sky;
     WantedVpls wanted{configuration.vpls,
-                      {.emitted = contents.emitters && configuration.show != Show::indirect,
+                      {.emitted = has_emission && configuration.show != Show::indirect,
                        .reflected = configuration.indirect && configuration.show != Show::direct}};
-    if (contents.emitters) {
+    if (has_emission) {
         wanted.settings.placement = VplPlacement::surfels;
     }
     if (!wanted.shown.reflected) {
@@ -97,8 +111,12 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
     const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, frame.refinement, settings);
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
+    SurfelSources sources{.lights = lit.lights, .sky = {}};
+    if (lit.sky) {
+        sources.sky = add_sky_patches(graph, gpu, *lit.sky, sky_patches(settings.count), frame.refinement);
+    }
     frame.vpls =
-        add_surfel_light(graph, gpu, lit.tracing, visibility, lit.lights, settings.bounces, wanted.shown);
+        add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, wanted.shown);
     return {surfels.plan, surfels.surfels, motion, surfels.set};
 }
 
@@ -113,10 +131,11 @@ std::optional<VplLight> add_vpls(FrameGraph& graph, Gpu& gpu, const Configuratio
     VplLight light{.vpls = *frame.vpls,
                    .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
                                                configuration.visibility, configuration.geometry_bound),
-                   .emitters = contents.emitters};
+                   .emitters = contents.emitters,
+                   .sky = contents.sky && wanted.shown.emitted};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
-        if (contents.emitters) {
+        if (light.emitters || light.sky) {
             light.rays = lit.tracing;
         }
     } else if (configuration.visibility.method == VplVisibility::rays) {
@@ -186,6 +205,7 @@ FrameContents contents_of(const World& world) {
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         contents.emitters |= emits(*instance.mesh);
     }
+    contents.sky = environment_of(world).radiance != glm::vec3(0.0F);
     for (const auto& [entity, light] : world.view<DirectionalLight>()) {
         contents.suns |= light.casts_shadow;
     }
@@ -198,7 +218,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     frame.request = graph.import_value<ViewRequest>("view request");
     frame.target = graph.texture("target", {extent.target, Format::rgba8}, Lifetime::imported);
 
-    const LitScene lit = add_scene(graph, gpu, configuration, frame);
+    const LitScene lit = add_scene(graph, gpu, configuration, contents, frame);
     const ValueHandle<CameraView> camera = add_camera(graph, configuration, lit, frame);
     const FrameView view = add_view_upload(graph, gpu, camera, extent.size);
     const SceneData seen = add_view_cull(graph, gpu, lit.scene, camera);
@@ -249,6 +269,9 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const bool shows_emitters = contents.emitters && configuration.show != Show::indirect;
     if (shows_emitters) {
         solid.radiance = add_emission(graph, gpu, seen, view, solid);
+    }
+    if (lit.sky && configuration.show != Show::indirect) {
+        solid.radiance = add_background(graph, gpu, *lit.sky, view, solid);
     }
     TextureHandle radiance = add_transparent(graph, gpu, seen, of_blended, view, solid, shows_emitters);
     if (frame.refinement) {

@@ -45,6 +45,7 @@ struct FrameExtent {
 struct FrameContents {
     bool emitters = false;  ///< surfaces that emit light
     bool suns = false;      ///< directional lights that cast shadows
+    bool sky = false;       ///< an Environment that is not black
     bool operator==(const FrameContents&) const = default;
 };
 [[nodiscard]] FrameContents contents_of(const World& world);

@@ -49,6 +49,7 @@
     X(GetNamedBufferSubData, GETNAMEDBUFFERSUBDATA) \
     X(BindBuffer, BINDBUFFER) \
     X(BindBufferBase, BINDBUFFERBASE) \
+    X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA) \
     /* textures */ \
     X(CreateTextures, CREATETEXTURES) \
     X(GenTextures, GENTEXTURES) \

@@ -14,6 +14,7 @@ import sys
 sys.dont_write_bytecode = True  # otherwise importing the modules would leave files in the source folder
 
 from atrium import atrium
+from court import court
 from glass import glass
 from halls import fins, hall
 from rooms import cornell, corner, furnace, lamp, neon, two_rooms
@@ -24,6 +25,7 @@ SHIPPED = {
     "corner": corner,
     "two-rooms": two_rooms,
     "neon": neon,
+    "court": court,
     "furnace": furnace,
     "glass": glass,
     "fins": fins,

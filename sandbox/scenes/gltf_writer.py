@@ -66,6 +66,12 @@ class Scene:
         }
         return self.material(name, colour, **emission, **properties)
 
+    def sky(self, hdr):
+        """Light from all directions: a Radiance picture, equirectangular."""
+        self.use("CANDELA_environment")
+        uri = "data:application/octet-stream;base64," + base64.b64encode(hdr).decode()
+        self.document["scenes"][0]["extensions"] = {"CANDELA_environment": {"uri": uri}}
+
     def texture(self, name, png):
         """A texture that repeats."""
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(png)}

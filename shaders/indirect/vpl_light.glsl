@@ -1,6 +1,7 @@
 // Light that virtual point lights (VPLs) send to a surface.
 #include "bindings.glsl"
 #include "vpls/disc.glsl"
+#include "sky/sky_patch.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
@@ -67,8 +68,22 @@ vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
     return sum;
 }
 
+#ifdef SKY
+
+// π times the irradiance from a patch of the sky.
+vec3 irradiance_from_patch(Vpl sky_patch, Surface surface) {
+    PatchLight light = light_of_patch(sky_patch, surface.normal);
+    if (light.cosine <= 0.0) return vec3(0.0);
+    return sky_patch.flux * (light.cosine * visibility_of_sky(light.direction, surface));
+}
+
+#endif
+
 // π times the irradiance from the VPL.
 vec3 irradiance_from_vpl(Vpl vpl, Surface surface) {
+#ifdef SKY
+    if (vpl.map == IN_SKY) return irradiance_from_patch(vpl, surface);
+#endif
     if (vpl.flux == vec3(0.0)) return vec3(0.0);
     vec3 unoccluded = unoccluded_from_cell(vpl, surface);
     return unoccluded == vec3(0.0) ? unoccluded : unoccluded * vpl_visibility(vpl, surface);

@@ -1,9 +1,11 @@
-// Flux at the points of the surfels' cells: of the lights, with one shadow ray to each; of surfaces that emit light; and
-// the flux that the points emit themselves, π times radiance times area. One invocation a cell point.
+// Flux at the points of the surfels' cells: of the lights, with one shadow ray to each; of surfaces that emit light; of
+// the sky (SKY); and the flux that the points emit themselves, π times radiance times area. One invocation per cell
+// point.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
 #include "scene/materials.glsl"
+#include "sky/sky_patch.glsl"
 #include "types.glsl"
 #include "vpls/disc.glsl"
 
@@ -23,6 +25,12 @@ uniform float ray_offset;    // metres; rays start above the surface and end bef
 uniform uint surfel_count;
 uniform uint emitting_count;  // surfels that emit light: the last ones
 uniform uint emitter_shares;  // a cell point receives the light of one in so many of them, and of all near its cell
+#ifdef SKY
+layout(std430, binding = BINDING_SKY_PATCHES) readonly restrict buffer SkyPatches { Vpl sky_patches[]; };
+
+uniform uint sky_patch_count;
+uniform uint sky_shares;  // a cell point receives the light of one in so many patches
+#endif
 
 // Most emitting surfels for which each cell point sums all that are near. With more, an invocation would have more rays
 // and points in its loops than software drivers run through.
@@ -60,24 +68,55 @@ vec3 visible_from_cell(Vpl emitter, CellPoint point) {
     return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : irradiance;
 }
 
-// Irradiance from surfaces that emit light. The points of a cell share the emitting surfels that are not near: together
-// they receive the light of all of them.
+// The part of many sources that a cell point receives: every `shares`-th, from `first` on, each with a weight. The points
+// of a cell together receive all sources.
+struct Share {
+    uint first;
+    float weight;
+};
+
+Share share_of(uint id, Vpl own, uint shares) {
+    bool covers_all = shares <= own.point_count;
+    uint first = (covers_all ? id - own.first_point : id) % shares;
+    // How many points of the cell have the same share.
+    float same = float((own.point_count - 1u - first) / shares + 1u);
+    return Share(first, covers_all ? float(own.point_count) / same : float(shares));
+}
+
+// Irradiance from surfaces that emit light: the point's share of them, and all that are near its cell.
 vec3 irradiance_from_emitters(uint id, CellPoint point) {
     Vpl own = surfels[point.surfel];
-    bool covers_all = emitter_shares <= own.point_count;
-    uint share = (covers_all ? id - own.first_point : id) % emitter_shares;
-    // How many points of the cell have the same share.
-    float same = float((own.point_count - 1u - share) / emitter_shares + 1u);
-    float weight = covers_all ? float(own.point_count) / same : float(emitter_shares);
+    Share share = share_of(id, own, emitter_shares);
     bool sums_near = emitting_count <= MOST_NEAR_EMITTERS;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < emitting_count; ++i) {
         Vpl emitter = surfels[surfel_count - emitting_count + i];
         bool near = sums_near && is_near(emitter.position - own.position, own.area + emitter.area);
-        if (near || i % emitter_shares == share) sum += (near ? 1.0 : weight) * visible_from_cell(emitter, point);
+        if (near || i % emitter_shares == share.first) sum += (near ? 1.0 : share.weight) * visible_from_cell(emitter, point);
     }
     return sum;
 }
+
+#ifdef SKY
+
+vec3 irradiance_from_sky(uint id, CellPoint point) {
+    Share share = share_of(id, surfels[point.surfel], sky_shares);
+    vec3 origin = point.position + ray_offset * point.normal;
+    vec3 sum = vec3(0.0);
+    for (uint i = share.first; i < sky_patch_count; i += sky_shares) {
+        PatchLight light = light_of_patch(sky_patches[i], point.normal);
+        if (light.cosine > 0.0 && !any_hit(origin, light.direction, 0.0, 1.0 / 0.0)) {
+            sum += light.cosine / PI * sky_patches[i].flux;
+        }
+    }
+    return share.weight * sum;
+}
+
+#else
+
+vec3 irradiance_from_sky(uint id, CellPoint point) { return vec3(0.0); }
+
+#endif
 
 void main() {
     uint id = gl_GlobalInvocationID.x;
@@ -89,6 +128,7 @@ void main() {
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, lights_before + lights_now);
     for (uint i = lights_before; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);
+    if (lights_before == 0u && area > 0.0) irradiance += irradiance_from_sky(id, point);
     vec3 arriving = area * irradiance;
     if (lights_before > 0u) {
         direct_points[id].arriving += arriving;

@@ -1,6 +1,6 @@
 // Visibility between a VPL and a surface: from the VPL's depth map (VPL_VISIBILITY_MAPS), by a shadow ray
-// (VPL_VISIBILITY_RAYS), or always 1. VPLs on surfaces that emit light have no maps (EMITTERS): their shadows are those
-// of direct light, and a map's texels would be seen.
+// (VPL_VISIBILITY_RAYS), or always 1. VPLs on surfaces that emit light (EMITTERS) and patches of the sky (SKY) have no
+// maps: their shadows are those of direct light, and a map's texels would be seen.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "scene/bvh.glsl"
@@ -8,7 +8,12 @@
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
 
-#if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && defined(EMITTERS))
+#if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && (defined(EMITTERS) || defined(SKY)))
+
+float visibility_of_sky(vec3 direction, Surface surface) {
+    vec3 origin = surface.position + vpl_constants.ray_offset * surface.normal;
+    return any_hit(origin, direction, 0.0, 1.0 / 0.0) ? 0.0 : 1.0;
+}
 
 float visibility_by_ray(Vpl vpl, Surface surface) {
     vec3 target = vpl.map_origin + vpl_constants.ray_offset * vpl.normal;
@@ -19,6 +24,10 @@ float visibility_by_ray(Vpl vpl, Surface surface) {
     float t_min = vpl_constants.crease_slack / max(length(to_vpl), 1e-30);
     return any_hit(origin, to_vpl, t_min, 1.0) ? 0.0 : 1.0;
 }
+
+#else
+
+float visibility_of_sky(vec3 direction, Surface surface) { return 1.0; }
 
 #endif
 

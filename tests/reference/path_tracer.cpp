@@ -63,12 +63,13 @@ glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen
     return sum / static_cast<double>(samples);
 }
 
-/// What a surface emits, and what it reflects of the light of emitters.
-glm::vec3 light_from_emitters(const Trace& trace, const Surface& surface, Sampler& sampler) {
+/// What a surface emits, and what it reflects of the light of emitters and of the sky.
+glm::vec3 sampled_light(const Trace& trace, const Surface& surface, Sampler& sampler) {
     glm::dvec3 sum(0.0);
     for (std::uint32_t i = 0; i < trace.settings.samples; ++i) {
         sampler.start(i);
-        sum += light_of_emitters(trace.scene, surface, sampler);
+        if (trace.scene.emitters.any()) sum += light_of_emitters(trace.scene, surface, sampler);
+        if (trace.scene.sky.any()) sum += light_of_sky(trace.scene, surface, sampler);
     }
     return surface.emission + surface.albedo * glm::vec3(sum / static_cast<double>(trace.settings.samples));
 }
@@ -80,8 +81,8 @@ glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, S
     for (const SeenSurface& layer : seen) {
         Direct direct = direct_light(trace.scene, layer.surface, trace.settings.defect);
         sum += layer.weight * direct.radiance;
-        if (trace.scene.emitters.any()) {
-            sum += layer.weight * light_from_emitters(trace, layer.surface, sampler);
+        if (trace.scene.emitters.any() || trace.scene.sky.any()) {
+            sum += layer.weight * sampled_light(trace, layer.surface, sampler);
         }
         trait.layers.push_back(
             {layer.surface.position, layer.surface.face, layer.part, std::move(direct.states)});
@@ -91,10 +92,14 @@ glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, S
 
 void trace_pixel(Trace& trace, glm::uvec2 pixel) {
     const std::size_t i = std::size_t{pixel.y} * trace.settings.size.x + pixel.x;
-    const auto seen = seen_surfaces(trace.scene.geometry, trace.viewpoint.through(pixel));
+    const Ray ray = trace.viewpoint.through(pixel);
+    const auto seen = seen_surfaces(trace.scene.geometry, ray);
+    float light_through = 1.0F;
+    for (const SeenSurface& layer : seen) light_through -= layer.weight;
+    trace.estimate.direct.pixels[i] = light_through * trace.scene.sky.radiance(ray.direction);
     if (seen.empty()) return;
     trace.estimate.hit[i] = 1;
-    trace.estimate.direct.pixels[i] =
+    trace.estimate.direct.pixels[i] +=
         add_direct(trace, seen, Sampler(pixel_seed(trace.settings.seed, pixel, 2)), trace.traits[i]);
     if (trace.settings.bounces == 0U) return;
     for (std::uint32_t half = 0; half < 2; ++half) {

@@ -30,9 +30,11 @@ struct Settings {
     Defect defect = Defect::none;
 };
 
-/// Linear radiance, without tone mapping. All pictures are black where nothing is hit.
+/// Linear radiance, without tone mapping. Where nothing is hit, `direct` shows the sky, and the others are
+/// black.
 struct Estimate {
-    /// Exact for points and directions; that of emitting surfaces is sampled, `samples` times a pixel.
+    /// Exact for points and directions; that of emitting surfaces and of the sky is sampled, `samples` times
+    /// a pixel.
     sandbox::Picture direct;
     sandbox::Picture indirect;               ///< the mean of both halves
     std::array<sandbox::Picture, 2> halves;  ///< independent estimates of the indirect light

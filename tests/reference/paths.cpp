@@ -53,6 +53,7 @@ glm::vec3 indirect_light(const SceneContent& scene, const Surface& seen, Sampler
         at = *struck;
         carried *= at.albedo;
         if (counts && scene.emitters.any()) radiance += carried * light_of_emitters(scene, at, sampler);
+        if (counts && scene.sky.any()) radiance += carried * light_of_sky(scene, at, sampler);
     }
     return seen.albedo * radiance;
 }

@@ -21,6 +21,7 @@ SceneContent::SceneContent(const World& world)
       emitters(geometry),
       lights(lights_of(world)),
       emission(lights, geometry.bounds()),
+      sky(world),
       cameras(cameras_of(world)) {}
 
 Scene::Scene(const World& world) : content_(std::make_unique<SceneContent>(world)) {}

@@ -7,6 +7,7 @@
 #include "tests/reference/emitters.hpp"
 #include "tests/reference/geometry.hpp"
 #include "tests/reference/lights.hpp"
+#include "tests/reference/sky.hpp"
 
 namespace candela::reference {
 
@@ -24,6 +25,7 @@ struct SceneContent {
     Emitters emitters;
     std::vector<Light> lights;
     Emission emission;
+    SkyLight sky;
     std::vector<PlacedCamera> cameras;
 };
 

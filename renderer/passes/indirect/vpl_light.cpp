@@ -17,6 +17,9 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
     if (light.emitters) {
         words.emplace_back("EMITTERS");
     }
+    if (light.sky) {
+        words.emplace_back("SKY");
+    }
     if (light.maps) {
         words.emplace_back("VPL_VISIBILITY_MAPS");
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
@@ -132,9 +133,16 @@ void light_points(const gl::Functions& gl, const gl::Program& program, std::uint
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+/// The points of a cell share the patches of the sky.
+void set_sky(const gl::Program& program, std::uint32_t patches) {
+    program.set("sky_patch_count", patches);
+    program.set("sky_shares", std::max(points_a_surfel, groups(patches, most_shadow_rays)));
+}
+
 DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                             const SurfelVisibility& visibility, const SceneLights& lights) {
+                             const SurfelVisibility& visibility, const SurfelSources& sources) {
     const Surfels& surfels = visibility.surfels;
+    const SceneLights& lights = sources.lights;
     return graph.add("surfel-light", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
@@ -143,7 +151,13 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         pass.read(lights.table);
         pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
-        const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"});
+        std::vector<std::string> defined;
+        if (sources.sky) {
+            pass.read(sources.sky->count);
+            pass.read(sources.sky->vpls, {Usage::storage, BINDING_SKY_PATCHES});
+            defined.emplace_back("SKY");
+        }
+        const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"}, defined);
         const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const DirectLight out{
             .points =
@@ -151,7 +165,7 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
                            {Usage::storage, BINDING_DIRECT_POINTS}),
             .cells = pass.write(graph.buffer<gpu::CellLight>("directly lit cells", 1, Lifetime::persistent),
                                 {Usage::storage, BINDING_CELL_LIGHT})};
-        pass.run([=, &gpu, &lighter, &adder](Execution& run) {
+        pass.run([=, &gpu, &lighter, &adder, sky = sources.sky](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             const std::uint32_t points = run.value(surfels.plan).point_count;
             run.reserve(out.points, std::max(points, 1U));
@@ -162,11 +176,20 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
             const auto light_count = static_cast<std::uint32_t>(run.value(lights.table).entries.size());
             set_emitters(lighter, run.value(surfels.plan));
+            if (sky) {
+                set_sky(lighter, run.value(sky->count));
+            }
             light_points(gpu.gl(), lighter, points, light_count);
             dispatch_surfels(gpu.gl(), adder, count);
         });
         return out;
     });
+}
+
+VplPlan with_sky(VplPlan plan, std::uint32_t patches) {
+    plan.vpl_count += patches;
+    plan.sky_count = patches;
+    return plan;
 }
 
 }  // namespace
@@ -241,9 +264,10 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
 }
 
 Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const SurfelVisibility& visibility,
-                      const SceneLights& lights, std::uint32_t bounces, ShownLight shown) {
+                      const SurfelSources& sources, std::uint32_t bounces, ShownLight shown) {
     const Surfels& surfels = visibility.surfels;
-    const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, lights);
+    const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, sources);
+    const std::optional<SkyPatches> sky = shown.emitted ? sources.sky : std::nullopt;
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
@@ -251,6 +275,10 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
+        if (sky) {
+            pass.read(sky->count);
+            pass.read(sky->vpls, Usage::copy);
+        }
         pass.parameter(bounces);
         pass.parameter(shown);
         const BouncePrograms programs{.first = &gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
@@ -262,7 +290,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         const auto bounced = pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent),
                                         {Usage::storage, BINDING_BOUNCE});
         const Vpls out{
-            .plan = surfels.plan,
+            .plan = pass.write(graph.value<VplPlan>("vpl plan")),
             .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent),
                                {Usage::storage, BINDING_VPLS}),
             .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent),
@@ -271,9 +299,16 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
                                  {Usage::storage, BINDING_LIT_POINTS})};
         pass.run([=, &gpu, &writer](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
+            const std::uint32_t sky_count = sky ? run.value(sky->count) : 0;
             run.reserve(bounced, std::max(2 * count, 1U));
-            run.reserve(out.vpls, std::max(count, 1U));
+            run.reserve(out.vpls, std::max(count + sky_count, 1U));
             run.reserve(*out.points, std::max(run.value(surfels.plan).point_count, 1U));
+            run.set(out.plan, with_sky(run.value(surfels.plan), sky_count));
+            if (sky_count > 0) {
+                constexpr GLsizeiptr size = sizeof(gpu::Vpl);
+                gpu.gl().CopyNamedBufferSubData(run.object(sky->vpls), run.object(out.vpls), 0, count * size,
+                                                sky_count * size);
+            }
             if (count == 0) {
                 return;
             }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
+
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu.hpp"
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
+#include "renderer/passes/sky/sky.hpp"
 #include "renderer/passes/surfels/surfels.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
 
@@ -46,15 +49,22 @@ struct ShownLight {
     bool operator==(const ShownLight&) const = default;
 };
 
+/// Where the light of surfels comes from, beside those that emit it.
+struct SurfelSources {
+    SceneLights lights;
+    std::optional<SkyPatches> sky;  ///< none: the world has no sky
+};
+
 /// Adds two nodes. `surfel-light` (compute): light of the real lights at each point of the surfels' cells,
-/// with one shadow ray per point and light, light that the points emit, and light of the surfels that emit,
-/// shared among the points of a cell. `surfel-bounce` (compute):
+/// with one shadow ray per point and light, light that the points emit, and light of the surfels that emit
+/// and of the sky, shared among the points of a cell. `surfel-bounce` (compute):
 /// surfels gather the light that other surfels reflect, bounce by bounce (Jacobi iteration of the radiosity
 /// equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up to
-/// `bounces` or until less than 0.1 % of the first reflected light is left; then they are written as VPLs.
-/// They depend on surfels, visibility, lights and BVH.
+/// `bounces` or until less than 0.1 % of the first reflected light is left; then they are written as VPLs,
+/// followed by the sky's patches if emitted light is shown.
+/// They depend on surfels, visibility, lights, sky and BVH.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                    const SurfelVisibility& visibility, const SceneLights& lights,
+                                    const SurfelVisibility& visibility, const SurfelSources& sources,
                                     std::uint32_t bounces, ShownLight shown);
 
 }  // namespace candela

@@ -5,21 +5,24 @@
 namespace candela {
 
 ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
-                                       const SceneData& scene, ValueHandle<LightTable> lights,
+                                       const SceneData& scene, const RefinedLight& light,
                                        ValueHandle<CameraView> view) {
     return graph.add("refinement", [&](Pass& pass) {
         pass.remembers();
         pass.read(clock);
         pass.read(scene.layout);
         pass.read(scene.placement);
-        pass.read(lights);
+        pass.read(light.lights);
+        if (light.environment) {
+            pass.read(*light.environment);
+        }
         pass.read(view);
         const auto out = pass.update(graph.value<Refinement>("refinement"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
             const Refinement* const last = run.previous(out);
             const std::uint64_t epoch = run.value(clock).epoch;
-            const bool moved =
-                run.changed(layout) || run.changed(placement) || run.changed(lights) || run.changed(view);
+            const bool moved = run.changed(layout) || run.changed(placement) || run.changed(light.lights) ||
+                               (light.environment && run.changed(*light.environment)) || run.changed(view);
             Refinement now{.epoch = epoch};
             if (last != nullptr) {
                 now.set = last->epoch != epoch || moved ? 0 : last->set + 1;

@@ -3,8 +3,10 @@
 #include <candela/configuration.hpp>
 
 #include <cstdint>
+#include <optional>
 
 #include <candela/graph/frame_graph.hpp>
+#include <candela/scene/components.hpp>
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/view/view.hpp"
@@ -33,11 +35,17 @@ struct Refinement {
     bool operator==(const Refinement&) const = default;
 };
 
+/// The light whose changes start the mean over.
+struct RefinedLight {
+    ValueHandle<LightTable> lights;
+    std::optional<ValueHandle<Environment>> environment;  ///< none: the world has no sky
+};
+
 /// Adds node `refinement` (CPU): advances to the next set if the scene, the lights and the view are
 /// unchanged, and otherwise returns to set 0. Depends on the clock, the scene's layout and placement, the
-/// lights and the view, and on its own last result.
+/// light and the view, and on its own last result.
 [[nodiscard]] ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
-                                                     const SceneData& scene, ValueHandle<LightTable> lights,
+                                                     const SceneData& scene, const RefinedLight& light,
                                                      ValueHandle<CameraView> view);
 
 /// Adds node `refined-view` (CPU): the requested view with the samples moved to pixel_sample of the current

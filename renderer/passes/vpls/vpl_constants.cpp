@@ -75,9 +75,10 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
                                     Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const SceneMetrics& scene = run.value(metrics);
-            const std::uint32_t count = run.value(plan).vpl_count;
-            const VplAtlas atlas = atlas_of_scene(settings, count, scene, gpu.device().limits());
-            upload_one(gpu, run, out.constants, constants_of(count, scene, atlas, bound));
+            const VplPlan& vpls = run.value(plan);
+            const VplAtlas atlas =
+                atlas_of_scene(settings, vpls.mapped_count(), scene, gpu.device().limits());
+            upload_one(gpu, run, out.constants, constants_of(vpls.vpl_count, scene, atlas, bound));
             run.set(out.atlas, atlas);
         });
         return out;

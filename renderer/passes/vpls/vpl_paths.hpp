@@ -21,8 +21,12 @@ struct VplPlan {
     std::uint32_t vpl_count = 0;       ///< records of VPLs; some are empty, where paths left the scene
     std::uint32_t max_bounces = 0;     ///< of the longest path
     std::uint32_t point_count = 0;     ///< points of all cells of surfels
-    std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
+    std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones, but for the sky
+    std::uint32_t sky_count = 0;       ///< patches of the sky: the last ones
     bool operator==(const VplPlan&) const = default;
+
+    /// VPLs that may have depth maps: the first ones.
+    [[nodiscard]] std::uint32_t mapped_count() const { return vpl_count - emitting_count - sky_count; }
 };
 
 /// Plans the light paths of a frame. Lights get paths in proportion to their flux. Of the n paths of a light,

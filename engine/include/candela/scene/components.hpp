@@ -139,6 +139,34 @@ struct DirectionalLight {
     bool operator==(const DirectionalLight&) const = default;
 };
 
+/// Radiance from all directions as an equirectangular picture, rows top to bottom, tightly packed: the top
+/// row is +Y, the centre of the picture is -Z, and +X lies a quarter of the width to the right of it.
+struct SkyPicture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<glm::vec3> texels;  ///< width × height; linear RGB, >= 0 and finite
+};
+
+/// Light from infinitely far away, from all directions that no surface hides; also the background. Of several
+/// in a world, only one counts: see environment_of. The entity's Transform is ignored.
+struct Environment {
+    /// Linear, in cd/m² (or W/(sr m²), like the lights' units), each channel >= 0 and finite. Multiplied by
+    /// the picture.
+    glm::vec3 radiance{0.0F};
+    std::shared_ptr<const SkyPicture> picture;  ///< null: the same radiance from everywhere
+    float rotation = 0.0F;                      ///< of the picture, radians around +Y, from +Z towards +X
+    bool operator==(const Environment&) const = default;
+};
+
+/// The first environment in the world's view whose radiance is not zero; radiance 0 if there is none.
+[[nodiscard]] Environment environment_of(const World& world);
+
+/// The direction that a point of the sky's picture shows, without rotation: a unit vector. `at` is in [0,
+/// 1]², (0, 0) the top left corner.
+[[nodiscard]] glm::vec3 sky_direction(glm::vec2 at);
+/// The inverse.
+[[nodiscard]] glm::vec2 sky_position(glm::vec3 direction);
+
 /// Viewpoint at the entity's origin looking along its -Z, +Y up.
 struct Camera {
     enum class Projection : std::uint8_t { perspective, orthographic };

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/scene_error.hpp>
+
+namespace candela {
+
+/// Reads an equirectangular picture of the sky, twice as wide as high and at most 16,384 pixels wide:
+/// Radiance
+/// (.hdr) or OpenEXR (.exr). Throws SceneError, whose message is one line that names the file and the
+/// problem.
+[[nodiscard]] std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path);
+
+/// The same from memory. The message names no file.
+[[nodiscard]] std::shared_ptr<const SkyPicture> decode_sky_picture(std::span<const unsigned char> bytes);
+
+}  // namespace candela

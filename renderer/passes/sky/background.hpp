@@ -1,0 +1,17 @@
+#pragma once
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/shading/forward.hpp"
+#include "renderer/passes/sky/sky.hpp"
+#include "renderer/passes/view/view.hpp"
+
+namespace candela {
+
+/// Adds nodes `sky-picture` (upload: the picture of the sky, rgba16f; radiance above 65,504 is cut to it) and
+/// `background` (raster): writes the radiance of the sky, alpha 0, where there is no surface. Depends on sky,
+/// view and depth.
+[[nodiscard]] TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const FrameView& view,
+                                           const ShadedSurfaces& surfaces);
+
+}  // namespace candela

@@ -1,0 +1,278 @@
+#include "renderer/passes/sky/sky_patches.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "renderer/passes/r2_sequence.hpp"
+
+namespace candela {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr glm::uvec2 most_cells{1024, 512};
+constexpr std::uint32_t least_columns = 256;
+
+float sum_of(glm::vec3 rgb) {
+    return rgb.r + rgb.g + rgb.b;
+}
+
+/// Integrals over the azimuths of a column, which the directions x = sin φ sin θ and z = -cos φ sin θ need.
+struct Column {
+    double width, x, z;
+};
+
+/// Integrals over the polar angles of a row: of sin θ, cos θ sin θ and sin² θ.
+struct Row {
+    double one, y, across;
+};
+
+std::vector<Column> columns_of(std::uint32_t count) {
+    std::vector<Column> columns;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double from = 2.0 * pi * (static_cast<double>(i) / count - 0.5);
+        const double to = 2.0 * pi * (static_cast<double>(i + 1) / count - 0.5);
+        columns.push_back({to - from, std::cos(from) - std::cos(to), std::sin(from) - std::sin(to)});
+    }
+    return columns;
+}
+
+Row row_of(std::uint32_t row, std::uint32_t count) {
+    const double from = pi * row / count;
+    const double to = pi * (row + 1) / count;
+    return {std::cos(from) - std::cos(to),
+            0.5 * (std::sin(to) * std::sin(to) - std::sin(from) * std::sin(from)),
+            0.5 * (to - from) - 0.25 * (std::sin(2.0 * to) - std::sin(2.0 * from))};
+}
+
+/// Radiance of the picture at a point from (0, 0) to (size), interpolated bilinearly; left and right edge
+/// meet.
+glm::vec3 radiance_at(const SkyPicture& picture, glm::vec2 at) {
+    const glm::vec2 first = glm::floor(at - 0.5F);
+    const glm::vec2 share = at - 0.5F - first;
+    const auto texel = [&](float x, float y) {
+        const auto column = static_cast<std::uint32_t>(x + static_cast<float>(picture.width)) % picture.width;
+        const auto row =
+            static_cast<std::uint32_t>(std::clamp(y, 0.0F, static_cast<float>(picture.height - 1)));
+        return picture.texels[std::size_t{row} * picture.width + column];
+    };
+    return glm::mix(glm::mix(texel(first.x, first.y), texel(first.x + 1.0F, first.y), share.x),
+                    glm::mix(texel(first.x, first.y + 1.0F), texel(first.x + 1.0F, first.y + 1.0F), share.x),
+                    share.y);
+}
+
+/// Cells are blocks of texels, or parts of texels where the picture is small: a bright texel must be
+/// divisible.
+SkyGrid grid_of(const SkyPicture& picture) {
+    const glm::uvec2 texels(picture.width, picture.height);
+    const std::uint32_t parts = std::max(least_columns / picture.width, 1U);
+    const glm::uvec2 samples = texels * parts;
+    const glm::uvec2 block = (samples + most_cells - 1U) / most_cells;
+    SkyGrid grid{(samples + block - 1U) / block, {}};
+    grid.cells.resize(std::size_t{grid.size.x} * grid.size.y);
+    const std::vector<Column> columns = columns_of(samples.x);
+    for (std::uint32_t y = 0; y < samples.y; ++y) {
+        const Row row = row_of(y, samples.y);
+        for (std::uint32_t x = 0; x < samples.x; ++x) {
+            const Column& column = columns[x];
+            const glm::vec2 at = (glm::vec2(x, y) + 0.5F) / static_cast<float>(parts);
+            const glm::vec3 radiance =
+                parts == 1 ? picture.texels[std::size_t{y} * picture.width + x] : radiance_at(picture, at);
+            SkyGrid::Cell& cell = grid.cells[std::size_t{y / block.y} * grid.size.x + x / block.x];
+            cell.light += radiance * static_cast<float>(column.width * row.one);
+            cell.moment +=
+                sum_of(radiance) *
+                glm::vec3(glm::dvec3(column.x * row.across, column.width * row.y, column.z * row.across));
+        }
+    }
+    return grid;
+}
+
+/// The rotation from the picture's directions to those of the grid that is split: around no axis of the
+/// world. The edges of patches would otherwise be parallel to those of most rooms and be seen as bands.
+glm::quat tilt() {
+    return glm::angleAxis(1.0F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F)));
+}
+
+/// The same light, by cells of the tilted grid. Moments remain in the picture's directions.
+SkyGrid tilted(const SkyGrid& grid) {
+    SkyGrid result{grid.size, std::vector<SkyGrid::Cell>(grid.cells.size())};
+    const glm::vec2 most(grid.size - 1U);
+    for (const SkyGrid::Cell& cell : grid.cells) {
+        if (cell.moment == glm::vec3(0.0F)) {
+            continue;
+        }
+        const glm::vec2 at = sky_position(tilt() * glm::normalize(cell.moment)) * glm::vec2(grid.size);
+        const glm::uvec2 index(glm::clamp(at, glm::vec2(0.0F), most));
+        SkyGrid::Cell& target = result.cells[std::size_t{index.y} * grid.size.x + index.x];
+        target.light += cell.light;
+        target.moment += cell.moment;
+    }
+    return result;
+}
+
+const SkyGrid::Cell& cell_at(const SkyGrid& grid, std::uint32_t x, std::uint32_t y) {
+    return grid.cells[std::size_t{y} * grid.size.x + x];
+}
+
+/// All light of a patch.
+struct PatchLight {
+    glm::dvec3 light{0.0};
+    glm::dvec3 moment{0.0};
+};
+
+PatchLight light_of(const SkyGrid& grid, const SkyPatch& patch) {
+    PatchLight sum;
+    for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
+        for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x) {
+            sum.light += cell_at(grid, x, y).light;
+            sum.moment += cell_at(grid, x, y).moment;
+        }
+    }
+    return sum;
+}
+
+/// Width in azimuth, at its middle, and in polar angle; radians. 0 where it is one cell wide.
+glm::vec2 extent_of(const SkyGrid& grid, const SkyPatch& patch) {
+    constexpr auto half_turn = static_cast<float>(pi);
+    const glm::vec2 cells(patch.last - patch.first);
+    const glm::vec2 share = cells / glm::vec2(grid.size);
+    const float middle =
+        half_turn * 0.5F * static_cast<float>(patch.first.y + patch.last.y) / static_cast<float>(grid.size.y);
+    return {cells.x > 1.0F ? 2.0F * half_turn * share.x * std::sin(middle) : 0.0F,
+            cells.y > 1.0F ? half_turn * share.y : 0.0F};
+}
+
+/// A patch, and how much it should be split.
+struct Candidate {
+    SkyPatch patch;
+    float need = 0.0F;
+};
+
+Candidate candidate_of(const SkyGrid& grid, const SkyPatch& patch) {
+    const glm::vec2 extent = extent_of(grid, patch);
+    const glm::dvec3 light = light_of(grid, patch).light;
+    return {patch, static_cast<float>(light.r + light.g + light.b) * std::max(extent.x, extent.y)};
+}
+
+/// Where the light along an axis (0: columns, 1: rows) is divided most evenly.
+std::uint32_t median(const SkyGrid& grid, const SkyPatch& patch, int axis) {
+    std::vector<double> light(patch.last[axis] - patch.first[axis], 0.0);
+    for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
+        for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x) {
+            const std::uint32_t along = axis == 0 ? x - patch.first.x : y - patch.first.y;
+            light[along] += static_cast<double>(sum_of(cell_at(grid, x, y).light));
+        }
+    }
+    const double half = 0.5 * std::accumulate(light.begin(), light.end(), 0.0);
+    double before = 0.0;
+    std::uint32_t at = 0;
+    while (at + 2 < light.size() && before + 0.5 * light[at] < half) {
+        before += light[at++];
+    }
+    // `at` cells are in the first half; neither half is empty.
+    return patch.first[axis] + std::max(at, 1U);
+}
+
+/// A direction of the patch in the picture, drawn by radiance.
+glm::vec3 drawn_direction(const SkyGrid& grid, const SkyPatch& patch, glm::vec2 u) {
+    std::vector<float> until;
+    float sum = 0.0F;
+    for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
+        for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x) {
+            sum += sum_of(cell_at(grid, x, y).light);
+            until.push_back(sum);
+        }
+    }
+    const auto found = std::ranges::upper_bound(until, u.x * sum);
+    const auto i = static_cast<std::uint32_t>(
+        std::min<std::ptrdiff_t>(found - until.begin(), static_cast<std::ptrdiff_t>(until.size()) - 1));
+    const float before = i == 0 ? 0.0F : until[i - 1];
+    const float inside =
+        until[i] > before ? std::clamp((u.x * sum - before) / (until[i] - before), 0.0F, 1.0F) : 0.5F;
+    const std::uint32_t width = patch.last.x - patch.first.x;
+    const glm::vec2 corner(patch.first + glm::uvec2(i % width, i / width));
+    return glm::inverse(tilt()) * sky_direction((corner + glm::vec2(inside, u.y)) / glm::vec2(grid.size));
+}
+
+glm::vec3 rotated(glm::vec3 direction, float angle) {
+    const float c = std::cos(angle);
+    const float s = std::sin(angle);
+    return {c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x};
+}
+
+/// `light`: π times the irradiance on a surface that faces the patch.
+gpu::Vpl vpl_of(glm::vec3 direction, float half_width2, glm::vec3 light) {
+    return {.position = direction,
+            .map = IN_SKY,
+            .normal = -direction,
+            .radius2 = half_width2,
+            .flux = light,
+            .first_point = 0,
+            .edges_up = glm::vec3(0.0F),
+            .point_count = 0,
+            .edges_down = glm::vec3(0.0F),
+            .area = 0.0F,
+            .map_origin = direction,
+            .pad0 = 0.0F};
+}
+
+}  // namespace
+
+SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
+    const SkyPicture white{2, 1, {glm::vec3(1.0F), glm::vec3(1.0F)}};
+    SplitSky sky{std::make_shared<const SkyGrid>(tilted(grid_of(picture == nullptr ? white : *picture))), {}};
+    const SkyGrid& grid = *sky.grid;
+    const auto less = [](const Candidate& a, const Candidate& b) { return a.need < b.need; };
+    std::vector<Candidate> heap{candidate_of(grid, {glm::uvec2(0), grid.size})};
+    while (heap.size() < count && heap.front().need > 0.0F) {
+        std::ranges::pop_heap(heap, less);
+        const SkyPatch whole = heap.back().patch;
+        heap.pop_back();
+        const glm::vec2 extent = extent_of(grid, whole);
+        const int axis = extent.x > extent.y ? 0 : 1;
+        const std::uint32_t middle = median(grid, whole, axis);
+        SkyPatch lower = whole;
+        SkyPatch upper = whole;
+        lower.last[axis] = upper.first[axis] = middle;
+        for (const SkyPatch& half : {lower, upper}) {
+            heap.push_back(candidate_of(grid, half));
+            std::ranges::push_heap(heap, less);
+        }
+    }
+    for (const Candidate& candidate : heap) {
+        sky.patches.push_back(candidate.patch);
+    }
+    return sky;
+}
+
+std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environment, std::uint32_t sample) {
+    std::vector<gpu::Vpl> vpls;
+    for (const SkyPatch& patch : sky.patches) {
+        const auto [light, moment] = light_of(*sky.grid, patch);
+        const double weight = light.r + light.g + light.b;
+        if (weight <= 0.0) {
+            continue;
+        }
+        const glm::vec3 facing = environment.radiance * glm::vec3(pi * light);
+        if (sample > 0) {
+            const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(vpls.size()), glm::dvec2(0.5));
+            const glm::vec2 u(r2_point(sample, start));
+            const glm::vec3 direction = drawn_direction(*sky.grid, patch, u);
+            vpls.push_back(vpl_of(rotated(direction, environment.rotation), 0.0F, facing));
+            continue;
+        }
+        // Share of the light that arrives from the mean direction. It is 1 - h²/3 for a small square of
+        // directions of half width h.
+        const double share = std::min(glm::length(moment) / weight, 1.0);
+        const glm::vec3 direction = rotated(glm::vec3(glm::normalize(moment)), environment.rotation);
+        vpls.push_back(
+            vpl_of(direction, static_cast<float>(3.0 * (1.0 - share)), static_cast<float>(share) * facing));
+    }
+    return vpls;
+}
+
+}  // namespace candela

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <candela/scene/components.hpp>
+#include "renderer/gpu_types.hpp"
+
+namespace candela {
+
+/// The light of a sky, summed over the cells of a grid of directions, in rows like a picture.
+struct SkyGrid {
+    struct Cell {
+        glm::vec3 light{0.0F};   ///< radiance, integrated over the cell's solid angle
+        glm::vec3 moment{0.0F};  ///< the sum of its channels times direction, integrated likewise
+    };
+    glm::uvec2 size{0};
+    std::vector<Cell> cells;
+};
+
+/// A rectangle of cells: `first` inclusive, `last` exclusive.
+struct SkyPatch {
+    glm::uvec2 first{0};
+    glm::uvec2 last{0};
+};
+
+/// A sky, divided into patches.
+struct SplitSky {
+    std::shared_ptr<const SkyGrid> grid;
+    std::vector<SkyPatch> patches;
+};
+
+/// How many patches the sky has where there are about `count` VPLs. Each pixel traces rays to its share of
+/// them: see most_asked.
+[[nodiscard]] constexpr std::uint32_t sky_patches(std::uint32_t count) {
+    return std::clamp(count / 2, 128U, 256U);
+}
+
+/// Divides a picture of the sky into at most `count` patches; null: a sky of radiance 1 everywhere. Splits,
+/// again and again, the patch with the largest product of light and width into halves of equal light (after
+/// Debevec, "A Median Cut Algorithm for Light Probe Sampling", 2005, who splits them all alike). A sun in the
+/// picture thus gets few patches, but its own.
+[[nodiscard]] SplitSky split_sky(const SkyPicture* picture, std::uint32_t count);
+
+/// The patches as VPLs (gpu::Vpl, IN_SKY). Sample 0: each at its mean direction, as wide as it is; else in
+/// one of its directions, drawn by radiance, so that the mean over all samples converges to the whole sky.
+[[nodiscard]] std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environment,
+                                              std::uint32_t sample);
+
+}  // namespace candela

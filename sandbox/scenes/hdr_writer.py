@@ -1,0 +1,16 @@
+"""Writes Radiance pictures (.hdr)."""
+
+import math
+
+
+def hdr(width, height, radiance):
+    """The picture's bytes. `radiance(x, y)`: linear RGB of a pixel, from the top left. Each pixel has three mantissas and
+    an exponent (Ward, "Real Pixels", Graphics Gems II, 1991)."""
+    pixels = bytearray()
+    for y in range(height):
+        for x in range(width):
+            rgb = radiance(x, y)
+            exponent = math.frexp(max(rgb))[1]
+            scale = math.ldexp(256.0, -exponent)
+            pixels += bytes([*(min(int(channel * scale), 255) for channel in rgb), exponent + 128])
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {height} +X {width}\n".encode() + bytes(pixels)
