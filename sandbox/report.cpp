@@ -51,6 +51,7 @@ OrderedJson to_json(const LightReport& lights) {
 }
 
 OrderedJson to_json(const Environment& environment) {
+    if (environment.radiance == glm::vec3(0.0F)) return nullptr;
     return {{"radiance", {environment.radiance.r, environment.radiance.g, environment.radiance.b}},
             {"picture", environment.picture
                             ? OrderedJson({environment.picture->width, environment.picture->height})
@@ -107,7 +108,7 @@ std::string to_json(const RunReport& report) {
         {"context", report.context},
         {"scene", report.scene},
         {"animation", report.animation ? OrderedJson(*report.animation) : OrderedJson(nullptr)},
-        {"environment", report.environment ? to_json(*report.environment) : OrderedJson(nullptr)},
+        {"environment", to_json(report.environment)},
         {"triangles", report.state.triangles},
         {"size", {report.size.x, report.size.y}},
         {"config", OrderedJson::parse(write_configuration(report.configuration))},

@@ -21,8 +21,8 @@ struct RunReport {
     glm::ivec2 size{0};                    ///< pixels
     Configuration configuration;
     std::vector<FrameReport> frames;
-    Report state;                              ///< after the last frame
-    std::optional<Environment> environment{};  ///< after the last frame
+    Report state;               ///< after the last frame
+    Environment environment{};  ///< after the last frame; radiance 0: none
 };
 
 /// As JSON; energies per colour channel, times in milliseconds, memory in bytes.

@@ -80,7 +80,8 @@ void check_exr(int result, const char* message) {
     if (result == TINYEXR_SUCCESS) {
         return;
     }
-    const std::string reason = message != nullptr ? message : "it is damaged or of an unsupported kind";
+    std::string reason = message != nullptr ? message : "it is damaged or of an unsupported kind";
+    std::erase(reason, '\n');
     FreeEXRErrorMessage(message);
     throw SceneError(fmt::format("it is not a readable OpenEXR picture: {}", reason));
 }

@@ -172,6 +172,7 @@ TEST_SUITE("shipped scenes") {
             {"cornell", 34, 1, 0, 0, {-1, 0, -1}, {1, 2, 1}},
             {"corner", 6, 0, 1, 0, {0, 0, 0}, {2, 2, 2}},
             {"two-rooms", 76, 1, 0, 0, {-4.1F, 0, -2}, {4.1F, 2.6F, 2}},
+            {"court", 1106, 0, 0, 0, {-6, 0, -6}, {6, 3, 6}},
             {"furnace", 12, 1, 0, 0, {-1, -1, -1}, {1, 1, 1}},
             {"glass", 58, 11, 0, 0, {-3, 0, -4}, {3, 3, 4}},
             {"hall-256", 372, 192, 64, 0, {-8, 0, -64}, {8, 4, 0}},
@@ -321,6 +322,21 @@ TEST_SUITE("shipped scenes") {
             }
         }
         CHECK(spread > tiles / 2);
+    }
+
+    TEST_CASE("the court has a sky with a sun in it, above the walls") {
+        const Loaded scene(shipped("court"));
+        const Environment sky = environment_of(scene.world);
+        REQUIRE(sky.picture);
+        const auto sum = [](glm::vec3 texel) { return texel.r + texel.g + texel.b; };
+        const auto brightest = std::ranges::max_element(sky.picture->texels, {}, sum);
+        const auto i = static_cast<std::uint32_t>(brightest - sky.picture->texels.begin());
+        const glm::vec2 at(float(i % sky.picture->width) + 0.5F, float(i / sky.picture->width) + 0.5F);
+        const glm::vec3 towards = sky_direction(at / glm::vec2(sky.picture->width, sky.picture->height));
+        CHECK(sum(*brightest) > 100.0F);
+        CHECK(towards.y > 0.5F);
+        const Target target{all_triangles(scene)};
+        CHECK_FALSE(target.first({0.0F, 0.1F, 2.0F}, towards));  // the sun shines into the court
     }
 
     TEST_CASE("the glass scene has panes behind each other, one of them double-sided, and a cut-out") {

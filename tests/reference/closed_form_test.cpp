@@ -21,6 +21,12 @@ TEST_SUITE("reference: closed forms") {
     TEST_CASE("a plane under a rectangle that emits light") {
         CHECK(plane_under_rectangle());
     }
+    TEST_CASE("a plane under the sky: uniform, beside a wall, and of one bright texel") {
+        CHECK(plane_under_uniform_sky());
+        CHECK(plane_beside_wall());
+        CHECK(plane_under_bright_texel());
+    }
+
     TEST_CASE("a sphere that emits light everywhere is equally bright everywhere") {
         for (const double albedo : {0.2, 0.8}) {
             CAPTURE(albedo);

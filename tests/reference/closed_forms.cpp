@@ -156,6 +156,20 @@ Estimate trace_discs(const candela::Scene& scene, Defect defect) {
     return trace_inside(scene, disc_pixels, 128, 1, defect);
 }
 
+/// The mean over the pixels of their ratio to those expected, whose errors are independent.
+NoisyMean mean_ratio(const sandbox::Picture& picture, const sandbox::Picture& expected) {
+    double sum = 0.0;
+    double squares = 0.0;
+    const auto count = static_cast<double>(expected.pixels.size());
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
+        const auto truth = static_cast<double>(expected.pixels[i].r);
+        const double error = static_cast<double>(picture.pixels[i].r) / truth - 1.0;
+        sum += error;
+        squares += error * error;
+    }
+    return {1.0 + sum / count, std::sqrt(squares) / count};
+}
+
 }  // namespace
 
 bool plane_under_point_light(Defect defect) {
@@ -211,17 +225,71 @@ bool plane_under_rectangle() {
             return glm::dvec3(0.5 / pi * irradiance_of_polygon(corners, at, {0, 1, 0}));
         }));
     const Estimate estimate = trace_inside(scene, size, 64, 0, Defect::none);
-    double sum = 0.0;
-    double squares = 0.0;
-    const auto count = static_cast<double>(expected.pixels.size());
-    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
-        const auto truth = static_cast<double>(expected.pixels[i].r);
-        const double error = static_cast<double>(estimate.direct.pixels[i].r) / truth - 1.0;
-        sum += error;
-        squares += error * error;
-    }
-    const NoisyMean mean{1.0 + sum / count, std::sqrt(squares) / count};
+    const NoisyMean mean = mean_ratio(estimate.direct, expected);
     return mean.error < 1e-3 && is_within(mean, 1.0, float_tolerance);
+}
+
+namespace {
+
+/// Whether the direct light of the ground's middle is as expected, and the noise of its estimate is small.
+bool middle_is(const candela::Scene& scene, double expected) {
+    const Estimate estimate = trace_inside(scene, {16, 16}, 4096, 0, Defect::none);
+    const sandbox::Picture truth{estimate.direct.size, std::vector(estimate.direct.pixels.size(),
+                                                                   glm::vec3(static_cast<float>(expected)))};
+    const NoisyMean mean = mean_ratio(estimate.direct, truth);
+    return mean.error < 2e-3 && is_within(mean, 1.0, float_tolerance);
+}
+
+/// The ground's middle, seen through a narrow lens.
+candela::Scene middle_of_ground() {
+    candela::Scene scene = ground();
+    scene.camera = add(scene.world, looking({0.3F, 0.4F, 0.0F}, {0, 0, 0}), Camera{.vertical_fov = 0.001F});
+    return scene;
+}
+
+}  // namespace
+
+bool plane_under_uniform_sky() {
+    candela::Scene scene = middle_of_ground();
+    add(scene.world, Environment{.radiance = glm::vec3(2.0F), .picture = nullptr});
+    return middle_is(scene, 0.5 * 2.0);
+}
+
+bool plane_beside_wall() {
+    candela::Scene scene = middle_of_ground();
+    add(scene.world, Environment{.radiance = glm::vec3(2.0F), .picture = nullptr});
+    constexpr float distance = 0.7F;
+    add(scene.world,
+        Transform{.translation = {-distance, 1.0F, 0.0F},
+                  .rotation = glm::angleAxis(static_cast<float>(-pi / 2), glm::vec3(0, 0, 1)),
+                  .scale = {1.0F, 1.0F, 100.0F}},
+        MeshInstance{square(1.0F, diffuse(glm::vec3(0.0F), true))});
+    // 2 m high and 200 m long, practically endless: it hides (1 - d / √(d² + h²)) / 2 of the light.
+    const double hidden =
+        0.5 * (1.0 - static_cast<double>(distance) / std::hypot(static_cast<double>(distance), 2.0));
+    return middle_is(scene, 0.5 * 2.0 * (1.0 - hidden));
+}
+
+bool plane_under_bright_texel() {
+    constexpr std::uint32_t width = 64, height = 32, column = 20, row = 8;
+    SkyPicture picture{width, height, std::vector<glm::vec3>(std::size_t{width} * height, glm::vec3(0.0F))};
+    picture.texels[row * width + column] = glm::vec3(500.0F);
+    candela::Scene scene = middle_of_ground();
+    const float rotation = 1.1F;
+    add(scene.world, Environment{.radiance = glm::vec3(1.0F),
+                                 .picture = std::make_shared<const SkyPicture>(std::move(picture)),
+                                 .rotation = rotation});
+    // ∫ L cos θ dω over the ground's hemisphere. Between the middles of texels the radiance is bilinear: a
+    // tent, over two texels across and two down.
+    constexpr int steps = 400;
+    double expected = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        const double off = 2.0 * (i + 0.5) / steps - 1.0;  // from the texel's middle, in texels
+        const double polar = pi * (row + 0.5 + off) / height;
+        expected += (1.0 - std::abs(off)) * std::cos(polar) * std::sin(polar) * (2.0 / steps);
+    }
+    expected *= 500.0 * (pi / height) * (2.0 * pi / width);
+    return middle_is(scene, 0.5 / pi * expected);
 }
 
 bool glowing_sphere(double albedo) {

@@ -17,6 +17,13 @@ namespace candela::reference {
 /// A plane of albedo 1/2 under a rectangle that emits light: Lambert's formula, in the mean of the picture.
 [[nodiscard]] bool plane_under_rectangle();
 
+/// The middle of a plane of albedo 1/2 under a uniform sky: ρ L. Beside an endless wall of height h, at a
+/// distance d: the wall hides (1 - d / √(d² + h²)) / 2 of it. Under a sky with one bright texel: its tent of
+/// radiance, integrated.
+[[nodiscard]] bool plane_under_uniform_sky();
+[[nodiscard]] bool plane_beside_wall();
+[[nodiscard]] bool plane_under_bright_texel();
+
 /// A closed sphere of this albedo that emits light everywhere: radiance L / (1 - ρ), everywhere, of which L
 /// is emitted, ρ L direct and the rest indirect.
 [[nodiscard]] bool glowing_sphere(double albedo);

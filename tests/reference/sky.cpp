@@ -23,6 +23,19 @@ std::shared_ptr<const SkyPicture> white() {
     return std::make_shared<const SkyPicture>(SkyPicture{2, 1, {glm::vec3(1.0F), glm::vec3(1.0F)}});
 }
 
+/// The mean of the texel and its neighbours, over which its radiance spreads by interpolation.
+double radiance_around(const SkyPicture& picture, std::uint32_t texel) {
+    const std::uint32_t x = texel % picture.width, y = texel / picture.width;
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < 9; ++i) {
+        const std::uint32_t column = (x + picture.width + i % 3 - 1) % picture.width;
+        const std::uint32_t row = std::min(std::max(y + i / 3, 1U) - 1, picture.height - 1);
+        const glm::vec3& radiance = picture.texels[std::size_t{row} * picture.width + column];
+        sum += static_cast<double>(radiance.r + radiance.g + radiance.b) / 9.0;
+    }
+    return sum;
+}
+
 /// The light of one direction, weighted for either way in which it was found.
 glm::vec3 weighted(const SceneContent& scene, const Surface& surface, glm::vec3 direction) {
     const float cosine = glm::dot(surface.normal, direction);
@@ -42,20 +55,13 @@ SkyLight::SkyLight(const World& world) {
         picture_ = environment.picture ? environment.picture : white();
     }
     if (!picture_) return;
-    // Beside the radiance of a texel, a little everywhere: interpolation makes the neighbours of a bright
-    // texel bright.
-    double mean = 0.0;
-    for (const glm::vec3& texel : picture_->texels) mean += static_cast<double>(texel.r + texel.g + texel.b);
-    mean /= static_cast<double>(picture_->texels.size());
     double sum = 0.0;
-    std::vector<double> solid_angles;
     for (std::uint32_t i = 0; i < picture_->texels.size(); ++i) {
         const std::uint32_t row = i / picture_->width;
         const double solid_angle =
             2.0 * pi / picture_->width *
             (std::cos(pi * row / picture_->height) - std::cos(pi * (row + 1) / picture_->height));
-        const glm::vec3& texel = picture_->texels[i];
-        const double density = static_cast<double>(texel.r + texel.g + texel.b) + 0.1 * mean;
+        const double density = radiance_around(*picture_, i);
         sum += density * solid_angle;
         until_.push_back(sum);
         densities_.push_back(static_cast<float>(density));

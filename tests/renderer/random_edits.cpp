@@ -42,6 +42,8 @@ std::string RandomEdits::next() {
                                       Edit{"a point comes", &RandomEdits::add_point},
                                       Edit{"a spot comes", &RandomEdits::add_spot},
                                       Edit{"a sun comes", &RandomEdits::add_sun},
+                                      Edit{"a sky comes", &RandomEdits::add_sky},
+                                      Edit{"a lamp comes", &RandomEdits::add_lamp},
                                       Edit{"a mesh comes", &RandomEdits::add_mesh},
                                       Edit{"a mesh is painted", &RandomEdits::paint_mesh},
                                       Edit{"something goes", &RandomEdits::remove_something},
@@ -95,6 +97,16 @@ void RandomEdits::add_spot() {
 void RandomEdits::add_sun() {
     extra_.push_back(
         add(scene.world, looking({offset(), 1.0F, 3.0F}, {0, 0, 0}), DirectionalLight{.illuminance = 0.5F}));
+}
+
+void RandomEdits::add_sky() {
+    extra_.push_back(add(scene.world, Transform{},
+                         Environment{.radiance = glm::vec3(std::abs(offset())), .picture = nullptr}));
+}
+
+void RandomEdits::add_lamp() {
+    extra_.push_back(add(scene.world, upside_down_at({offset(), 1.5F, 0.0F}),
+                         MeshInstance{square(0.2F, emitter(glm::vec3(1.0F, 0.5F, 0.2F)))}));
 }
 
 void RandomEdits::add_mesh() {

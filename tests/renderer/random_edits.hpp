@@ -38,6 +38,8 @@ class RandomEdits {
     void add_point();
     void add_spot();
     void add_sun();
+    void add_sky();
+    void add_lamp();
     void add_mesh();
     void paint_mesh();
     void remove_something();

@@ -113,6 +113,15 @@ TEST_SUITE("second compiler") {
         configure_each(VplPlacement::surfels, Show::total);
         configure_each(VplPlacement::paths, Show::total);
         configure_each(VplPlacement::surfels, Show::indirect);
+        // The renderer builds what the last world needs: here a sun, a sky and a surface that emits light.
+        World world;
+        add(world, Transform{}, DirectionalLight{});
+        add(world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
+        add(world, Transform{}, MeshInstance{square(1.0F, emitter(glm::vec3(1.0F)))});
+        const Entity camera = add(world, at({0.0F, 1.0F, 0.0F}), Camera{});
+        const RenderTarget target(device, {1, 1});
+        renderer.render(world, camera, target.target());
+        configure_each(VplPlacement::surfels, Show::total);
         CHECK(sources.size() > 40);
 
         // A driver that offers fewer storage blocks than the largest program needs is refused at once.

@@ -157,6 +157,15 @@ TEST_SUITE("options") {
                        "x64", "64x64x64", "64X64", " 64x64", "64x64 ", "axb", "+1x1"});
     }
 
+    TEST_CASE("the sky is a radiance, or a file") {
+        const SkyChoice radiance = accepted({"--environment", "0.5,1,2e2"}).environment.value();
+        CHECK(std::get<glm::vec3>(radiance) == glm::vec3(0.5F, 1.0F, 200.0F));
+        const SkyChoice file = accepted({"--environment", "/dev/null"}).environment.value();
+        CHECK(std::get<std::filesystem::path>(file) == "/dev/null");
+        check_refused_value("--environment", {"1", "1,2", "1,2,3,4", "1,2,-3", "1,2,inf", "1,2,nan", "1,2,x",
+                                              "1, 2, 3", ",,", "1,2,1e39", "no/such/sky.hdr"});
+    }
+
     TEST_CASE("numbers must be whole and within their range") {
         check_refused_value("--frames", {"0", "-1", "1.5", "abc", "2147483648", "1e3", "3frames"});
         check_refused_value("--samples", {"0", "-1", "1.5", "abc"});
@@ -189,11 +198,14 @@ TEST_SUITE("options") {
     TEST_CASE("the help names every flag, and the version is printed alone") {
         const EarlyExit help = std::get<EarlyExit>(parse({"--help"}));
         CHECK(help.status == 0);
-        for (const char* flag :
-             {"SCENE",    "--headless",       "--context",      "--size",     "--frames",       "--samples",
-              "--camera", "--show",           "--path",         "--indirect", "--vpls",         "--bounces",
-              "--seed",   "--vpl-visibility", "--animate",      "--config",   "--print-config", "--out",
-              "--report", "--describe-graph", "--list-configs", "--version",  "--help"}) {
+        for (const char* flag : {"SCENE",          "--headless",       "--context",
+                                 "--size",         "--frames",         "--samples",
+                                 "--camera",       "--show",           "--path",
+                                 "--indirect",     "--vpls",           "--bounces",
+                                 "--seed",         "--vpl-visibility", "--animate",
+                                 "--config",       "--print-config",   "--out",
+                                 "--report",       "--environment",    "--describe-graph",
+                                 "--list-configs", "--version",        "--help"}) {
             CAPTURE(flag);
             CHECK(help.text.find(flag) != std::string::npos);
         }

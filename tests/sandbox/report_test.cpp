@@ -61,6 +61,18 @@ TEST_SUITE("report") {
         CHECK(json["memory"]["shared_by_aliasing_bytes"] == 9);
     }
 
+    TEST_CASE("the sky is in the report, if there is one") {
+        RunReport run = some_run();
+        CHECK(nlohmann::json::parse(to_json(run))["environment"].is_null());
+        run.environment = {.radiance = {1.0F, 0.5F, 0.25F}, .picture = nullptr, .rotation = 0.5F};
+        const auto plain = nlohmann::json::parse(to_json(run))["environment"];
+        CHECK(plain["radiance"] == nlohmann::json::array({1.0, 0.5, 0.25}));
+        CHECK(plain["picture"].is_null());
+        CHECK(plain["rotation"] == 0.5);
+        run.environment.picture = std::make_shared<const SkyPicture>(SkyPicture{4, 2, {}});
+        CHECK(nlohmann::json::parse(to_json(run))["environment"]["picture"] == nlohmann::json::array({4, 2}));
+    }
+
     TEST_CASE("without indirect light there is no energy account") {
         RunReport run = some_run();
         run.state.vpls.reset();

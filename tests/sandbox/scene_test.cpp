@@ -55,17 +55,6 @@ TEST_SUITE("scene") {
         CHECK(scene.world.count<PointLight>() == 1);
     }
 
-    TEST_CASE("a scene without light comes with a warning, one that only a surface lights does not") {
-        const std::filesystem::path path = std::filesystem::temp_directory_path() / "candela-dark.gltf";
-        std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scenes": [{}]})";
-        CHECK(load_scene(path).warnings ==
-              std::vector<std::string>{"the scene has no light: the picture is black"});
-        std::filesystem::remove(path);
-        for (const char* lit : {"lamp.gltf", "neon.gltf"}) {
-            CHECK(load_scene(shipped_file("scenes", lit)).warnings.empty());
-        }
-    }
-
     TEST_CASE("cameras are chosen by name, else by index, else the first") {
         World world;
         const Entity first = add_camera(world, "front");

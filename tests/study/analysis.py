@@ -127,7 +127,7 @@ def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
 
 
 def emitter_table(rows: Sequence[Row]) -> list[Row]:
-    """For each scene that only surfaces light, errors of direct, indirect and all light."""
+    """For each scene that only surfaces or the sky light, errors of direct, indirect and all light."""
     columns = ("direct_rel_mse", "indirect_rel_mse", "total_rel_mse", "total_bias", "reference_noise")
     lit = select(rows, suite="emitters")
     return [{"scene": row["scene"], "vpls": row["vpls"], **{name: row[name] for name in columns}} for row in lit]

@@ -289,9 +289,9 @@ def placement_groups() -> list[Group]:
 
 
 def emitter_groups() -> list[Group]:
-    """Scenes that only surfaces light."""
+    """Scenes that only surfaces or the sky light."""
     points = tuple(point(vpls, lever="surfels") for vpls in (256, 512, 1024))
-    return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in ("lamp", "neon")]
+    return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in ("lamp", "neon", "court")]
 
 
 def quick_groups() -> list[Group]:

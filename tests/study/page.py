@@ -197,7 +197,7 @@ def emitters(table_rows: Sequence[Row]) -> str:
     columns = {"scene": "", "vpls": "surfels", "direct_rel_mse": "relMSE, direct", "indirect_rel_mse": "relMSE, indirect",
                "total_rel_mse": "relMSE, total", "total_bias": "bias, total",
                "reference_noise": "the reference's own noise, relMSE"}
-    return element("h2", "Scenes lit by surfaces") + table(columns, table_rows)
+    return element("h2", "Scenes lit by surfaces or by the sky") + table(columns, table_rows)
 
 
 def gathering(table_rows: Sequence[Row], camera: Sequence[Row]) -> str:
