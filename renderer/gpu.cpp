@@ -15,6 +15,7 @@ gl::VertexArray make_mesh_vertices(gl::Device& device) {
     array.attribute(ATTRIBUTE_POSITION, 3, GL_FLOAT, offsetof(Vertex, position));
     array.attribute(ATTRIBUTE_NORMAL, 3, GL_FLOAT, offsetof(Vertex, normal));
     array.attribute(ATTRIBUTE_UV, 2, GL_FLOAT, offsetof(Vertex, uv));
+    array.normalized_attribute(ATTRIBUTE_COLOUR, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, colour));
     array.integer_attribute(ATTRIBUTE_INSTANCE, 1, GL_UNSIGNED_INT, 0, 1);
     device.gl().VertexArrayBindingDivisor(array.name(), 1, 1);
     return array;

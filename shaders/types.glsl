@@ -137,7 +137,7 @@ struct CellPoint {
     float area;     // m²
     vec2 uv;
     uint surfel;    // index of the surfel whose cell it belongs to
-    uint pad0 DEFAULT(0u);
+    uint colour;    // of the vertices, interpolated: rgb in sRGB, and alpha, 8 bits each
 };
 
 // Light that a cell point receives from the lights and from surfaces that emit light, and that it emits.
@@ -205,15 +205,17 @@ struct TraceTriangle {
     vec3 a;
     uint material;
     vec3 edge_ab;
-    uint id;      // index before sorting into leaves
+    uint id;      // index before sorting into leaves; with TRIANGLE_MASKED: it may have holes of an alpha mask
     vec3 edge_ac;
-    uint masked;  // 1: may have holes of an alpha mask
+    uint colour_a;  // of the vertex: rgb in sRGB, and alpha, 8 bits each
     vec2 uv_a;
     vec2 uv_b;
     vec2 uv_c;
-    float pad1 DEFAULT(0.0);
-    float pad2 DEFAULT(0.0);
+    uint colour_b;
+    uint colour_c;
 };
+
+#define TRIANGLE_MASKED 0x80000000u
 
 struct Path {
     vec3 flux;       // of its light as a whole; a weight a bounce gives the path's share

@@ -178,6 +178,24 @@ void check_finite(const std::vector<Vector>& elements, int index) {
     }
 }
 
+/// Whether the components are FLOAT, or normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
+bool has_real_components(const tinygltf::Accessor& accessor) {
+    const int type = accessor.componentType;
+    const bool integers =
+        type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+    return type == TINYGLTF_COMPONENT_TYPE_FLOAT || (integers && accessor.normalized);
+}
+
+/// Component `i` of an element of such an accessor.
+float real_component(const unsigned char* element, std::size_t i, int type) {
+    const unsigned char* const bytes = element + i * component_size(type);
+    if (type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+        return load<float>(bytes);
+    }
+    const float one = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 65535.0F : 255.0F;
+    return static_cast<float>(load_unsigned(bytes, type)) / one;
+}
+
 }  // namespace
 
 Bytes buffer_view_bytes(const tinygltf::Model& model, int buffer_view) {
@@ -203,27 +221,42 @@ std::vector<glm::vec3> read_vectors(const tinygltf::Model& model, int index) {
 
 std::vector<glm::vec2> read_texture_coordinates(const tinygltf::Model& model, int index) {
     const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
-    const int type = accessor.componentType;
-    if (accessor.type == TINYGLTF_TYPE_VEC2 && type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
-        auto coordinates = read<glm::vec2>(model, index, load_floats<glm::vec2>);
-        check_finite(coordinates, index);
-        return coordinates;
-    }
-    const bool short_integers = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-    if (accessor.type != TINYGLTF_TYPE_VEC2 || !accessor.normalized ||
-        (!short_integers && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE)) {
+    if (accessor.type != TINYGLTF_TYPE_VEC2 || !has_real_components(accessor)) {
         throw SceneError(
             fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
                         "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
                         index));
     }
-    const float one = short_integers ? 65535.0F : 255.0F;
-    return read<glm::vec2>(model, index, [type, one](const unsigned char* bytes) {
-        const auto component = [&](std::size_t i) {
-            return static_cast<float>(load_unsigned(bytes + i * component_size(type), type)) / one;
-        };
-        return glm::vec2(component(0), component(1));
-    });
+    auto coordinates =
+        read<glm::vec2>(model, index, [type = accessor.componentType](const unsigned char* bytes) {
+            return glm::vec2(real_component(bytes, 0, type), real_component(bytes, 1, type));
+        });
+    check_finite(coordinates, index);
+    return coordinates;
+}
+
+std::vector<glm::u16vec4> read_colours(const tinygltf::Model& model, int index) {
+    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+    const bool has_alpha = accessor.type == TINYGLTF_TYPE_VEC4;
+    if ((accessor.type != TINYGLTF_TYPE_VEC3 && !has_alpha) || !has_real_components(accessor)) {
+        throw SceneError(
+            fmt::format("accessor {} holds colours, but is not VEC3 or VEC4 of FLOAT or of "
+                        "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
+                        index));
+    }
+    const auto colours =
+        read<glm::vec4>(model, index, [type = accessor.componentType, has_alpha](const unsigned char* bytes) {
+            return glm::vec4(real_component(bytes, 0, type), real_component(bytes, 1, type),
+                             real_component(bytes, 2, type),
+                             has_alpha ? real_component(bytes, 3, type) : 1.0F);
+        });
+    check_finite(colours, index);
+    std::vector<glm::u16vec4> rounded;
+    rounded.reserve(colours.size());
+    for (const glm::vec4& colour : colours) {
+        rounded.emplace_back(glm::clamp(colour, 0.0F, 1.0F) * 65535.0F + 0.5F);
+    }
+    return rounded;
 }
 
 std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int index, std::size_t vertex_count) {

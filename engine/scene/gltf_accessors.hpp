@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace candela::gltf {
 
@@ -22,6 +23,10 @@ namespace candela::gltf {
 
 /// Texture coordinates: VEC2 of finite FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
 [[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const tinygltf::Model& model, int accessor);
+
+/// Vertex colours: VEC3, whose alpha is 1, or VEC4, with channels in [0, 1], as FLOAT or as normalised
+/// UNSIGNED_BYTE or UNSIGNED_SHORT. Floats outside [0, 1] are clamped. 65535 is 1.
+[[nodiscard]] std::vector<glm::u16vec4> read_colours(const tinygltf::Model& model, int accessor);
 
 /// Vertex indices: SCALAR of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT, each below `vertex_count`.
 [[nodiscard]] std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor,

@@ -15,10 +15,12 @@ namespace candela::gltf {
 inline constexpr const char* lights_extension = "KHR_lights_punctual";
 inline constexpr const char* emissive_strength_extension = "KHR_materials_emissive_strength";
 inline constexpr const char* texture_transform_extension = "KHR_texture_transform";
+inline constexpr const char* unlit_extension = "KHR_materials_unlit";
 inline constexpr const char* environment_extension = "CANDELA_environment";
 /// All extensions that are supported.
-inline constexpr std::array<std::string_view, 4> supported_extensions{
-    lights_extension, emissive_strength_extension, texture_transform_extension, environment_extension};
+inline constexpr std::array<std::string_view, 5> supported_extensions{
+    lights_extension, emissive_strength_extension, texture_transform_extension, unlit_extension,
+    environment_extension};
 
 /// A checked glTF document with its buffers loaded (`model.buffers[i].data`). Images stay encoded:
 /// `model.images[i]` has a name and either `uri` or `bufferView`. Animations and skins are left out.

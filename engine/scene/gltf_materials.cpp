@@ -191,10 +191,18 @@ AlphaMode to_alpha_mode(std::string_view name) {
     return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
+/// KHR_materials_unlit: what is seen is the base colour, whatever the light. Such a surface emits it.
+void show_unlit(Material& material) {
+    material.emissive = glm::vec3(material.base_colour);
+    material.emissive_texture = material.base_colour_texture;
+    material.base_colour = glm::vec4(0.0F, 0.0F, 0.0F, material.base_colour.a);
+}
+
 ReadMaterial read_material(const tinygltf::Material& source, const std::string& label, ImageReader& images) {
     const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
     const TextureUse base_colour = texture_use(pbr.baseColorTexture);
-    const TextureUse emissive = texture_use(source.emissiveTexture);
+    const bool is_unlit = source.extensions.contains(unlit_extension);
+    const TextureUse emissive = is_unlit ? base_colour : texture_use(source.emissiveTexture);
     Material material;
     material.name = source.name;
     for (int i = 0; i < 4; ++i) {
@@ -208,7 +216,9 @@ ReadMaterial read_material(const tinygltf::Material& source, const std::string& 
         }
     }
     material.base_colour_texture = images.read(base_colour, label + ": its texture");
-    if (material.emissive != glm::vec3(0.0F)) {
+    if (is_unlit) {
+        show_unlit(material);
+    } else if (material.emissive != glm::vec3(0.0F)) {
         material.emissive_texture = images.read(emissive, label + ": its emissive texture");
     }
     if (material.base_colour_texture && material.emissive_texture &&

@@ -24,7 +24,7 @@ struct Omissions {
     bool points_or_lines = false;
     bool no_positions = false;
     bool morph_targets = false;
-    bool vertex_colours = false;
+    bool second_colours = false;
 };
 
 std::optional<int> find_attribute(const tinygltf::Primitive& source, const char* name) {
@@ -62,6 +62,13 @@ std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::
         check_count("texture coordinates", coordinates.size(), vertices.size());
         for (std::size_t i = 0; i < coordinates.size(); ++i) {
             vertices[i].uv = coordinates[i];
+        }
+    }
+    if (const auto accessor = find_attribute(source, "COLOR_0")) {
+        const std::vector<glm::u16vec4> colours = read_colours(model, *accessor);
+        check_count("colours", colours.size(), vertices.size());
+        for (std::size_t i = 0; i < colours.size(); ++i) {
+            vertices[i].colour = colours[i];
         }
     }
     return vertices;
@@ -144,7 +151,7 @@ bool is_drawn(const tinygltf::Primitive& source, Omissions& omissions) {
     omissions.points_or_lines |= !triangles;
     omissions.no_positions |= triangles && !positions;
     omissions.morph_targets |= !source.targets.empty();
-    omissions.vertex_colours |= find_attribute(source, "COLOR_0").has_value();
+    omissions.second_colours |= find_attribute(source, "COLOR_1").has_value();
     return triangles && positions;
 }
 
@@ -200,8 +207,8 @@ void report(const Omissions& omissions, std::vector<std::string>& warnings) {
     if (omissions.morph_targets) {
         warnings.emplace_back("morph targets are ignored");
     }
-    if (omissions.vertex_colours) {
-        warnings.emplace_back("vertex colours are ignored");
+    if (omissions.second_colours) {
+        warnings.emplace_back("vertex colours beyond the first set are ignored");
     }
 }
 

@@ -242,6 +242,13 @@ void VertexArray::attribute(GLuint index, GLint components, GLenum type, std::ui
     gl().VertexArrayAttribBinding(name(), index, binding);
 }
 
+void VertexArray::normalized_attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
+                                       GLuint binding) {
+    gl().EnableVertexArrayAttrib(name(), index);
+    gl().VertexArrayAttribFormat(name(), index, components, type, GL_TRUE, offset);
+    gl().VertexArrayAttribBinding(name(), index, binding);
+}
+
 void VertexArray::integer_attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
                                     GLuint binding) {
     gl().EnableVertexArrayAttrib(name(), index);

@@ -147,6 +147,9 @@ class VertexArray : public Object {
     /// Enables an attribute of `components` values at `offset` bytes within a vertex, converted to float
     /// without normalisation.
     void attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset, GLuint binding = 0);
+    /// The same, normalised: the largest value of the type becomes 1.
+    void normalized_attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
+                              GLuint binding = 0);
     /// The same for integer attributes, without conversion.
     void integer_attribute(GLuint index, GLint components, GLenum type, std::uint32_t offset,
                            GLuint binding = 0);

@@ -61,13 +61,24 @@ vec3 emission_at(Material material, vec2 uv) {
     return material.emissive * bilinear_texel(image, uv).rgb;
 }
 
+// Linear colour and alpha of a packed vertex colour.
+vec4 vertex_colour(uint colour) {
+    vec4 stored = unpackUnorm4x8(colour);
+    return vec4(srgb_decode(stored.rgb), stored.a);
+}
+
 vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {
     vec2 uv = triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
-    return colour_at(materials[triangle.material], uv);
+    vec4 colour = colour_at(materials[triangle.material], uv);
+    if ((triangle.colour_a & triangle.colour_b & triangle.colour_c) == 0xffffffffu) return colour;
+    vec4 a = vertex_colour(triangle.colour_a);
+    vec4 b = vertex_colour(triangle.colour_b);
+    vec4 c = vertex_colour(triangle.colour_c);
+    return colour * (a + barycentric.x * (b - a) + barycentric.y * (c - a));
 }
 
 // Whether there is a hole of the triangle's alpha mask at this point.
 bool is_hole(TraceTriangle triangle, vec2 barycentric) {
-    if (triangle.masked == 0u) return false;
+    if ((triangle.id & TRIANGLE_MASKED) == 0u) return false;
     return hit_colour(triangle, barycentric).a < materials[triangle.material].alpha_cutoff;
 }

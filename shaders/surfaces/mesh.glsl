@@ -5,6 +5,7 @@
 layout(location = ATTRIBUTE_POSITION) in vec3 vertex_position;
 layout(location = ATTRIBUTE_NORMAL) in vec3 vertex_normal;
 layout(location = ATTRIBUTE_UV) in vec2 vertex_uv;
+layout(location = ATTRIBUTE_COLOUR) in vec4 vertex_colour;
 layout(location = ATTRIBUTE_INSTANCE) in uint vertex_instance;
 
 layout(std430, binding = BINDING_INSTANCES) readonly restrict buffer Instances { Instance instances[]; };

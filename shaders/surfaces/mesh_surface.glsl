@@ -8,16 +8,17 @@ layout(binding = UNIT_BASE_COLOUR) uniform sampler2D base_colour;
 
 in vec3 normal;
 in vec2 uv;
+in vec4 colour;  // of the vertices
 flat in uint material_index;
 
 // Base colour (linear) and alpha. With MASKED, discards the fragment in a hole of the material's alpha mask. Without it
 // there is no discard in the program, so the GPU can reject hidden fragments by an early depth test.
 vec4 fragment_colour() {
-    vec4 colour = materials[material_index].base_colour * texture(base_colour, uv);
+    vec4 surface = materials[material_index].base_colour * texture(base_colour, uv) * colour;
 #ifdef MASKED
-    if (colour.a < materials[material_index].alpha_cutoff) discard;
+    if (surface.a < materials[material_index].alpha_cutoff) discard;
 #endif
-    return colour;
+    return surface;
 }
 
 #ifdef EMISSION

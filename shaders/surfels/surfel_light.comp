@@ -123,7 +123,7 @@ void main() {
     if (id >= point_count) return;
     CellPoint point = cell_points[id];
     Material material = materials[point.material];
-    vec4 colour = colour_at(material, point.uv);
+    vec4 colour = colour_at(material, point.uv) * vertex_colour(point.colour);
     float area = seen[id] == 0u || colour.a < material.alpha_cutoff ? 0.0 : point.area;
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, lights_before + lights_now);

@@ -43,7 +43,7 @@ std::array<Triangle::Corner, 3> placed_corners(const Primitive& primitive, std::
     for (std::size_t i = 0; i < 3; ++i) {
         const Vertex& vertex = primitive.vertices[primitive.indices[first + i]];
         corners[i] = {glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)), to_normal * vertex.normal,
-                      vertex.uv};
+                      vertex.uv, glm::vec4(vertex.colour) / 65535.0F};
     }
     if (glm::determinant(glm::mat3(to_world)) < 0.0F) std::swap(corners[1], corners[2]);
     return corners;
@@ -192,7 +192,8 @@ void Geometry::skip_holes(const RTCFilterFunctionNArguments* arguments) {
     const auto& group = *static_cast<const Group*>(arguments->geometryUserPtr);
     const Triangle& triangle = group.geometry->triangle(group.first + RTCHitN_primID(arguments->hit, 1, 0));
     const glm::vec2 weights(RTCHitN_u(arguments->hit, 1, 0), RTCHitN_v(arguments->hit, 1, 0));
-    if (group.geometry->material(triangle).is_hole(uv_at(triangle, weights))) arguments->valid[0] = 0;
+    const SurfaceMaterial& material = group.geometry->material(triangle);
+    if (material.is_hole(colour_at(triangle, material, weights))) arguments->valid[0] = 0;
 }
 
 void Geometry::skip_unseen(const RTCFilterFunctionNArguments* arguments) {
@@ -256,6 +257,12 @@ glm::vec3 normal_at(const Triangle& triangle, glm::vec2 weights) {
 glm::vec2 uv_at(const Triangle& triangle, glm::vec2 weights) {
     const auto& [a, b, c] = triangle.corners;
     return a.uv + weights.x * (b.uv - a.uv) + weights.y * (c.uv - a.uv);
+}
+
+glm::vec4 colour_at(const Triangle& triangle, const SurfaceMaterial& material, glm::vec2 weights) {
+    const auto& [a, b, c] = triangle.corners;
+    return material.colour(uv_at(triangle, weights)) *
+           (a.colour + weights.x * (b.colour - a.colour) + weights.y * (c.colour - a.colour));
 }
 
 }  // namespace candela::reference

@@ -21,6 +21,7 @@ struct Triangle {
         glm::vec3 position;
         glm::vec3 normal;  ///< as in the mesh, not of unit length
         glm::vec2 uv;
+        glm::vec4 colour;  ///< multiplies that of the material
     };
     std::array<Corner, 3> corners;
     glm::vec3 front;         ///< unit normal of the plane
@@ -121,5 +122,8 @@ class Geometry {
 [[nodiscard]] glm::vec3 position_at(const Triangle& triangle, glm::vec2 weights);
 [[nodiscard]] glm::vec3 normal_at(const Triangle& triangle, glm::vec2 weights);
 [[nodiscard]] glm::vec2 uv_at(const Triangle& triangle, glm::vec2 weights);
+/// Linear colour and alpha of the surface.
+[[nodiscard]] glm::vec4 colour_at(const Triangle& triangle, const SurfaceMaterial& material,
+                                  glm::vec2 weights);
 
 }  // namespace candela::reference

@@ -47,8 +47,8 @@ struct SurfaceMaterial {
     [[nodiscard]] glm::vec3 emission(glm::vec2 uv) const {
         return emissive_texture ? emissive * glm::vec3(emissive_texture->at(uv)) : emissive;
     }
-    [[nodiscard]] bool is_hole(glm::vec2 uv) const {
-        return alpha_mode == AlphaMode::mask && colour(uv).a < alpha_cutoff;
+    [[nodiscard]] bool is_hole(glm::vec4 colour) const {
+        return alpha_mode == AlphaMode::mask && colour.a < alpha_cutoff;
     }
 };
 

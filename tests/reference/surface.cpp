@@ -10,7 +10,7 @@ SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 dir
     const Triangle& triangle = geometry.triangle(hit.triangle);
     const SurfaceMaterial& material = geometry.material(triangle);
     const glm::vec2 uv = uv_at(triangle, hit.weights);
-    const glm::vec4 colour = material.colour(uv);
+    const glm::vec4 colour = colour_at(triangle, material, hit.weights);
     const float side = glm::dot(triangle.front, direction) < 0.0F ? 1.0F : -1.0F;
     const float cover = material.alpha_mode == AlphaMode::blend ? colour.a : 1.0F;
     return {.surface = {.position = position_at(triangle, hit.weights),
@@ -46,7 +46,7 @@ Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direc
     return {.position = position_at(triangle, hit.weights),
             .face = face,
             .normal = face,
-            .albedo = is_lit ? glm::vec3(material.colour(uv)) : glm::vec3(0.0F),
+            .albedo = is_lit ? glm::vec3(colour_at(triangle, material, hit.weights)) : glm::vec3(0.0F),
             .emission = is_lit ? material.emission(uv) : glm::vec3(0.0F)};
 }
 

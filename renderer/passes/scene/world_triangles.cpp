@@ -1,10 +1,22 @@
 #include "renderer/passes/scene/world_triangles.hpp"
 
+#include <glm/gtc/color_space.hpp>
+#include <glm/packing.hpp>
+
 namespace candela {
 namespace {
 
 glm::vec3 transformed(const glm::mat4& matrix, glm::vec3 point) {
     return glm::vec3(matrix * glm::vec4(point, 1.0F));
+}
+
+/// Rounded to 8 bits, the rgb in sRGB, in which dark colours keep their precision.
+std::uint32_t packed_colour(glm::u16vec4 colour) {
+    if (colour == glm::u16vec4(65535)) {
+        return 0xffffffffU;
+    }
+    const glm::vec4 linear = glm::vec4(colour) / 65535.0F;
+    return glm::packUnorm4x8(glm::vec4(glm::convertLinearToSRGB(glm::vec3(linear)), linear.a));
 }
 
 /// Vertex indices of a triangle, counter-clockwise in world space.
@@ -50,12 +62,14 @@ std::vector<gpu::TraceTriangle> trace_triangles(const SceneLayout& layout, const
         triangles.push_back({.a = triangle.a,
                              .material = drawable.material,
                              .edge_ab = triangle.b - triangle.a,
-                             .id = id,
+                             .id = origin.drawable < layout.opaque_count ? id : id | TRIANGLE_MASKED,
                              .edge_ac = triangle.c - triangle.a,
-                             .masked = origin.drawable < layout.opaque_count ? 0U : 1U,
+                             .colour_a = packed_colour(vertices[corner.x].colour),
                              .uv_a = vertices[corner.x].uv,
                              .uv_b = vertices[corner.y].uv,
-                             .uv_c = vertices[corner.z].uv});
+                             .uv_c = vertices[corner.z].uv,
+                             .colour_b = packed_colour(vertices[corner.y].colour),
+                             .colour_c = packed_colour(vertices[corner.z].colour)});
     }
     return triangles;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/packing.hpp>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -73,6 +74,16 @@ glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
     return glm::vec2(point);
 }
 
+/// Interpolated between the corners, in sRGB: gpu::CellPoint::colour.
+std::uint32_t colour_at(const gpu::TraceTriangle& triangle, glm::vec2 b) {
+    if ((triangle.colour_a & triangle.colour_b & triangle.colour_c) == 0xffffffffU) {
+        return 0xffffffffU;
+    }
+    return glm::packUnorm4x8((1.0F - b.x - b.y) * glm::unpackUnorm4x8(triangle.colour_a) +
+                             b.x * glm::unpackUnorm4x8(triangle.colour_b) +
+                             b.y * glm::unpackUnorm4x8(triangle.colour_c));
+}
+
 /// `count` points, distributed evenly by area.
 std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, std::uint32_t seed) {
     std::vector<PlacedPoint> points;
@@ -95,7 +106,7 @@ std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, st
                            .area = static_cast<float>(share),
                            .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
                            .surfel = 0,
-                           .pad0 = 0},
+                           .colour = colour_at(t, b)},
                           all.sides[side].item});
     }
     return points;

@@ -56,8 +56,9 @@ enum class AlphaMode : std::uint8_t {
     blend    ///< alpha is the fraction of the light behind the surface that it blocks; see add_transparent
 };
 
-/// A Lambertian surface. Albedo and alpha are `base_colour` × the decoded texture, each channel in [0, 1].
-/// The back of a single-sided surface is not drawn and reflects no light, but it still blocks light.
+/// A Lambertian surface. Albedo and alpha are `base_colour` × the decoded texture × the colour of the
+/// vertices, each channel in [0, 1]. The back of a single-sided surface is not drawn and reflects no light,
+/// but it still blocks light.
 struct Material {
     std::string name;
     glm::vec4 base_colour{1.0F};                       ///< linear
@@ -77,10 +78,12 @@ struct Material {
 }
 
 /// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.
+/// `colour` multiplies the material's base colour and alpha; linear, 65535 is 1.
 struct Vertex {
     glm::vec3 position;
     glm::vec3 normal;
     glm::vec2 uv;
+    glm::u16vec4 colour{65535};
     bool operator==(const Vertex&) const = default;
 };
 
