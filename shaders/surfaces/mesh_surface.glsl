@@ -8,13 +8,13 @@ layout(binding = UNIT_BASE_COLOUR) uniform sampler2D base_colour;
 
 in vec3 normal;
 in vec2 uv;
-in vec4 colour;  // of the vertices
+in vec4 colour_off_white;  // of the vertices
 flat in uint material_index;
 
 // Base colour (linear) and alpha. With MASKED, discards the fragment in a hole of the material's alpha mask. Without it
 // there is no discard in the program, so the GPU can reject hidden fragments by an early depth test.
 vec4 fragment_colour() {
-    vec4 surface = materials[material_index].base_colour * texture(base_colour, uv) * colour;
+    vec4 surface = materials[material_index].base_colour * texture(base_colour, uv) * (1.0 + colour_off_white);
 #ifdef MASKED
     if (surface.a < materials[material_index].alpha_cutoff) discard;
 #endif

@@ -11,14 +11,14 @@ invariant gl_Position;  // depth pre-pass and later passes must compute identica
 
 out vec3 normal;
 out vec2 uv;
-out vec4 colour;
+out vec4 colour_off_white;  // so that white is interpolated exactly
 flat out uint material_index;
 
 void main() {
     Instance instance = instances[vertex_instance];
     normal = world_normal(instance);
     uv = vertex_uv;
-    colour = vertex_colour;
+    colour_off_white = vertex_colour - 1.0;
     material_index = instance.material;
     gl_Position = clip_from_world * vec4(world_position(instance), 1.0);
 }

@@ -158,6 +158,46 @@ TEST_SUITE("glTF geometry") {
               Coordinates{{0, 1}, {0.2F, 0.4F}, {1, 0}});
     }
 
+    TEST_CASE("vertex colours may be floats or normalised integers, with or without alpha") {
+        const auto colours_of = [](auto values, int type, const char* shape, std::size_t components) {
+            GltfBuilder file = right_triangle();
+            const std::size_t accessor = file.add_accessor(values, type, shape, components);
+            file.document["accessors"][accessor]["normalized"] = type != 5126;
+            file.primitive()["attributes"]["COLOR_0"] = accessor;
+            std::vector<glm::u16vec4> colours;
+            for (const Vertex& vertex : Imported(file).corners()) {
+                colours.push_back(vertex.colour);
+            }
+            return colours;
+        };
+        using Colours = std::vector<glm::u16vec4>;
+        CHECK(colours_of(std::vector<float>{0, 0.5F, 1, 2, -1, 0.25F, 1, 1, 1}, 5126, "VEC3", 3) ==
+              Colours{{0, 32768, 65535, 65535}, {65535, 0, 16384, 65535}, {65535, 65535, 65535, 65535}});
+        CHECK(colours_of(std::vector<float>{0, 1, 0, 0.5F, 0, 0, 0, 0, 1, 1, 1, 1}, 5126, "VEC4", 4) ==
+              Colours{{0, 65535, 0, 32768}, {0, 0, 0, 0}, {65535, 65535, 65535, 65535}});
+        CHECK(colours_of(std::vector<std::uint16_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 65535}, 5123, "VEC4",
+                         4) == Colours{{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 10, 11, 65535}});
+        CHECK(colours_of(std::vector<std::uint8_t>{0, 1, 255, 254, 0, 0, 0, 0, 51, 51, 51, 51}, 5121, "VEC4",
+                         4) == Colours{{0, 257, 65535, 65278}, {0, 0, 0, 0}, {13107, 13107, 13107, 13107}});
+        const Imported plain(right_triangle());
+        CHECK(plain.corners().at(0).colour == glm::u16vec4(65535));
+    }
+
+    TEST_CASE("vertex colours of a wrong type or number are refused") {
+        GltfBuilder file = right_triangle();
+        file.primitive()["attributes"]["COLOR_0"] = file.add_vectors({1, 1, 1, 0, 0, 0});
+        CHECK_THROWS_WITH_AS(Imported{file}, "test.gltf: mesh 0: it has 3 positions, but 2 colours",
+                             SceneError);
+        file = right_triangle();
+        file.primitive()["attributes"]["COLOR_0"] = file.add_accessor(
+            std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, 5121, "VEC4", 4);
+        CHECK_THROWS_WITH_AS(
+            Imported{file},
+            "test.gltf: mesh 0: accessor 1 holds colours, but is not VEC3 or VEC4 of FLOAT or of "
+            "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
+            SceneError);
+    }
+
     TEST_CASE("a sparse accessor replaces the elements it lists") {
         GltfBuilder file = right_triangle();
         const std::size_t indices = file.add_view(std::vector<std::uint16_t>{0, 2});
@@ -330,10 +370,10 @@ TEST_SUITE("glTF scenes") {
 
     TEST_CASE("unsupported extensions that are used but not required are reported once each") {
         GltfBuilder file = right_triangle();
-        file.document["extensionsUsed"] = {"KHR_materials_unlit", "KHR_lights_punctual",
-                                           "KHR_materials_unlit"};
+        file.document["extensionsUsed"] = {"KHR_materials_sheen", "KHR_lights_punctual",
+                                           "KHR_materials_sheen"};
         CHECK(Imported(file).report.warnings ==
-              std::vector<std::string>{"the extension KHR_materials_unlit is not supported and is ignored"});
+              std::vector<std::string>{"the extension KHR_materials_sheen is not supported and is ignored"});
     }
 
     TEST_CASE("a chain of 100,000 nodes") {

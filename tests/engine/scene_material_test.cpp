@@ -57,6 +57,22 @@ const Image& texture_of(const Imported& imported) {
 }  // namespace
 
 TEST_SUITE("glTF materials") {
+    TEST_CASE("an unlit material emits its base colour and reflects nothing") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        file.document["extensionsUsed"] = {"KHR_materials_unlit"};
+        Json& source = file.document["materials"][0];
+        source["extensions"]["KHR_materials_unlit"] = Json::object();
+        source["emissiveFactor"] = {1, 1, 1};
+        source["pbrMetallicRoughness"]["baseColorFactor"] = {0.1, 0.2, 0.3, 0.4};
+        const Imported imported(file);
+        const Material& material = *imported.primitive().material;
+        CHECK(material.emissive == glm::vec3(0.1F, 0.2F, 0.3F));
+        CHECK(material.emissive_texture == material.base_colour_texture);
+        CHECK(material.base_colour_texture != nullptr);
+        CHECK(material.base_colour == glm::vec4(0.0F, 0.0F, 0.0F, 0.4F));
+        CHECK(imported.report.warnings.empty());
+    }
+
     TEST_CASE("factors, sidedness and name") {
         GltfBuilder file = right_triangle();
         file.primitive()["material"] = 0;

@@ -42,8 +42,6 @@ std::string RandomEdits::next() {
                                       Edit{"a point comes", &RandomEdits::add_point},
                                       Edit{"a spot comes", &RandomEdits::add_spot},
                                       Edit{"a sun comes", &RandomEdits::add_sun},
-                                      Edit{"a sky comes", &RandomEdits::add_sky},
-                                      Edit{"a lamp comes", &RandomEdits::add_lamp},
                                       Edit{"a mesh comes", &RandomEdits::add_mesh},
                                       Edit{"a mesh is painted", &RandomEdits::paint_mesh},
                                       Edit{"something goes", &RandomEdits::remove_something},
@@ -51,8 +49,11 @@ std::string RandomEdits::next() {
                                       Edit{"the camera moves", &RandomEdits::move_camera},
                                       Edit{"resize", &RandomEdits::resize},
                                       Edit{"path", &RandomEdits::switch_path},
-                                      Edit{"shadows", &RandomEdits::switch_shadows}};
-    const Edit& edit = edits.at(draw(static_cast<std::uint32_t>(edits.size())));
+                                      Edit{"shadows", &RandomEdits::switch_shadows},
+                                      Edit{"a sky comes", &RandomEdits::add_sky},
+                                      Edit{"a lamp comes", &RandomEdits::add_lamp}};
+    const std::size_t left_out = emission ? 0 : 2;
+    const Edit& edit = edits.at(draw(static_cast<std::uint32_t>(edits.size() - left_out)));
     (this->*edit.apply)();
     return std::string(edit.name) + "; ";
 }

@@ -24,6 +24,7 @@ class RandomEdits {
     Scene scene;
     Configuration configuration;
     glm::uvec2 size{40, 30};
+    bool emission = false;  ///< also add skies and surfaces that emit light, which take much longer to render
 
  private:
     std::uint32_t draw(std::uint32_t choices) { return static_cast<std::uint32_t>(random_()) % choices; }

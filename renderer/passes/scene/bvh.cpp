@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/passes/scene/material_upload.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 #include "renderer/passes/upload.hpp"
 
@@ -45,11 +44,6 @@ SceneMetrics measure(const SceneLayout& layout, const WorldTriangles& world) {
     if (world.triangles.empty()) {
         return metrics;
     }
-    std::vector<float> albedo;
-    for (const auto& material : layout.materials) {
-        const glm::vec3 mean = mean_albedo(*material);
-        albedo.push_back(std::max({mean.r, mean.g, mean.b}));
-    }
     metrics.lower = metrics.upper = world.triangles.front().a;
     double area_sum = 0.0;
     double reflecting_sum = 0.0;
@@ -59,8 +53,7 @@ SceneMetrics measure(const SceneLayout& layout, const WorldTriangles& world) {
         metrics.upper = glm::max(metrics.upper, glm::max(t.a, glm::max(t.b, t.c)));
         const double area = 0.5 * static_cast<double>(glm::length(glm::cross(t.b - t.a, t.c - t.a)));
         area_sum += area;
-        reflecting_sum +=
-            area * static_cast<double>(albedo[layout.drawables[world.origins[i].drawable].material]);
+        reflecting_sum += area * static_cast<double>(layout.drawables[world.origins[i].drawable].albedo);
     }
     metrics.area = static_cast<float>(area_sum);
     metrics.mean_albedo = area_sum > 0.0 ? static_cast<float>(reflecting_sum / area_sum) : 0.0F;

@@ -89,6 +89,23 @@ float srgb_decode(std::uint8_t encoded) {
     return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
 }
 
+glm::vec3 mean_albedo_of(const Material& material) {
+    const glm::vec3 factor(material.base_colour);
+    const Image* image = material.base_colour_texture.get();
+    if (image == nullptr || image->texels.empty()) {
+        return factor;
+    }
+    std::array<double, 256> decoded{};
+    for (std::size_t i = 0; i < decoded.size(); ++i) {
+        decoded[i] = srgb_decode(static_cast<std::uint8_t>(i));
+    }
+    glm::dvec3 sum(0.0);
+    for (const glm::u8vec4& texel : image->texels) {
+        sum += glm::dvec3(decoded[texel.r], decoded[texel.g], decoded[texel.b]);
+    }
+    return factor * glm::vec3(sum / static_cast<double>(image->texels.size()));
+}
+
 }  // namespace
 
 std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& material) {
@@ -103,6 +120,7 @@ std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& mat
     const UploadedImage& emissive = images_[images.emissive];
     materials_.push_back(material);
     images_of_.push_back(images);
+    mean_albedos_.push_back(mean_albedo_of(*material));
     records_.push_back({.base_colour = material->base_colour,
                         .first_texel = colour.first_texel,
                         .texel_width = colour.width,
@@ -136,23 +154,6 @@ std::uint32_t MaterialTable::add_image(const std::shared_ptr<const Image>& image
 
 std::shared_ptr<const MaterialTexture> MaterialTable::texture(std::uint32_t image) const {
     return images_[image].texture;
-}
-
-glm::vec3 mean_albedo(const Material& material) {
-    const glm::vec3 factor(material.base_colour);
-    const Image* image = material.base_colour_texture.get();
-    if (image == nullptr || image->texels.empty()) {
-        return factor;
-    }
-    std::array<double, 256> decoded{};
-    for (std::size_t i = 0; i < decoded.size(); ++i) {
-        decoded[i] = srgb_decode(static_cast<std::uint8_t>(i));
-    }
-    glm::dvec3 sum(0.0);
-    for (const glm::u8vec4& texel : image->texels) {
-        sum += glm::dvec3(decoded[texel.r], decoded[texel.g], decoded[texel.b]);
-    }
-    return factor * glm::vec3(sum / static_cast<double>(image->texels.size()));
 }
 
 }  // namespace candela

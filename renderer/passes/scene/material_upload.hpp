@@ -30,6 +30,8 @@ class MaterialTable {
     [[nodiscard]] const MaterialImages& images_of(std::uint32_t material) const {
         return images_of_[material];
     }
+    /// Base colour of a material times the mean of its image; linear RGB.
+    [[nodiscard]] glm::vec3 mean_albedo(std::uint32_t material) const { return mean_albedos_[material]; }
     /// An image on the GPU, by its number; null for 0.
     [[nodiscard]] std::shared_ptr<const MaterialTexture> texture(std::uint32_t image) const;
 
@@ -51,13 +53,11 @@ class MaterialTable {
     std::vector<std::shared_ptr<const Material>> materials_;
     std::vector<gpu::Material> records_;
     std::vector<MaterialImages> images_of_;
+    std::vector<glm::vec3> mean_albedos_;
     std::vector<UploadedImage> images_{1};  // the first means "no image"
     std::vector<std::uint32_t> texels_;
     std::unordered_map<const Material*, std::uint32_t> material_index_;
     std::unordered_map<const Image*, std::uint32_t> image_index_;
 };
-
-/// Base colour of a material times the mean of its image; linear RGB.
-[[nodiscard]] glm::vec3 mean_albedo(const Material& material);
 
 }  // namespace candela

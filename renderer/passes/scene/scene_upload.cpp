@@ -68,12 +68,22 @@ struct PackedMeshes {
     std::vector<gpu::DrawCommand> draws;
 };
 
+glm::vec3 mean_colour(const Primitive& primitive) {
+    glm::dvec3 sum(0.0);
+    for (const Vertex& vertex : primitive.vertices) {
+        sum += glm::dvec3(vertex.colour);
+    }
+    return glm::vec3(sum / (65535.0 * static_cast<double>(primitive.vertices.size())));
+}
+
 std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry, MaterialTable& materials) {
     std::vector<SceneLayout::Drawable> drawables;
     for (std::uint32_t item = 0; item < geometry.items.size(); ++item) {
         for (const Primitive& primitive : geometry.items[item].mesh->primitives) {
+            const std::uint32_t material = materials.index_of(primitive.material);
+            const glm::vec3 albedo = materials.mean_albedo(material) * mean_colour(primitive);
             drawables.push_back(
-                {item, &primitive, materials.index_of(primitive.material), bounds_of(primitive)});
+                {item, &primitive, material, bounds_of(primitive), std::max({albedo.r, albedo.g, albedo.b})});
         }
     }
     const auto key = [&](std::uint32_t i) {

@@ -44,6 +44,7 @@ struct SceneLayout {
         const Primitive* primitive;  ///< kept alive by `geometry`
         std::uint32_t material;      ///< index into `materials`
         Box bounds;                  ///< bounding box of the primitive, local space
+        float albedo = 0.0F;         ///< strongest channel of its mean albedo
     };
     /// Consecutive draws that share all render state. Each blended draw has its own group, so that they can
     /// be sorted.
