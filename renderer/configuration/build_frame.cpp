@@ -12,7 +12,7 @@
 #include "renderer/passes/shading/forward.hpp"
 #include "renderer/passes/shading/transparent.hpp"
 #include "renderer/passes/sky/background.hpp"
-#include "renderer/passes/sky/sky_patches.hpp"
+#include "renderer/passes/sky/sky_vpls.hpp"
 #include "renderer/passes/surfaces/depth_prepass.hpp"
 #include "renderer/passes/surfaces/gbuffer.hpp"
 #include "renderer/passes/surfels/surfel_light.hpp"
@@ -41,7 +41,11 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
     const SceneData scene = add_scene_upload(graph, gpu);
     const Tracing tracing = add_bvh(graph, gpu, scene);
     frame.metrics = tracing.metrics;
-    frame.lights = add_lights(graph, tracing.metrics);
+    std::optional<Sky> sky;
+    if (contents.sky) {
+        sky = add_sky(graph, sky_patches(configuration.vpls.count));
+    }
+    frame.lights = add_lights(graph, tracing.metrics, sky);
     const ShadowMaps shadows =
         add_shadow_maps(graph, gpu, scene, frame.lights, frame.metrics, configuration.shadows);
     frame.shadows = shadows.plan;
@@ -52,7 +56,7 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
             .buffers = buffers,
             .lights = {frame.lights, buffers.lights},
             .shadows = shadows,
-            .sky = contents.sky ? std::optional(add_sky(graph)) : std::nullopt};
+            .sky = sky};
 }
 
 ValueHandle<CameraView> add_camera(FrameGraph& graph, const Configuration& configuration, const LitScene& lit,
@@ -113,7 +117,7 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
     SurfelSources sources{.lights = lit.lights, .sky = {}};
     if (lit.sky) {
-        sources.sky = add_sky_patches(graph, gpu, *lit.sky, sky_patches(settings.count), frame.refinement);
+        sources.sky = add_sky_patches(graph, gpu, *lit.sky, frame.refinement);
     }
     frame.vpls =
         add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, wanted.shown);
@@ -205,7 +209,9 @@ FrameContents contents_of(const World& world) {
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         contents.emitters |= emits(*instance.mesh);
     }
-    contents.sky = environment_of(world).radiance != glm::vec3(0.0F);
+    const Environment environment = environment_of(world);
+    contents.sky = environment.radiance != glm::vec3(0.0F);
+    contents.suns = environment.picture != nullptr;
     for (const auto& [entity, light] : world.view<DirectionalLight>()) {
         contents.suns |= light.casts_shadow;
     }

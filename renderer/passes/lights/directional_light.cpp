@@ -11,36 +11,13 @@
 namespace candela {
 namespace {
 
-/// The footprint is the bounding rectangle of the scene's box as seen by the light, placed in front of the
-/// scene.
-LightTable::Entry directional_entry(Entity entity, const DirectionalLight& light, const glm::mat4& world,
-                                    const SceneMetrics& metrics) {
-    const glm::vec3 direction = direction_of(world);
-    const auto [tangent, bitangent] = basis_around(direction);
-    const glm::vec3 half = (metrics.upper - metrics.lower) * 0.5F;
-    const auto half_extent = [&](glm::vec3 axis) { return glm::dot(glm::abs(axis), half); };
-    const glm::vec2 shape(half_extent(tangent), half_extent(bitangent));
-    const glm::vec3 illuminance = light.colour * light.illuminance;
-    return {.entity = entity,
-            // One percent of slack, so that the scene's foremost points do not lie in the footprint.
-            .light = {.position = metrics.centre() - direction * (1.01F * half_extent(direction)),
-                      .kind = LIGHT_DIRECTIONAL,
-                      .direction = direction,
-                      .range = std::numeric_limits<float>::infinity(),
-                      .intensity = illuminance,
-                      .shadow = no_shadow,
-                      .shape = shape,
-                      .cos_inner = 0.0F,
-                      .cos_outer = 0.0F},
-            .flux = illuminance * (4.0F * shape.x * shape.y),
-            .casts_shadow = light.casts_shadow};
-}
-
 void gather_directional_lights(const World& world, const SceneMetrics& metrics,
                                std::vector<LightTable::Entry>& entries) {
     gather_lights<DirectionalLight>(
         world, entries, [&](Entity entity, const DirectionalLight& light, const glm::mat4& matrix) {
-            return directional_entry(entity, light, matrix, metrics);
+            return directional_entry(
+                entity, {direction_of(matrix), light.colour * light.illuminance, light.casts_shadow},
+                metrics);
         });
 }
 
@@ -53,6 +30,28 @@ ShadowShape shadow_of_directional(const gpu::Light& light, const SceneMetrics& m
 }
 
 }  // namespace
+
+/// The footprint is the bounding rectangle of the scene's box as seen by the light, placed in front of the
+/// scene.
+LightTable::Entry directional_entry(Entity entity, const ParallelLight& light, const SceneMetrics& metrics) {
+    const auto [tangent, bitangent] = basis_around(light.direction);
+    const glm::vec3 half = (metrics.upper - metrics.lower) * 0.5F;
+    const auto half_extent = [&](glm::vec3 axis) { return glm::dot(glm::abs(axis), half); };
+    const glm::vec2 shape(half_extent(tangent), half_extent(bitangent));
+    return {.entity = entity,
+            // One percent of slack, so that the scene's foremost points do not lie in the footprint.
+            .light = {.position = metrics.centre() - light.direction * (1.01F * half_extent(light.direction)),
+                      .kind = LIGHT_DIRECTIONAL,
+                      .direction = light.direction,
+                      .range = std::numeric_limits<float>::infinity(),
+                      .intensity = light.illuminance,
+                      .shadow = no_shadow,
+                      .shape = shape,
+                      .cos_inner = 0.0F,
+                      .cos_outer = 0.0F},
+            .flux = light.illuminance * (4.0F * shape.x * shape.y),
+            .casts_shadow = light.casts_shadow};
+}
 
 const LightKind directional_light{.read = [](Pass& pass) { pass.read<DirectionalLight>(); },
                                   .gather = gather_directional_lights,

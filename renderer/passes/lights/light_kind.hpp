@@ -54,6 +54,16 @@ inline constexpr float hemisphere = 2.0F * std::numbers::pi_v<float>;  ///< ster
 /// The direction in which a light with this local-to-world matrix shines: its local -Z axis.
 [[nodiscard]] glm::vec3 direction_of(const glm::mat4& world);
 
+/// Parallel light.
+struct ParallelLight {
+    glm::vec3 direction;    ///< unit, in which it travels
+    glm::vec3 illuminance;  ///< lux, on a surface that faces it
+    bool casts_shadow;
+};
+/// The entry of a directional light, whose footprint covers the scene.
+[[nodiscard]] LightTable::Entry directional_entry(Entity entity, const ParallelLight& light,
+                                                  const SceneMetrics& metrics);
+
 /// Appends an entry for each light component of type C: `make(entity, light, world_matrix)`.
 template <class C, class Make>
 void gather_lights(const World& world, std::vector<LightTable::Entry>& entries, Make make) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include <candela/graph/execute.hpp>
 #include <candela/scene/components.hpp>
@@ -20,9 +21,22 @@ LightTable gather(const World& world, const SceneMetrics& metrics) {
     for (const LightKind* const kind : light_kinds) {
         kind->gather(world, metrics, table.entries);
     }
+    return table;
+}
+
+void append_suns(LightTable& table, const SplitSky& sky, const Environment& environment,
+                 const SceneMetrics& metrics) {
+    for (const SkySun& sun : sky.suns) {
+        const ParallelLight light{.direction = -rotated_sky(sun.direction, environment.rotation),
+                                  .illuminance = environment.radiance * sun.light,
+                                  .casts_shadow = true};
+        table.entries.push_back(directional_entry({}, light, metrics));
+    }
+}
+
+void drop_dark(LightTable& table) {
     std::erase_if(table.entries,
                   [](const LightTable::Entry& entry) { return !emits(entry.light.intensity); });
-    return table;
 }
 
 }  // namespace
@@ -40,15 +54,27 @@ Basis basis_around(glm::vec3 n) {
     return {{1.0F + s * n.x * n.x * a, s * b, -s * n.x}, {b, s + n.y * n.y * a, -n.y}};
 }
 
-ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics) {
+ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+                                   const std::optional<Sky>& sky) {
     return graph.add("lights", [&](Pass& pass) {
         for (const LightKind* const kind : light_kinds) {
             kind->read(pass);
         }
         pass.read<Transform>();
         pass.read(metrics);
+        if (sky) {
+            pass.read(sky->split);
+            pass.read(sky->environment);
+        }
         const auto lights = pass.write(graph.value<LightTable>("lights"));
-        pass.run([=](Execution& run) { run.set(lights, gather(run.world(), run.value(metrics))); });
+        pass.run([=](Execution& run) {
+            LightTable table = gather(run.world(), run.value(metrics));
+            if (sky) {
+                append_suns(table, run.value(sky->split), run.value(sky->environment), run.value(metrics));
+            }
+            drop_dark(table);
+            run.set(lights, std::move(table));
+        });
         return lights;
     });
 }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/sky/sky.hpp"
 
 namespace candela {
 
@@ -31,9 +33,10 @@ struct SceneLights {
 };
 
 /// Adds node `lights` (CPU): gathers the light components: point lights, then spot lights, then directional
-/// lights. Lights that emit nothing are left out. Depends on the light components, Transform and the scene's
-/// metrics.
-[[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics);
+/// lights, then the suns of the sky. Lights that emit nothing are left out. Depends on the light components,
+/// Transform, the sky and the scene's metrics.
+[[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+                                                 const std::optional<Sky>& sky);
 
 /// Two unit vectors that form an orthonormal basis with the unit vector n, as in shaders/maths.glsl: Duff et
 /// al., "Building an Orthonormal Basis, Revisited" (2017), eq. 3.

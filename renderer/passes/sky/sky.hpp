@@ -1,13 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
-#include "renderer/passes/view/refinement.hpp"
+#include "renderer/passes/sky/sky_patches.hpp"
 
 namespace candela {
 
@@ -15,21 +12,11 @@ namespace candela {
 struct Sky {
     ValueHandle<Environment> environment;
     ValueHandle<std::shared_ptr<const SkyPicture>> picture;  ///< of the environment; changes less often
+    ValueHandle<SplitSky> split;                             ///< of the picture
 };
 
-/// Adds node `sky` (CPU): reads the Environment.
-[[nodiscard]] Sky add_sky(FrameGraph& graph);
-
-/// The sky's patches in the form of VPLs: see place_sky.
-struct SkyPatches {
-    BufferHandle<gpu::Vpl> vpls;
-    ValueHandle<std::uint32_t> count;
-};
-
-/// Adds nodes `sky-split` (CPU: split_sky, when the picture changes) and `sky-patches` (CPU, then upload:
-/// place_sky; with refinement, another sample every frames_a_surfel_set sets).
-[[nodiscard]] SkyPatches add_sky_patches(FrameGraph& graph, const Gpu& gpu, const Sky& sky,
-                                         std::uint32_t count,
-                                         std::optional<ValueHandle<Refinement>> refinement);
+/// Adds nodes `sky` (CPU): reads the Environment, and `sky-split` (CPU: split_sky into about `count` patches,
+/// when the picture changes).
+[[nodiscard]] Sky add_sky(FrameGraph& graph, std::uint32_t count);
 
 }  // namespace candela

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -135,6 +137,57 @@ PatchLight light_of(const SkyGrid& grid, const SkyPatch& patch) {
     return sum;
 }
 
+/// Light of the cells in a cone around a unit direction.
+PatchLight light_in_cone(const SkyGrid& grid, glm::vec3 axis, float cosine) {
+    PatchLight sum;
+    for (const SkyGrid::Cell& cell : grid.cells) {
+        if (glm::dot(cell.moment, axis) > cosine * glm::length(cell.moment)) {
+            sum.light += cell.light;
+            sum.moment += cell.moment;
+        }
+    }
+    return sum;
+}
+
+/// Takes the surroundings of the brightest cell out of the grid if they are a sun: within a radius of 1
+/// degree lie a twentieth of `all` light, and most of what lies within 2 degrees.
+std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
+    constexpr float one_degree = 0.99984770F;  // its cosine
+    constexpr float two_degrees = 0.99939083F;
+    const auto brightest = std::ranges::max_element(
+        grid.cells, {}, [](const SkyGrid::Cell& cell) { return sum_of(cell.light); });
+    if (brightest->moment == glm::vec3(0.0F)) {
+        return std::nullopt;
+    }
+    const glm::vec3 axis = glm::normalize(brightest->moment);
+    const PatchLight sun = light_in_cone(grid, axis, one_degree);
+    const double light = sun.light.r + sun.light.g + sun.light.b;
+    const glm::dvec3 around = light_in_cone(grid, axis, two_degrees).light;
+    if (light < 0.05 * all || light < 0.8 * (around.r + around.g + around.b)) {
+        return std::nullopt;
+    }
+    for (SkyGrid::Cell& cell : grid.cells) {
+        if (glm::dot(cell.moment, axis) > one_degree * glm::length(cell.moment)) {
+            cell = {};
+        }
+    }
+    return SkySun{glm::vec3(glm::normalize(sun.moment)), glm::vec3(sun.light)};
+}
+
+std::vector<SkySun> take_suns(SkyGrid& grid) {
+    constexpr std::size_t most_suns = 4;
+    const glm::dvec3 light = light_of(grid, {glm::uvec2(0), grid.size}).light;
+    std::vector<SkySun> suns;
+    while (suns.size() < most_suns) {
+        const std::optional<SkySun> sun = take_sun(grid, light.r + light.g + light.b);
+        if (!sun) {
+            break;
+        }
+        suns.push_back(*sun);
+    }
+    return suns;
+}
+
 /// Width in azimuth, at its middle, and in polar angle; radians. 0 where it is one cell wide.
 glm::vec2 extent_of(const SkyGrid& grid, const SkyPatch& patch) {
     constexpr auto half_turn = static_cast<float>(pi);
@@ -198,12 +251,6 @@ glm::vec3 drawn_direction(const SkyGrid& grid, const SkyPatch& patch, glm::vec2 
     return glm::inverse(tilt()) * sky_direction((corner + glm::vec2(inside, u.y)) / glm::vec2(grid.size));
 }
 
-glm::vec3 rotated(glm::vec3 direction, float angle) {
-    const float c = std::cos(angle);
-    const float s = std::sin(angle);
-    return {c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x};
-}
-
 /// `light`: π times the irradiance on a surface that faces the patch.
 gpu::Vpl vpl_of(glm::vec3 direction, float half_width2, glm::vec3 light) {
     return {.position = direction,
@@ -222,10 +269,16 @@ gpu::Vpl vpl_of(glm::vec3 direction, float half_width2, glm::vec3 light) {
 
 }  // namespace
 
+glm::vec3 rotated_sky(glm::vec3 direction, float angle) {
+    const float c = std::cos(angle);
+    const float s = std::sin(angle);
+    return {c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x};
+}
+
 SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
     const SkyPicture white{2, 1, {glm::vec3(1.0F), glm::vec3(1.0F)}};
-    SplitSky sky{std::make_shared<const SkyGrid>(tilted(grid_of(picture == nullptr ? white : *picture))), {}};
-    const SkyGrid& grid = *sky.grid;
+    SkyGrid grid = tilted(grid_of(picture == nullptr ? white : *picture));
+    SplitSky sky{.suns = take_suns(grid), .grid = nullptr, .patches = {}};
     const auto less = [](const Candidate& a, const Candidate& b) { return a.need < b.need; };
     std::vector<Candidate> heap{candidate_of(grid, {glm::uvec2(0), grid.size})};
     while (heap.size() < count && heap.front().need > 0.0F) {
@@ -246,6 +299,7 @@ SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
     for (const Candidate& candidate : heap) {
         sky.patches.push_back(candidate.patch);
     }
+    sky.grid = std::make_shared<const SkyGrid>(std::move(grid));
     return sky;
 }
 
@@ -262,13 +316,13 @@ std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environm
             const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(vpls.size()), glm::dvec2(0.5));
             const glm::vec2 u(r2_point(sample, start));
             const glm::vec3 direction = drawn_direction(*sky.grid, patch, u);
-            vpls.push_back(vpl_of(rotated(direction, environment.rotation), 0.0F, facing));
+            vpls.push_back(vpl_of(rotated_sky(direction, environment.rotation), 0.0F, facing));
             continue;
         }
         // Share of the light that arrives from the mean direction. It is 1 - h²/3 for a small square of
         // directions of half width h.
         const double share = std::min(glm::length(moment) / weight, 1.0);
-        const glm::vec3 direction = rotated(glm::vec3(glm::normalize(moment)), environment.rotation);
+        const glm::vec3 direction = rotated_sky(glm::vec3(glm::normalize(moment)), environment.rotation);
         vpls.push_back(
             vpl_of(direction, static_cast<float>(3.0 * (1.0 - share)), static_cast<float>(share) * facing));
     }

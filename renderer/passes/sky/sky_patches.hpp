@@ -29,9 +29,16 @@ struct SkyPatch {
     glm::uvec2 last{0};
 };
 
-/// A sky, divided into patches.
+/// A small bright part of the sky.
+struct SkySun {
+    glm::vec3 direction{0.0F};  ///< towards it, unit, in the picture's directions
+    glm::vec3 light{0.0F};      ///< its radiance, integrated over its solid angle
+};
+
+/// A sky, divided into suns and patches.
 struct SplitSky {
-    std::shared_ptr<const SkyGrid> grid;
+    std::vector<SkySun> suns;
+    std::shared_ptr<const SkyGrid> grid;  ///< without the suns
     std::vector<SkyPatch> patches;
 };
 
@@ -41,11 +48,15 @@ struct SplitSky {
     return std::clamp(count / 2, 128U, 256U);
 }
 
-/// Divides a picture of the sky into at most `count` patches; null: a sky of radiance 1 everywhere. Splits,
-/// again and again, the patch with the largest product of light and width into halves of equal light (after
-/// Debevec, "A Median Cut Algorithm for Light Probe Sampling", 2005, who splits them all alike). A sun in the
-/// picture thus gets few patches, but its own.
+/// Divides a picture of the sky; null: a sky of radiance 1 everywhere. What is at most 2 degrees wide and has
+/// at least a twentieth of the light is a sun, which is to be shown as a directional light. The rest becomes
+/// at most `count` patches: the one with the largest product of light and width is split, again and again,
+/// into halves of equal light (after Debevec, "A Median Cut Algorithm for Light Probe Sampling", 2005, who
+/// splits them all alike).
 [[nodiscard]] SplitSky split_sky(const SkyPicture* picture, std::uint32_t count);
+
+/// A direction of the picture as it appears in the world, turned by Environment::rotation.
+[[nodiscard]] glm::vec3 rotated_sky(glm::vec3 direction, float rotation);
 
 /// The patches as VPLs (gpu::Vpl, IN_SKY). Sample 0: each at its mean direction, as wide as it is; else in
 /// one of its directions, drawn by radiance, so that the mean over all samples converges to the whole sky.

@@ -7,7 +7,7 @@
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
-#include "renderer/passes/sky/sky.hpp"
+#include "renderer/passes/sky/sky_vpls.hpp"
 #include "renderer/passes/surfels/surfels.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
 

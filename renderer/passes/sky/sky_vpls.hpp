@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/gpu_types.hpp"
+#include "renderer/passes/sky/sky.hpp"
+#include "renderer/passes/view/refinement.hpp"
+
+namespace candela {
+
+/// The sky's patches in the form of VPLs: see place_sky.
+struct SkyPatches {
+    BufferHandle<gpu::Vpl> vpls;
+    ValueHandle<std::uint32_t> count;
+};
+
+/// Adds node `sky-patches` (CPU, then upload): place_sky; with refinement, another sample every
+/// frames_a_surfel_set sets.
+[[nodiscard]] SkyPatches add_sky_patches(FrameGraph& graph, const Gpu& gpu, const Sky& sky,
+                                         std::optional<ValueHandle<Refinement>> refinement);
+
+}  // namespace candela
