@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "renderer/passes/sky/sky_patches.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
@@ -175,7 +176,60 @@ TEST_SUITE("sky") {
         std::size_t count = 0;
         for (std::size_t i = 0; i < picture.pixels.size(); ++i) count += different(i) ? 1 : 0;
         CHECK(mean(expected) > 0.0);
-        CHECK(count <= 2);  // pixels on the shadow's edge
+        CHECK(count <= 2);                           // pixels on the shadow's edge
+        CHECK(renderer.report().lights.count == 1);  // it is small enough for a sun
+    }
+
+    TEST_CASE(
+        "suns and patches of a sky together have its light, and only what is small and bright is a sun") {
+        constexpr std::uint32_t width = 720, height = 360;  // half a degree a texel
+        const glm::vec3 middle = sky_direction({0.3F, 0.4F});
+        const auto sky_with_disc = [&](float radius, float radiance) {
+            std::vector<glm::vec3> texels;
+            for (std::uint32_t i = 0; i < width * height; ++i) {
+                const glm::vec3 direction =
+                    sky_direction((glm::vec2(i % width, i / width) + 0.5F) / glm::vec2(width, height));
+                const bool inside = glm::dot(direction, middle) > std::cos(glm::radians(radius));
+                texels.push_back(inside ? glm::vec3(radiance, 0.5F * radiance, 1.0F) : glm::vec3(1.0F));
+            }
+            return SkyPicture{width, height, std::move(texels)};
+        };
+        struct Disc {
+            float radius;    // degrees
+            float radiance;  // that of the sky is 1
+            std::size_t suns;
+        };
+        // A disc of radius r has a solid angle of 9.6e-4 r² sr, the sky 12.6 sr.
+        for (const Disc& disc :
+             {Disc{0.8F, 1e4F, 1}, Disc{0.8F, 1.0F, 0}, Disc{0.8F, 100.0F, 0}, Disc{5.0F, 1e4F, 0}}) {
+            CAPTURE(disc.radius);
+            CAPTURE(disc.radiance);
+            const SkyPicture picture = sky_with_disc(disc.radius, disc.radiance);
+            const SplitSky split = split_sky(&picture, 128);
+            CHECK(split.suns.size() == disc.suns);
+            CHECK(split.patches.size() <= 128);
+            glm::dvec3 expected(0.0);
+            for (std::uint32_t y = 0; y < height; ++y) {
+                const double solid_angle =
+                    2.0 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
+                for (std::uint32_t x = 0; x < width; ++x)
+                    expected += solid_angle * glm::dvec3(picture.texels[y * width + x]);
+            }
+            glm::dvec3 found(0.0);
+            for (const SkySun& sun : split.suns) found += glm::dvec3(sun.light);
+            for (const SkyPatch& patch : split.patches) {
+                for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
+                    for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x)
+                        found += glm::dvec3(split.grid->cells[std::size_t{y} * split.grid->size.x + x].light);
+                }
+            }
+            // Sums of floats.
+            for (int i = 0; i < 3; ++i) CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-4));
+            for (const SkySun& sun : split.suns) {
+                CHECK(glm::distance(sun.direction, middle) < 0.005F);
+                CHECK(sun.light.r == doctest::Approx(2.0F * sun.light.g).epsilon(1e-3));
+            }
+        }
     }
 
     TEST_CASE_FIXTURE(SkyFixture,
