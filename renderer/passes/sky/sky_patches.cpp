@@ -159,7 +159,9 @@ std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
     if (brightest->moment == glm::vec3(0.0F)) {
         return std::nullopt;
     }
-    const glm::vec3 axis = glm::normalize(brightest->moment);
+    // The brightest cell may be at the sun's edge.
+    const glm::dvec3 near = light_in_cone(grid, glm::normalize(brightest->moment), two_degrees).moment;
+    const glm::vec3 axis(glm::normalize(near));
     const PatchLight sun = light_in_cone(grid, axis, one_degree);
     const double light = sun.light.r + sun.light.g + sun.light.b;
     const glm::dvec3 around = light_in_cone(grid, axis, two_degrees).light;
