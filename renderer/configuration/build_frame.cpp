@@ -73,18 +73,14 @@ ValueHandle<CameraView> add_camera(FrameGraph& graph, const Configuration& confi
 }
 
 /// The configured VPLs, if any is needed. The light of the sky and of surfaces that emit it is direct light,
-/// but VPLs carry it.
+/// but VPLs carry it. Where there is such light, the VPLs are the same whatever of it is shown, so that
+/// direct and indirect light add up to the total: which pixels evaluate which VPLs depends on all of them.
 struct WantedVpls {
     VplSettings settings;
     ShownLight shown;
+    std::uint32_t count = 0;  ///< about how many there will be
 
     [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
-    /// About how many VPLs there will be.
-    [[nodiscard]] std::uint32_t count(const FrameContents& contents) const {
-        const std::uint32_t on_emitters = contents.emitters ? emitting_surfels(settings.count) : 0;
-        const std::uint32_t in_sky = contents.sky ? sky_patches(settings.count) : 0;
-        return (shown.reflected ? settings.count : 0) + (shown.emitted ? on_emitters + in_sky : 0);
-    }
 };
 
 WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& contents) {
@@ -95,9 +91,12 @@ WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& 
     if (has_emission) {
         wanted.settings.placement = VplPlacement::surfels;
     }
-    if (!wanted.shown.reflected) {
+    if (!configuration.indirect) {
         wanted.settings.bounces = 0;
     }
+    wanted.count = configuration.indirect ? wanted.settings.count : 0;
+    wanted.count += contents.emitters ? emitting_surfels(wanted.settings.count) : 0;
+    wanted.count += contents.sky ? sky_patches(wanted.settings.count) : 0;
     return wanted;
 }
 
@@ -136,7 +135,7 @@ std::optional<VplLight> add_vpls(FrameGraph& graph, Gpu& gpu, const Configuratio
                    .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
                                                configuration.visibility, configuration.geometry_bound),
                    .emitters = contents.emitters,
-                   .sky = contents.sky && wanted.shown.emitted};
+                   .sky = contents.sky};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
         if (light.emitters || light.sky) {
@@ -230,7 +229,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const SceneData seen = add_view_cull(graph, gpu, lit.scene, camera);
 
     const WantedVpls wanted = wanted_vpls(configuration, contents);
-    const std::uint32_t vpl_count = wanted.count(contents);
+    const std::uint32_t vpl_count = wanted.count;
     const std::optional<VplLight> vpls = add_vpls(graph, gpu, configuration, wanted, contents, lit, frame);
     if (vpls) {
         frame.interleave = std::max(interleaving(configuration.interleave, vpl_count, extent.target),

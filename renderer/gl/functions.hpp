@@ -49,7 +49,6 @@
     X(GetNamedBufferSubData, GETNAMEDBUFFERSUBDATA) \
     X(BindBuffer, BINDBUFFER) \
     X(BindBufferBase, BINDBUFFERBASE) \
-    X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA) \
     /* textures */ \
     X(CreateTextures, CREATETEXTURES) \
     X(GenTextures, GENTEXTURES) \

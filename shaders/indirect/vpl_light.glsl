@@ -81,10 +81,10 @@ vec3 irradiance_from_patch(Vpl sky_patch, Surface surface) {
 
 // π times the irradiance from the VPL.
 vec3 irradiance_from_vpl(Vpl vpl, Surface surface) {
+    if (vpl.flux == vec3(0.0)) return vec3(0.0);
 #ifdef SKY
     if (vpl.map == IN_SKY) return irradiance_from_patch(vpl, surface);
 #endif
-    if (vpl.flux == vec3(0.0)) return vec3(0.0);
     vec3 unoccluded = unoccluded_from_cell(vpl, surface);
     return unoccluded == vec3(0.0) ? unoccluded : unoccluded * vpl_visibility(vpl, surface);
 }

@@ -1,5 +1,6 @@
 // Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the
-// part of the cell that it comes from. Also writes the flux of each cell point. One invocation a surfel.
+// part of the cell that it comes from. Also writes the flux of each cell point. The patches of the sky (SKY) follow
+// them. One invocation per surfel and patch.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
@@ -14,9 +15,31 @@ layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { Ce
 uniform float emitted_share;    // 1 if the VPLs show the light that surfaces emit, else 0
 uniform float reflected_share;  // and the light that they reflect
 
+#ifdef SKY
+
+layout(std430, binding = BINDING_SKY_PATCHES) readonly restrict buffer SkyPatches { Vpl sky_patches[]; };
+
+uniform uint sky_patch_count;
+
+void write_patch(uint index) {
+    if (index >= sky_patch_count) return;
+    Vpl vpl = sky_patches[index];
+    vpl.flux *= emitted_share;
+    vpls[surfel_count + index] = vpl;
+}
+
+#else
+
+void write_patch(uint index) {}
+
+#endif
+
 void main() {
     uint id = gl_GlobalInvocationID.x;
-    if (id >= surfel_count) return;
+    if (id >= surfel_count) {
+        write_patch(id - surfel_count);
+        return;
+    }
     Vpl vpl = surfels[id];
     CellLight cell = cells[id];
     for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {

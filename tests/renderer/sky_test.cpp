@@ -220,7 +220,7 @@ TEST_SUITE("sky") {
             for (const SkyPatch& patch : split.patches) {
                 for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
                     for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x)
-                        found += glm::dvec3(split.grid->cells[std::size_t{y} * split.grid->size.x + x].light);
+                        found += glm::dvec3(split.grid->at(x, y).light);
                 }
             }
             // Sums of floats.

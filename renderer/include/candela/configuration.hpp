@@ -11,14 +11,14 @@
 
 namespace candela {
 
-/// Which part of the light the picture shows.
+/// Which part of the light the picture shows. Direct light includes that of the sky and of surfaces that emit
+/// it, and the view of these.
 enum class Show : std::uint8_t { total, direct, indirect };
 
 /// How VPLs are placed. Names in JSON: paths, surfels.
 enum class VplPlacement : std::uint8_t {
-    /// Where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997). Paths do not start
-    /// at
-    /// surfaces that emit light: a world with such surfaces always has surfels.
+    /// Where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997). Paths start
+    /// neither at surfaces that emit light nor in the sky: a world with one of these always has surfels.
     paths,
     surfels  ///< evenly on all surfaces, independent of the lights; they gather their light
 };

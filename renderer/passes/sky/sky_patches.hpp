@@ -10,18 +10,9 @@
 
 #include <candela/scene/components.hpp>
 #include "renderer/gpu_types.hpp"
+#include "renderer/passes/sky/sky_grid.hpp"
 
 namespace candela {
-
-/// The light of a sky, summed over the cells of a grid of directions, in rows like a picture.
-struct SkyGrid {
-    struct Cell {
-        glm::vec3 light{0.0F};   ///< radiance, integrated over the cell's solid angle
-        glm::vec3 moment{0.0F};  ///< the sum of its channels times direction, integrated likewise
-    };
-    glm::uvec2 size{0};
-    std::vector<Cell> cells;
-};
 
 /// A rectangle of cells: `first` inclusive, `last` exclusive.
 struct SkyPatch {

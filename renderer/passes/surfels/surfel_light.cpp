@@ -133,6 +133,16 @@ void light_points(const gl::Functions& gl, const gl::Program& program, std::uint
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+/// For a pass that reads the sky, if there is one. Returns the names to define in its shader.
+std::vector<std::string> read_sky(Pass& pass, const std::optional<SkyPatches>& sky) {
+    if (!sky) {
+        return {};
+    }
+    pass.read(sky->count);
+    pass.read(sky->vpls, {Usage::storage, BINDING_SKY_PATCHES});
+    return {"SKY"};
+}
+
 /// The points of a cell share the patches of the sky.
 void set_sky(const gl::Program& program, std::uint32_t patches) {
     program.set("sky_patch_count", patches);
@@ -151,12 +161,7 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         pass.read(lights.table);
         pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
-        std::vector<std::string> defined;
-        if (sources.sky) {
-            pass.read(sources.sky->count);
-            pass.read(sources.sky->vpls, {Usage::storage, BINDING_SKY_PATCHES});
-            defined.emplace_back("SKY");
-        }
+        const std::vector<std::string> defined = read_sky(pass, sources.sky);
         const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"}, defined);
         const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const DirectLight out{
@@ -184,6 +189,25 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         });
         return out;
     });
+}
+
+/// Numbers of what becomes VPLs.
+struct VplSources {
+    std::uint32_t surfels = 0;
+    std::uint32_t sky = 0;
+};
+
+void write_vpls(const gl::Functions& gl, const gl::Program& program, const VplSources& count,
+                ShownLight shown) {
+    set_count(program, count.surfels);
+    if (count.sky > 0) {
+        program.set("sky_patch_count", count.sky);
+    }
+    program.set("emitted_share", shown.emitted ? 1.0F : 0.0F);
+    program.set("reflected_share", shown.reflected ? 1.0F : 0.0F);
+    program.use();
+    gl.DispatchCompute(groups(count.surfels + count.sky, SURFEL_GROUP), 1, 1);
+    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 VplPlan with_sky(VplPlan plan, std::uint32_t patches) {
@@ -267,7 +291,6 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
                       const SurfelSources& sources, std::uint32_t bounces, ShownLight shown) {
     const Surfels& surfels = visibility.surfels;
     const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, sources);
-    const std::optional<SkyPatches> sky = shown.emitted ? sources.sky : std::nullopt;
     return graph.add("surfel-bounce", [&](Pass& pass) {
         pass.read(surfels.plan);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
@@ -275,16 +298,13 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
-        if (sky) {
-            pass.read(sky->count);
-            pass.read(sky->vpls, Usage::copy);
-        }
+        const std::vector<std::string> defined = read_sky(pass, sources.sky);
         pass.parameter(bounces);
         pass.parameter(shown);
         const BouncePrograms programs{.first = &gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
                                       .further = &gpu.program({"surfels/surfel_bounce.comp"}),
                                       .account = &gpu.program({"surfels/surfel_account.comp"})};
-        const gl::Program& writer = gpu.program({"surfels/surfel_write.comp"});
+        const gl::Program& writer = gpu.program({"surfels/surfel_write.comp"}, defined);
         [[maybe_unused]] const auto lit_cells =
             pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
         const auto bounced = pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent),
@@ -297,25 +317,19 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
                                {Usage::storage, BINDING_FLUX_ACCOUNT}),
             .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
                                  {Usage::storage, BINDING_LIT_POINTS})};
-        pass.run([=, &gpu, &writer](Execution& run) {
+        pass.run([=, &gpu, &writer, sky = sources.sky](Execution& run) {
             const std::uint32_t count = count_of(run, surfels);
             const std::uint32_t sky_count = sky ? run.value(sky->count) : 0;
             run.reserve(bounced, std::max(2 * count, 1U));
             run.reserve(out.vpls, std::max(count + sky_count, 1U));
             run.reserve(*out.points, std::max(run.value(surfels.plan).point_count, 1U));
             run.set(out.plan, with_sky(run.value(surfels.plan), sky_count));
-            if (sky_count > 0) {
-                constexpr GLsizeiptr size = sizeof(gpu::Vpl);
-                gpu.gl().CopyNamedBufferSubData(run.object(sky->vpls), run.object(out.vpls), 0, count * size,
-                                                sky_count * size);
+            if (count > 0) {
+                gather_bounces(gpu.gl(), programs, count, bounces);
             }
-            if (count == 0) {
-                return;
+            if (count + sky_count > 0) {
+                write_vpls(gpu.gl(), writer, {count, sky_count}, shown);
             }
-            gather_bounces(gpu.gl(), programs, count, bounces);
-            writer.set("emitted_share", shown.emitted ? 1.0F : 0.0F);
-            writer.set("reflected_share", shown.reflected ? 1.0F : 0.0F);
-            dispatch_surfels(gpu.gl(), writer, count);
         });
         return out;
     });
