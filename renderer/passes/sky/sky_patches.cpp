@@ -13,8 +13,6 @@
 namespace candela {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// All light of a patch.
 struct PatchLight {
     glm::dvec3 light{0.0};
@@ -87,7 +85,7 @@ std::vector<SkySun> take_suns(SkyGrid& grid) {
 
 /// Width in azimuth, at its middle, and in polar angle; radians. 0 where it is one cell wide.
 glm::vec2 extent_of(const SkyGrid& grid, const SkyPatch& patch) {
-    constexpr auto half_turn = static_cast<float>(pi);
+    constexpr auto half_turn = std::numbers::pi_v<float>;
     const glm::vec2 cells(patch.last - patch.first);
     const glm::vec2 share = cells / glm::vec2(grid.size);
     const float middle =
@@ -208,7 +206,7 @@ std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environm
         if (weight <= 0.0) {
             continue;
         }
-        const glm::vec3 facing = environment.radiance * glm::vec3(pi * light);
+        const glm::vec3 facing = environment.radiance * glm::vec3(std::numbers::pi * light);
         if (sample > 0) {
             const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(vpls.size()), glm::dvec2(0.5));
             const glm::vec2 u(r2_point(sample, start));
