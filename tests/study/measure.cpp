@@ -58,8 +58,8 @@ struct Truth {
     Picture total;
     Mask hit;
     Mask off_edges;  ///< the pixels of `hit` away from the edges of shadows and silhouettes
-    /// Surfaces emit light: VPLs carry a part of the direct light.
-    bool emitters = false;
+    /// Surfaces emit light, or there is a sky: VPLs carry a part of the direct light.
+    bool emission = false;
 };
 
 Truth truth_of(Reference reference) {
@@ -70,7 +70,7 @@ Truth truth_of(Reference reference) {
                 .total = {},
                 .hit = std::move(estimate.hit),
                 .off_edges = {},
-                .emitters = false};
+                .emission = false};
     truth.total = sum(truth.direct, truth.indirect);
     truth.off_edges = truth.hit;
     for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {
@@ -88,10 +88,10 @@ Picture render(Bench& bench, Configuration configuration, Show show) {
 }
 
 /// Only direct light; settings that it does not depend on have their defaults.
-Configuration direct_part(Configuration configuration, bool emitters) {
+Configuration direct_part(Configuration configuration, bool emission) {
     configuration.show = Show::direct;
     configuration.indirect = false;
-    configuration.vpls = {.count = emitters ? configuration.vpls.count : VplSettings{}.count};
+    configuration.vpls = {.count = emission ? configuration.vpls.count : VplSettings{}.count};
     configuration.visibility = {};
     configuration.refinement = {};
     return configuration;
@@ -122,14 +122,14 @@ DirectLight render_direct(Bench& bench, const Configuration& direct_only) {
     return light;
 }
 
-/// Renders direct light once per path and kind of shadows, as it does not depend on VPLs; with emitters also
+/// Renders direct light once per path and kind of shadows, as it does not depend on VPLs; with emission also
 /// once per number of VPLs.
 class DirectLights {
  public:
-    explicit DirectLights(bool emitters) : emitters_(emitters) {}
+    explicit DirectLights(bool emission) : emission_(emission) {}
 
     const DirectLight& of(const Configuration& configuration, const std::function<Bench()>& make_bench) {
-        const Configuration key = direct_part(configuration, emitters_);
+        const Configuration key = direct_part(configuration, emission_);
         const auto known =
             std::find_if(known_.begin(), known_.end(), [&](const auto& each) { return each.first == key; });
         if (known != known_.end()) {
@@ -140,7 +140,7 @@ class DirectLights {
     }
 
  private:
-    bool emitters_;
+    bool emission_;
     std::deque<std::pair<Configuration, DirectLight>> known_;
 };
 
@@ -153,14 +153,14 @@ struct Seeds {
 };
 
 /// Direct light does not depend on the seed, and the total is the sum, so one frame per seed is enough. With
-/// emitters it takes two: which pixels evaluate which VPLs depends on what is shown.
+/// emission it takes two: without indirect light there are fewer VPLs, and other pixels evaluate them.
 Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector<std::uint32_t>& seeds,
                     const Picture& direct, const Truth& truth) {
     Seeds result;
     for (const std::uint32_t seed : seeds) {
         configuration.vpls.seed = seed;
         const Picture indirect = render(bench, configuration, Show::indirect);
-        Picture total = truth.emitters ? render(bench, configuration, Show::total) : sum(direct, indirect);
+        Picture total = truth.emission ? render(bench, configuration, Show::total) : sum(direct, indirect);
         result.indirect.push_back(measure(indirect, truth.indirect, truth.hit));
         result.total.push_back(measure(total, truth.total, truth.hit));
         result.flip.push_back(flip(total, truth.total, truth.hit).mean);
@@ -308,14 +308,15 @@ int measure(const MeasureStudy& study) {
     const Reference reference = read_reference_of(study.scene, study.reference);
     const sandbox::Scene scene = sandbox::load_scene(study.scene);
     Truth truth = truth_of(reference);
-    truth.emitters = contents_of(scene.world).emitters;
+    const FrameContents contents = contents_of(scene.world);
+    truth.emission = contents.emitters || contents.sky;
     const auto context = HeadlessContext::create(study.context);
     context->make_current();
     Darkroom darkroom(context->get_proc(), reference.request.size, study.pictures);
     darkroom.develop("reference", truth.total);
     const auto fresh_bench = [&] { return Bench(context->get_proc(), scene.world, reference.request.size); };
 
-    DirectLights direct_lights(truth.emitters);
+    DirectLights direct_lights(truth.emission);
     // Each point has its own renderer, so that its memory does not include leftovers of another point.
     std::erase_if(points, [&](const Point& point) {
         return !attempt(point, [&] {
