@@ -6,6 +6,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <candela/scene/scene_error.hpp>
 

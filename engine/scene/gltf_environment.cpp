@@ -32,8 +32,7 @@ std::optional<Environment> read_environment(const tinygltf::Model& model,
     const tinygltf::Value& source = found->second;
     Environment environment{.radiance = glm::vec3(1.0F), .picture = nullptr};
     for (int i = 0; i < 3 && source.Has("radiance"); ++i) {
-        environment.radiance[i] =
-            static_cast<float>(source.Get("radiance").Get(static_cast<std::size_t>(i)).GetNumberAsDouble());
+        environment.radiance[i] = static_cast<float>(source.Get("radiance").Get(i).GetNumberAsDouble());
     }
     if (source.Has("rotation")) {
         environment.rotation = static_cast<float>(source.Get("rotation").GetNumberAsDouble());

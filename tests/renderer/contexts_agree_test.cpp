@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/device_of.hpp"
-#include "tests/renderer/scene_builder.hpp"
+#include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
 
@@ -37,7 +37,8 @@ struct Shown {
     std::vector<Picture> pictures;
 };
 
-/// The Cornell box in a context of that kind. Then the light moves, so that VPLs are updated.
+/// The Cornell box in a context of that kind, with its light moved in a second frame, so that VPLs are
+/// updated; then scenes that surfaces and the sky light.
 Shown show(ContextKind kind) {
     const auto context = HeadlessContext::create(kind, {.debug = true});
     context->make_current();
@@ -52,6 +53,19 @@ Shown show(ContextKind kind) {
             renderer.render(scene.world, scene.camera, target.target());
             shown.pictures.push_back(target.read());
             scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.2F; });
+        }
+    }
+    // Light of surfaces and of the sky.
+    for (const char* const name : {"lamp", "court"}) {
+        const Scene scene = shipped_scene(name);
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::tiled_deferred}) {
+            Configuration configuration = linear_configuration(path);
+            configuration.vpls.count = 24;
+            configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+            REQUIRE(renderer.configure(configuration).empty());
+            renderer.invalidate();
+            renderer.render(scene.world, scene.camera, target.target());
+            shown.pictures.push_back(target.read());
         }
     }
     for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {

@@ -87,6 +87,29 @@ TEST_SUITE("lifetime") {
         if (!is_sanitized) CHECK(resident_bytes() < memory_before + (8U << 20U));
     }
 
+    TEST_CASE_FIXTURE(RenderFixture, "a sky, a sun and a lamp that come and go leak no objects") {
+        Scene scene = cornell_box();
+        configure(linear_configuration());
+        const auto picture = std::make_shared<const SkyPicture>(
+            SkyPicture{64, 32, std::vector(std::size_t{64} * 32, glm::vec3(0.5F))});
+        const auto come_and_go = [&] {
+            const Entity sky = add(scene.world, Environment{.radiance = glm::vec3(1.0F), .picture = picture});
+            const Entity sun = add(scene.world, looking({0, 1, 3}, {0, 0, 0}), DirectionalLight{});
+            const Entity lamp = add(scene.world, upside_down_at({0.0F, 1.5F, 0.0F}),
+                                    MeshInstance{square(0.2F, emitter(glm::vec3(1.0F)))});
+            static_cast<void>(render(scene, size));
+            for (const Entity entity : {sky, sun, lamp}) {
+                scene.world.destroy(entity);
+                static_cast<void>(render(scene, size));
+            }
+            static_cast<void>(renderer.take_frames(true));
+        };
+        come_and_go();  // fills the free pool
+        const gl::ObjectCounts before = device_of(renderer).live();
+        for (int i = 0; i < 20; ++i) come_and_go();
+        CHECK(device_of(renderer).live() == before);
+    }
+
     TEST_CASE_FIXTURE(RenderFixture, "removing a mesh frees its texture, and nothing leaks") {
         Scene scene = cornell_box();
         Configuration unlimited = linear_configuration();
