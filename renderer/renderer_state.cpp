@@ -150,8 +150,8 @@ void Renderer::State::render(const World& world, Entity camera, const Target& ta
     }
     runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
     runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
-    // The mean starts over after a frame that threw and for another world.
-    if (std::exchange(world_, nullptr) != &world) {
+    // The mean starts over after a frame that threw.
+    if (!std::exchange(completed_, false)) {
         ++refinement_clock_.epoch;
         refine_ = false;
     }
@@ -166,7 +166,7 @@ void Renderer::State::render(const World& world, Entity camera, const Target& ta
         const TimedFrame timed(backend_.timer(), index);
         last_passes_ = runtime_.run(world, Timing::on).passes;
     }
-    world_ = &world;
+    completed_ = true;
     if (frame_.refinement) {
         const std::uint32_t sets = runtime_.value(*frame_.refinement).set + 1;
         constexpr std::uint32_t samples_of_direct_light = 64;
@@ -194,7 +194,7 @@ double Renderer::State::budget_ms() const {
 Quality Renderer::State::quality_now(const World& world, const ViewRequest& request) {
     constexpr std::chrono::milliseconds settled(250);
     const Clock::time_point now = Clock::now();
-    const bool moved = world_ != &world || world.revision() != last_revision_ || request != last_request_;
+    const bool moved = world.revision() != last_revision_ || request != last_request_;
     last_revision_ = world.revision();
     last_request_ = request;
     if (moved) {
@@ -209,7 +209,7 @@ Quality Renderer::State::quality_now(const World& world, const ViewRequest& requ
 FrameContents Renderer::State::contents_now(const World& world) {
     const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>(),
                                world.revision<Environment>()};
-    if (world_ == &world && revisions == contents_revisions_) {
+    if (revisions == contents_revisions_) {
         return contents_;
     }
     contents_revisions_ = revisions;
@@ -235,7 +235,7 @@ void Renderer::State::set_refinement_clock() {
 void Renderer::State::invalidate() {
     runtime_.invalidate();
     ++epoch_;
-    world_ = nullptr;
+    completed_ = false;
 }
 
 void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {

@@ -70,8 +70,8 @@ class Renderer::State {
     FrameHandles frame_;
     std::uint64_t epoch_ = 0;  // incremented by `invalidate`: cached scene data is void
     RefinementClock refinement_clock_;
-    bool refine_ = false;           // whether the next frame adds another sample to the mean
-    const World* world_ = nullptr;  // world of the last frame; null if it threw or after `invalidate`
+    bool refine_ = false;     // whether the next frame adds another sample to the mean
+    bool completed_ = false;  // whether the last frame did not throw, nor was followed by `invalidate`
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
     std::deque<PendingFrame> pending_;

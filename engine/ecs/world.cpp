@@ -1,5 +1,7 @@
 #include <candela/ecs/world.hpp>
 
+#include <atomic>
+
 #include <fmt/format.h>
 
 namespace candela {
@@ -17,6 +19,11 @@ EntityError EntityError::not_alive(Entity entity, std::string_view component) {
 
 EntityError EntityError::lacks(Entity entity, std::string_view component) {
     return EntityError(fmt::format("{} has no {}", to_string(entity), component));
+}
+
+Tick World::next_tick() {
+    static std::atomic<Tick> last{0};
+    return ++last;
 }
 
 World::World(const World& other)
@@ -43,11 +50,12 @@ Entity World::create() {
 
 void World::destroy(Entity entity) {
     require_alive(entity, "components to destroy");
-    bool changed = false;
+    const Tick now = next_tick();
     for (auto& [type, pool] : pools_) {
-        changed |= pool->remove(entity, tick_ + 1);
+        if (pool->remove(entity, now)) {
+            tick_ = now;
+        }
     }
-    tick_ += changed ? 1 : 0;
     --live_;
     // An index whose generations are used up is not reused: an old handle could become valid again.
     if (++generations_[entity.index] != std::numeric_limits<std::uint32_t>::max() - 1) {

@@ -47,7 +47,6 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
         throw GraphError("there is no frame graph");
     }
     require_imports();
-    notice_world(world);
     mark(world, 0);
     // Set when a pass that might have changed its results did not: its readers may be marked without need.
     bool marked_too_many = false;
@@ -100,20 +99,6 @@ void GraphRuntime::require_imports() const {
         const std::string_view lack =
             resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
         throw GraphError(fmt::format("imported {} '{}' {}", to_string(resource.kind), resource.name, lack));
-    }
-}
-
-/// If the world is not the one of the last run, makes all passes that read components dirty: the revisions of
-/// different worlds cannot be compared.
-void GraphRuntime::notice_world(const World& world) {
-    if (world_ == &world) {
-        return;
-    }
-    world_ = &world;
-    for (detail::Step& step : state_.steps) {
-        for (detail::Revision& revision : step.revisions) {
-            revision.tick = std::numeric_limits<Tick>::max();
-        }
     }
 }
 

@@ -54,9 +54,22 @@ TEST_CASE_FIXTURE(
         world.set(entity, Light{2});
         CHECK(run() == "gather show");
     }
-    SUBCASE("a copy of the world counts as changed") {
-        const World copy = world;
-        CHECK(ran(runtime.run(copy)) == "gather show");
+    SUBCASE("a copy of the world is the same until one of them changes") {
+        World copy = world;
+        CHECK(ran(runtime.run(copy)) == "show");
+        copy.set(entity, Light{5});
+        CHECK(ran(runtime.run(copy)) == "gather light show");
+        CHECK(run() == "gather light show");
+    }
+    SUBCASE("another world in the same place is another world") {
+        World other;
+        REQUIRE(other.create() == entity);
+        other.set(entity, Light{1});
+        other.set(entity, Name{"lamp"});
+        other.set(entity, Light{7});  // as many changes as the first world has seen
+        world = other;
+        CHECK(run() == "gather light show");
+        CHECK(runtime.value(power) == 7);
     }
     SUBCASE("all passes run after invalidate()") {
         runtime.invalidate();

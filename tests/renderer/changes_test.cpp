@@ -100,6 +100,30 @@ TEST_SUITE("changes") {
         }
     }
 
+    TEST_CASE_FIXTURE(RenderFixture, "another world in the place of the last one is another world") {
+        Configuration configuration = linear_configuration();
+        configuration.visibility.method = VplVisibility::maps;
+        configuration.refinement.enabled = true;
+        for (const VplPlacement placement : {VplPlacement::surfels, VplPlacement::paths}) {
+            configuration.vpls = {.placement = placement, .count = 32};
+            configure(configuration);
+            // Built by the same changes, so that they have been changed equally often.
+            const auto made = [](float height, glm::vec3 albedo) {
+                Scene scene = ground();
+                scene.world.set(scene.light, at({0.0F, height, 0.0F}));
+                scene.world.set(scene.light, PointLight{});
+                add(scene.world, at({0.2F, 0.3F, 0.0F}), MeshInstance{square(0.2F, diffuse(albedo, true))});
+                return scene;
+            };
+            Scene scene = made(1.0F, {0.9F, 0.1F, 0.1F});
+            static_cast<void>(render(scene, size));
+            for (const float height : {0.6F, 1.5F, 1.0F}) {
+                scene = made(height, {0.1F, 0.1F, height / 2.0F});
+                CHECK(render(scene, size) == fresh_picture(scene, size));
+            }
+        }
+    }
+
     TEST_CASE_FIXTURE(RenderFixture, "another seed gives other VPLs, the same seed gives the same ones") {
         const Scene scene = cornell_box();
         Configuration configuration = linear_configuration();

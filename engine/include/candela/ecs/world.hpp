@@ -19,7 +19,9 @@ namespace candela {
 
 /// Entities and their components, with the tick of the last change of each component of each entity and of
 /// each pool (all components of one type). A value type: copies are independent and keep entities and ticks.
-/// Not synchronised. A world that was moved from may only be assigned to or destroyed.
+/// No two changes in a process have the same tick, so pools with equal revisions have equal content, also in
+/// different worlds. Not synchronised, but different worlds may be changed by different threads. A world that
+/// was moved from may only be assigned to or destroyed.
 ///
 /// All functions that take an Entity, except `alive`, throw EntityError if the entity is not alive.
 class World {
@@ -88,6 +90,7 @@ class World {
 
  private:
     void require_alive(Entity entity, std::string_view component) const;
+    [[nodiscard]] static Tick next_tick();
 
     template <Component C>
     [[nodiscard]] const Pool<C>* pool() const;
@@ -114,8 +117,9 @@ void World::set(Entity entity, C value) {
     if (!pool) {
         pool = std::make_unique<Pool<C>>();
     }
-    if (static_cast<Pool<C>&>(*pool).set(entity, std::move(value), tick_ + 1)) {
-        ++tick_;
+    const Tick now = next_tick();
+    if (static_cast<Pool<C>&>(*pool).set(entity, std::move(value), now)) {
+        tick_ = now;
     }
 }
 
@@ -123,8 +127,9 @@ template <Component C>
 void World::remove(Entity entity) {
     require_alive(entity, component_name<C>());
     const auto pool = pools_.find(typeid(C));
-    if (pool != pools_.end() && pool->second->remove(entity, tick_ + 1)) {
-        ++tick_;
+    const Tick now = next_tick();
+    if (pool != pools_.end() && pool->second->remove(entity, now)) {
+        tick_ = now;
     }
 }
 

@@ -177,8 +177,8 @@ class GraphRuntime {
     /// pass uses was not bound or set. Exceptions from a pass pass through: that pass then counts as not
     /// having run, and the next `run` runs it again; passes that had completed keep their results.
     ///
-    /// Changes of the world are detected by its address and the revisions of its component pools. Call
-    /// `invalidate` after assigning another world to the same object.
+    /// Changes of the world, and another world in its place, are detected by the revisions of the component
+    /// pools.
     const FrameRecord& run(const World& world, Timing timing = Timing::off);
 
     /// Turns recording for `verify` on or off; initially off. While on, the outputs of a pass are read back
@@ -230,7 +230,6 @@ class GraphRuntime {
  private:
     friend Execution;
     void require_imports() const;
-    void notice_world(const World& world);
     void mark(const World& world, std::uint32_t from);
     void mark_dirty(const World& world, std::uint32_t from);
     [[nodiscard]] bool mark_missing(std::uint32_t from);
@@ -268,7 +267,6 @@ class GraphRuntime {
     FrameRecord record_;
     std::uint64_t frame_ = 0;
     std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
-    const World* world_ = nullptr;   // of the last run
     detail::Stamp clock_ = 0;
     Barrier pending_barriers_ = Barrier::none;  // pending: planned for passes that were skipped
     bool cut_ = false;
