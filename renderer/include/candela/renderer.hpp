@@ -61,8 +61,8 @@ class Renderer {
     /// did not finish.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 
-    /// Makes the next frame compute everything again. Not needed for another world, wherever it is: worlds are
-    /// told apart by the revisions of their component pools.
+    /// Makes the next frame compute everything again. Not needed for another world, wherever it is: worlds
+    /// are told apart by the revisions of their component pools.
     void invalidate();
 
     /// For tests. Runs the passes of every frame a second time where that is possible, including passes that
