@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/renderer.hpp>
 #include "renderer/configuration/build_frame.hpp"
@@ -18,7 +19,7 @@
 namespace candela {
 
 /// What a Renderer is made of. Its functions are those of the same names there.
-class Renderer::State {
+class CANDELA_PRIVATE Renderer::State {
  public:
     State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory);
 

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <candela/version.hpp>
 #include "sandbox/output_file.hpp"
 
 namespace candela::sandbox {

@@ -8,6 +8,8 @@
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
 
+#include <candela/version.hpp>
+
 namespace candela::sandbox {
 
 namespace {

@@ -12,7 +12,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
-#include "engine/scene/decompose.hpp"
+#include "engine/import/decompose.hpp"
 
 using namespace candela;
 

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+#include <candela/version.hpp>
+
 namespace candela::sandbox {
 
 namespace {

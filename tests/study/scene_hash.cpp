@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/scene/gltf_document.hpp"
+#include "engine/import/gltf_document.hpp"
 
 namespace candela::study {
 namespace {

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <candela/api.hpp>
+
 namespace candela {
 
 /// Which part of the light the picture shows. Direct light includes that of the sky and of surfaces that emit
@@ -179,13 +181,14 @@ struct ConfigurationResult {
 
 /// Reads a JSON object. Members that are left out keep the values of `base`. Unknown members, wrong types and
 /// values out of range are errors; each message starts with the member's path: "vpls.count: ...".
-[[nodiscard]] ConfigurationResult read_configuration(std::string_view json, const Configuration& base = {});
+[[nodiscard]] CANDELA_API ConfigurationResult read_configuration(std::string_view json,
+                                                                 const Configuration& base = {});
 
 /// All members as a JSON object; `read_configuration` reads the same value back.
-[[nodiscard]] std::string write_configuration(const Configuration& configuration);
+[[nodiscard]] CANDELA_API std::string write_configuration(const Configuration& configuration);
 
 /// The errors in a configuration's values, one per string; empty if it is valid.
-[[nodiscard]] std::vector<std::string> validate(const Configuration& configuration);
+[[nodiscard]] CANDELA_API std::vector<std::string> validate(const Configuration& configuration);
 
 /// A configuration that the app offers by name. The strings have static storage duration.
 struct NamedConfiguration {
@@ -193,13 +196,13 @@ struct NamedConfiguration {
     std::string_view description;
     Configuration configuration;
 };
-[[nodiscard]] std::span<const NamedConfiguration> named_configurations();
+[[nodiscard]] CANDELA_API std::span<const NamedConfiguration> named_configurations();
 
 /// Names as in JSON and on the command line; static storage duration.
-[[nodiscard]] std::string_view to_string(ShadingPath path);
-[[nodiscard]] std::string_view to_string(Show show);
-[[nodiscard]] std::string_view to_string(VplVisibility visibility);
-[[nodiscard]] std::string_view to_string(VplPlacement placement);
-[[nodiscard]] std::string_view to_string(Interleave interleave);
+[[nodiscard]] CANDELA_API std::string_view to_string(ShadingPath path);
+[[nodiscard]] CANDELA_API std::string_view to_string(Show show);
+[[nodiscard]] CANDELA_API std::string_view to_string(VplVisibility visibility);
+[[nodiscard]] CANDELA_API std::string_view to_string(VplPlacement placement);
+[[nodiscard]] CANDELA_API std::string_view to_string(Interleave interleave);
 
 }  // namespace candela

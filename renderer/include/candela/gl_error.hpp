@@ -2,16 +2,18 @@
 
 #include <stdexcept>
 
+#include <candela/api.hpp>
+
 namespace candela::gl {
 
 /// Something that the driver lacks or refuses. The message names the object and the error.
-struct GlError : std::runtime_error {
+struct CANDELA_API GlError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 /// A shader that cannot be found, assembled, compiled or linked. Lines of the message that refer to a known
 /// source line start with "shaders/FILE:LINE: ".
-struct ProgramError : GlError {
+struct CANDELA_API ProgramError : GlError {
     using GlError::GlError;
 };
 

@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <candela/api.hpp>
 #include <candela/configuration.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/gl_error.hpp>
@@ -34,7 +35,7 @@ enum class GraphFormat : std::uint8_t { text, dot, json };
 
 /// Renders worlds. An instance belongs to one GL context, which must be current in every call, including the
 /// destructor. Instances share nothing. Not synchronised.
-class Renderer {
+class CANDELA_API Renderer {
  public:
     /// `get_proc` returns the addresses of GL functions, as glfwGetProcAddress does; it is called only here.
     /// The shaders are embedded in the library; `shader_directory`, if given, is read in their place. Throws

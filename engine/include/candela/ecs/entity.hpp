@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include <candela/api.hpp>
+
 namespace candela {
 
 /// Identifies one entity of one World. A plain value that owns nothing. It is safe to keep after the entity
@@ -25,11 +27,11 @@ struct Entity {
 };
 
 /// "the null entity" or "entity 3 (generation 5)".
-[[nodiscard]] std::string to_string(Entity entity);
+[[nodiscard]] CANDELA_API std::string to_string(Entity entity);
 
 /// Thrown for use of an entity that is not alive, or of a component that it does not have. The message names
 /// the entity and the component.
-class EntityError : public std::runtime_error {
+class CANDELA_API EntityError : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/ecs/component.hpp>
 #include <candela/ecs/entity.hpp>
 
@@ -17,7 +18,7 @@ namespace candela {
 using Tick = std::uint64_t;
 
 /// The operations on a pool that do not depend on its component type.
-class PoolBase {
+class CANDELA_API PoolBase {
  public:
     PoolBase() = default;
     PoolBase& operator=(const PoolBase&) = delete;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/ecs/component.hpp>
 #include <candela/ecs/entity.hpp>
 #include <candela/ecs/pool.hpp>
@@ -24,7 +25,7 @@ namespace candela {
 /// was moved from may only be assigned to or destroyed.
 ///
 /// All functions that take an Entity, except `alive`, throw EntityError if the entity is not alive.
-class World {
+class CANDELA_API World {
  public:
     World() = default;
     World(const World& other);

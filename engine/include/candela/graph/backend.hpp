@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include <candela/api.hpp>
 #include <candela/graph/resources.hpp>
 
 namespace candela {
@@ -34,7 +35,7 @@ enum class Barrier : std::uint32_t {
 }
 inline constexpr auto all_barriers = static_cast<Barrier>((1U << 10U) - 1);
 /// For example "texture fetch + storage"; "none" if no bit is set.
-[[nodiscard]] std::string to_string(Barrier bits);
+[[nodiscard]] CANDELA_API std::string to_string(Barrier bits);
 
 /// Attachments of a pass. All have the same size.
 struct PassTargets {
@@ -45,7 +46,7 @@ struct PassTargets {
 
 /// The graphics API as the frame graph sees it; the host implements it. A GraphRuntime destroys every object
 /// that it has created. The create functions may throw; destroy_* and end_pass must not.
-class Backend {
+class CANDELA_API Backend {
  public:
     virtual ~Backend() = default;
     /// Creates storage, whose content may be undefined. Must not return 0. `name` is for debugging.

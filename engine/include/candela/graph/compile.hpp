@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/graph/backend.hpp>
 #include <candela/graph/errors.hpp>
 #include <candela/graph/frame_graph.hpp>
@@ -72,7 +73,7 @@ struct CompileOptions {
 };
 
 /// Either a graph, or the errors that prevented compilation.
-struct CompileResult {
+struct CANDELA_API CompileResult {
     std::optional<CompiledGraph> graph;
     std::vector<CompileError> errors;
 
@@ -87,6 +88,6 @@ struct CompileResult {
 ///
 /// A pass is kept if it has side effects, if it writes an imported resource, or if a kept pass reads its
 /// result, modifies it in place or reads its history. All other passes are culled.
-[[nodiscard]] CompileResult compile(FrameGraph&& graph, CompileOptions options = {});
+[[nodiscard]] CANDELA_API CompileResult compile(FrameGraph&& graph, CompileOptions options = {});
 
 }  // namespace candela

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <candela/api.hpp>
+
 namespace candela {
 
 enum class ErrorCode : std::uint8_t {
@@ -28,7 +30,7 @@ struct CompileError {
 
 /// Thrown for misuse of a GraphRuntime or an Execution, for a failed verification, and by CompileResult::take
 /// if the graph did not compile.
-class GraphError : public std::runtime_error {
+class CANDELA_API GraphError : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;
 };

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/graph/backend.hpp>
 #include <candela/graph/compile.hpp>
@@ -25,7 +26,7 @@ class GraphRuntime;
 
 /// The interface of a running pass; valid only during its function. Every access to a resource that the pass
 /// has not declared throws GraphError, which names the pass and the resource.
-class Execution {
+class CANDELA_API Execution {
  public:
     /// The world given to GraphRuntime::run. Read only components that the pass has declared: an undeclared
     /// read is not checked here, and the pass would miss changes.
@@ -129,7 +130,7 @@ class Execution {
 /// - it has a side effect or writes an imported resource, or
 /// - a pass that runs needs one of its results, and that result has been overwritten.
 /// Otherwise its previous results stay in use.
-class GraphRuntime {
+class CANDELA_API GraphRuntime {
  public:
     /// Keeps a reference: the back end must outlive the runtime.
     explicit GraphRuntime(Backend& backend) : backend_(backend) {}

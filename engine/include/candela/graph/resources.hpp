@@ -6,6 +6,8 @@
 
 #include <glm/vec2.hpp>
 
+#include <candela/api.hpp>
+
 namespace candela {
 
 /// Names one version of one resource of one graph. Declaring a write gives the handle of the next version;
@@ -28,7 +30,7 @@ template <class T>
 struct ValueHandle : ResourceHandle {};
 
 enum class ResourceKind : std::uint8_t { texture, buffer, value };
-[[nodiscard]] std::string_view to_string(ResourceKind kind);
+[[nodiscard]] CANDELA_API std::string_view to_string(ResourceKind kind);
 
 enum class Format : std::uint8_t {
     rgba8,
@@ -42,12 +44,12 @@ enum class Format : std::uint8_t {
     r32ui,
     depth32f
 };
-[[nodiscard]] bool is_depth(Format format);
-[[nodiscard]] std::uint32_t bytes_per_texel(Format format);
-[[nodiscard]] std::string_view to_string(Format format);
+[[nodiscard]] CANDELA_API bool is_depth(Format format);
+[[nodiscard]] CANDELA_API std::uint32_t bytes_per_texel(Format format);
+[[nodiscard]] CANDELA_API std::string_view to_string(Format format);
 
 enum class TextureShape : std::uint8_t { flat, array, cube_array };
-[[nodiscard]] std::string_view to_string(TextureShape shape);
+[[nodiscard]] CANDELA_API std::string_view to_string(TextureShape shape);
 
 /// Storage of a texture. `layers` counts faces for cube arrays (a multiple of 6).
 struct TextureDesc {
@@ -59,7 +61,7 @@ struct TextureDesc {
     bool operator==(const TextureDesc&) const = default;
 };
 /// Bytes of all layers and mip levels, without driver overhead.
-[[nodiscard]] std::uint64_t byte_size(const TextureDesc& desc);
+[[nodiscard]] CANDELA_API std::uint64_t byte_size(const TextureDesc& desc);
 
 /// One mip level of all layers of a texture, or one layer of one mip level.
 struct TexturePart {
@@ -70,9 +72,9 @@ struct TexturePart {
     bool operator==(const TexturePart&) const = default;
 };
 /// The part as a texture of its own, with one mip level; a single layer is flat.
-[[nodiscard]] TextureDesc part_desc(const TextureDesc& whole, TexturePart part);
+[[nodiscard]] CANDELA_API TextureDesc part_desc(const TextureDesc& whole, TexturePart part);
 /// For example "mip 2", "layer 3", "layer 3 mip 1".
-[[nodiscard]] std::string to_string(TexturePart part);
+[[nodiscard]] CANDELA_API std::string to_string(TexturePart part);
 
 /// Storage of a buffer with `count` elements, `stride` bytes apart.
 struct BufferDesc {
@@ -80,7 +82,7 @@ struct BufferDesc {
     std::uint32_t stride = 1;
     bool operator==(const BufferDesc&) const = default;
 };
-[[nodiscard]] std::uint64_t byte_size(const BufferDesc& desc);
+[[nodiscard]] CANDELA_API std::uint64_t byte_size(const BufferDesc& desc);
 
 /// How a pass accesses a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
 enum class Usage : std::uint8_t {
@@ -96,7 +98,7 @@ enum class Usage : std::uint8_t {
     layer_target,   ///< write: the pass attaches single layers itself
     copy            ///< read or write: copies, clears and uploads by API commands, not by shaders
 };
-[[nodiscard]] std::string_view to_string(Usage usage);
+[[nodiscard]] CANDELA_API std::string_view to_string(Usage usage);
 
 /// An access and the place where shaders find the resource. The back end binds it there before the pass runs.
 struct Binding {
@@ -122,6 +124,6 @@ enum class Lifetime : std::uint8_t {
     /// Owned by the host, which provides it with GraphRuntime::bind or set.
     imported
 };
-[[nodiscard]] std::string_view to_string(Lifetime lifetime);
+[[nodiscard]] CANDELA_API std::string_view to_string(Lifetime lifetime);
 
 }  // namespace candela

@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
 
 namespace candela {
@@ -162,13 +163,13 @@ struct Environment {
 };
 
 /// The first environment in the world's view whose radiance is not zero; radiance 0 if there is none.
-[[nodiscard]] Environment environment_of(const World& world);
+[[nodiscard]] CANDELA_API Environment environment_of(const World& world);
 
 /// The direction that a point of the sky's picture shows, without rotation: a unit vector. `at` is in [0,
 /// 1]², (0, 0) the top left corner.
-[[nodiscard]] glm::vec3 sky_direction(glm::vec2 at);
+[[nodiscard]] CANDELA_API glm::vec3 sky_direction(glm::vec2 at);
 /// The inverse.
-[[nodiscard]] glm::vec2 sky_position(glm::vec3 direction);
+[[nodiscard]] CANDELA_API glm::vec2 sky_position(glm::vec3 direction);
 
 /// Viewpoint at the entity's origin looking along its -Z, +Y up.
 struct Camera {

@@ -2,6 +2,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/scene_error.hpp>
@@ -9,12 +10,12 @@
 namespace candela {
 
 /// Local-to-parent matrix T·R·S of a transform, column vectors, metres.
-[[nodiscard]] glm::mat4 local_matrix(const Transform& transform);
+[[nodiscard]] CANDELA_API glm::mat4 local_matrix(const Transform& transform);
 
 /// Local-to-world matrix of a live entity: the product of the local matrices from its topmost ancestor down.
 /// An entity without a Transform has the identity. Takes time linear in the entity's depth, which is not
 /// limited. Throws SceneError, which names an entity, if an ancestor was destroyed or if the ancestors form a
 /// cycle.
-[[nodiscard]] glm::mat4 world_matrix(const World& world, Entity entity);
+[[nodiscard]] CANDELA_API glm::mat4 world_matrix(const World& world, Entity entity);
 
 }  // namespace candela

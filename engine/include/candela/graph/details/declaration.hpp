@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/graph/errors.hpp>
 #include <candela/graph/resources.hpp>
@@ -119,7 +120,7 @@ class Arena {
 };
 
 /// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in one arena.
-class Declaration {
+class CANDELA_API Declaration {
  public:
     Declaration();
 

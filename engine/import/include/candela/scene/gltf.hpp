@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/scene_error.hpp>
@@ -37,10 +38,11 @@ struct ImportReport {
 ///
 /// Throws SceneError, whose message is one line that names the file, the object and the problem. The world is
 /// then unchanged.
-ImportReport import_gltf(const std::filesystem::path& path, World& into);
+CANDELA_API ImportReport import_gltf(const std::filesystem::path& path, World& into);
 
 /// The same from memory. `name` is the file's name in messages; URIs are relative to `base_directory`.
-ImportReport import_gltf(std::span<const unsigned char> bytes, const std::filesystem::path& base_directory,
-                         std::string_view name, World& into);
+CANDELA_API ImportReport import_gltf(std::span<const unsigned char> bytes,
+                                     const std::filesystem::path& base_directory, std::string_view name,
+                                     World& into);
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-#include "engine/scene/gltf_nodes.hpp"
+#include "engine/import/gltf_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/scene/decompose.hpp"
-#include "engine/scene/gltf_document.hpp"
+#include "engine/import/decompose.hpp"
+#include "engine/import/gltf_document.hpp"
 
 namespace candela::gltf {
 

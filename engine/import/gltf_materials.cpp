@@ -1,4 +1,4 @@
-#include "engine/scene/gltf_materials.hpp"
+#include "engine/import/gltf_materials.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include <stb/stb_image.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/scene/gltf_accessors.hpp"
+#include "engine/import/gltf_accessors.hpp"
 
 namespace candela::gltf {
 

@@ -1,4 +1,4 @@
-#include "engine/scene/gltf_meshes.hpp"
+#include "engine/import/gltf_meshes.hpp"
 
 #include <array>
 #include <numeric>
@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/scene/gltf_accessors.hpp"
+#include "engine/import/gltf_accessors.hpp"
 
 namespace candela::gltf {
 

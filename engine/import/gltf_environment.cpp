@@ -1,11 +1,11 @@
-#include "engine/scene/gltf_environment.hpp"
+#include "engine/import/gltf_environment.hpp"
 
 #include <string>
 
 #include <fmt/format.h>
 
 #include <candela/scene/sky_picture.hpp>
-#include "engine/scene/gltf_nodes.hpp"
+#include "engine/import/gltf_nodes.hpp"
 
 namespace candela::gltf {
 

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/gltf_document.hpp"
-#include "engine/scene/gltf_environment.hpp"
-#include "engine/scene/gltf_materials.hpp"
-#include "engine/scene/gltf_meshes.hpp"
-#include "engine/scene/gltf_nodes.hpp"
+#include "engine/import/gltf_document.hpp"
+#include "engine/import/gltf_environment.hpp"
+#include "engine/import/gltf_materials.hpp"
+#include "engine/import/gltf_meshes.hpp"
+#include "engine/import/gltf_nodes.hpp"
 
 namespace candela {
 

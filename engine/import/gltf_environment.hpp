@@ -4,7 +4,7 @@
 #include <optional>
 
 #include <candela/scene/components.hpp>
-#include "engine/scene/gltf_document.hpp"
+#include "engine/import/gltf_document.hpp"
 
 namespace candela::gltf {
 

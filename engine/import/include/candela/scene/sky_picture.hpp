@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include <candela/api.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/scene_error.hpp>
 
@@ -13,9 +14,11 @@ namespace candela {
 /// Radiance
 /// (.hdr) or OpenEXR (.exr). Throws SceneError, whose message is one line that names the file and the
 /// problem.
-[[nodiscard]] std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path);
+[[nodiscard]] CANDELA_API std::shared_ptr<const SkyPicture> load_sky_picture(
+    const std::filesystem::path& path);
 
 /// The same from memory. The message names no file.
-[[nodiscard]] std::shared_ptr<const SkyPicture> decode_sky_picture(std::span<const unsigned char> bytes);
+[[nodiscard]] CANDELA_API std::shared_ptr<const SkyPicture> decode_sky_picture(
+    std::span<const unsigned char> bytes);
 
 }  // namespace candela

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <candela/scene/components.hpp>
-#include "engine/scene/gltf_document.hpp"
-#include "engine/scene/gltf_materials.hpp"
+#include "engine/import/gltf_document.hpp"
+#include "engine/import/gltf_materials.hpp"
 
 namespace candela::gltf {
 

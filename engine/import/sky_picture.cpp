@@ -14,7 +14,7 @@
 #include <stb/stb_image.h>
 #include <tinyexr.h>
 
-#include "engine/scene/gltf_document.hpp"
+#include "engine/import/gltf_document.hpp"
 
 namespace candela {
 

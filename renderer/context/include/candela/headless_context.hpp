@@ -6,19 +6,20 @@
 #include <string>
 #include <string_view>
 
+#include <candela/api.hpp>
 #include <candela/gl_loader.hpp>
 
 namespace candela {
 
 /// No context could be made. The message is one line that lists every attempt and why it failed.
-struct ContextError : std::runtime_error {
+struct CANDELA_API ContextError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 /// The API that makes a headless context.
 enum class ContextKind : std::uint8_t { egl, osmesa };
 /// "egl" or "osmesa".
-[[nodiscard]] std::string_view to_string(ContextKind kind);
+[[nodiscard]] CANDELA_API std::string_view to_string(ContextKind kind);
 
 struct ContextOptions {
     bool debug = false;  ///< ask for a debug context (EGL only; ignored by OSMesa)
@@ -28,7 +29,7 @@ struct ContextOptions {
 /// draw into framebuffer objects. The EGL or OSMesa library is loaded when the first context of that kind is
 /// made. Contexts of both kinds may exist in one process; at most one is current per thread. Destroying the
 /// current context leaves no context current.
-class HeadlessContext {
+class CANDELA_API HeadlessContext {
  public:
     /// Makes a context, which is not yet current. EGL tries hardware devices, then Mesa's surfaceless
     /// platform, then software devices, and takes the first that works. Throws ContextError.

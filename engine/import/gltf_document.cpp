@@ -1,4 +1,4 @@
-#include "engine/scene/gltf_document.hpp"
+#include "engine/import/gltf_document.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/scene/gltf_schema.hpp"
+#include "engine/import/gltf_schema.hpp"
 
 namespace candela::gltf {
 

@@ -7,7 +7,7 @@
 #include <glm/mat3x3.hpp>
 
 #include <candela/scene/components.hpp>
-#include "engine/scene/gltf_document.hpp"
+#include "engine/import/gltf_document.hpp"
 
 namespace candela::gltf {
 

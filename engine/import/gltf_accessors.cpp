@@ -1,4 +1,4 @@
-#include "engine/scene/gltf_accessors.hpp"
+#include "engine/import/gltf_accessors.hpp"
 
 #include <cmath>
 #include <cstring>

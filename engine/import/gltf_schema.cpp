@@ -1,4 +1,4 @@
-#include "engine/scene/gltf_schema.hpp"
+#include "engine/import/gltf_schema.hpp"
 
 #include <algorithm>
 #include <cstdint>

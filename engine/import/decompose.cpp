@@ -1,4 +1,4 @@
-#include "engine/scene/decompose.hpp"
+#include "engine/import/decompose.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,92 @@
+# What all components of the package have in common: engine, import, renderer, headless.
+
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(CANDELA_PACKAGE ${CMAKE_CURRENT_LIST_DIR})
+set(CANDELA_GENERATED ${PROJECT_BINARY_DIR}/include)  # public headers that are generated
+set(CANDELA_CONFIG_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/candela)
+configure_file(${CANDELA_PACKAGE}/version.hpp.in ${CANDELA_GENERATED}/candela/version.hpp @ONLY)
+set_property(GLOBAL PROPERTY CANDELA_COMPONENTS "")
+
+# What the libraries of the package are compiled with. Static ones, too, can become part of a host's shared library.
+function(candela_library target)
+    set_target_properties(${target} PROPERTIES
+        POSITION_INDEPENDENT_CODE ON
+        CXX_VISIBILITY_PRESET hidden
+        VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
+# candela_component(NAME DESCRIPTION [HEADERS DIRECTORY...]): makes the library candela-NAME the component
+# candela::NAME, whose public headers are in the directories. A shared library exports the public API alone: what is
+# marked CANDELA_API. The linker script also keeps templates of the standard library out of its symbols.
+function(candela_component name description)
+    cmake_parse_arguments(PARSE_ARGV 2 component "" "" "HEADERS")
+    set(target candela-${name})
+    add_library(candela::${name} ALIAS ${target})
+    foreach(directory ${component_HEADERS})
+        target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${directory}>)
+    endforeach()
+    target_include_directories(${target} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    candela_library(${target})
+    set_target_properties(${target} PROPERTIES
+        EXPORT_NAME ${name}
+        VERSION ${PROJECT_VERSION}
+        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+        LINK_DEPENDS ${CANDELA_PACKAGE}/exports.map)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL SHARED_LIBRARY)
+        target_link_options(${target} PRIVATE
+            LINKER:--version-script=${CANDELA_PACKAGE}/exports.map LINKER:--no-undefined)
+    endif()
+    set_property(GLOBAL APPEND PROPERTY CANDELA_COMPONENTS ${name})
+    set_property(GLOBAL PROPERTY CANDELA_DESCRIPTION_${name} ${description})
+    set_property(GLOBAL PROPERTY CANDELA_HEADERS_${name} ${component_HEADERS})
+endfunction()
+
+# The pkg-config file of a component, which requires the given modules and links the given libraries besides.
+function(candela_install_pkgconfig name)
+    cmake_parse_arguments(PARSE_ARGV 1 pc "" "" "REQUIRES;LIBRARIES")
+    get_property(CANDELA_DESCRIPTION GLOBAL PROPERTY CANDELA_DESCRIPTION_${name})
+    set(CANDELA_COMPONENT ${name})
+    list(JOIN pc_REQUIRES " " CANDELA_REQUIRES)
+    list(JOIN pc_LIBRARIES " " CANDELA_LIBRARIES)
+    configure_file(${CANDELA_PACKAGE}/component.pc.in ${PROJECT_BINARY_DIR}/candela-${name}.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/candela-${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
+
+# The target `install` for all components: libraries, headers, find_package(candela) and pkg-config.
+function(candela_install_package)
+    get_property(components GLOBAL PROPERTY CANDELA_COMPONENTS)
+    foreach(name ${components})
+        get_property(headers GLOBAL PROPERTY CANDELA_HEADERS_${name})
+        install(TARGETS candela-${name} EXPORT candela-${name})
+        install(EXPORT candela-${name} NAMESPACE candela:: DESTINATION ${CANDELA_CONFIG_FOLDER})
+        foreach(directory ${headers})
+            install(DIRECTORY ${directory}/candela DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+        endforeach()
+    endforeach()
+
+    # What a static library needs at link time in addition.
+    if(CANDELA_FMT_LIBRARY)
+        set(fmt_module fmt)
+    endif()
+    candela_install_pkgconfig(engine REQUIRES ${fmt_module})
+    if(TARGET candela-import)
+        candela_install_pkgconfig(import REQUIRES candela-engine tinygltf stb LIBRARIES -ltinyexr)
+    endif()
+    if(TARGET candela-renderer)
+        candela_install_pkgconfig(renderer REQUIRES candela-engine)
+    endif()
+    if(TARGET candela-headless)
+        candela_install_pkgconfig(headless REQUIRES candela-renderer LIBRARIES -ldl)
+    endif()
+
+    configure_package_config_file(
+        ${CANDELA_PACKAGE}/candela-config.cmake.in ${PROJECT_BINARY_DIR}/candela-config.cmake
+        INSTALL_DESTINATION ${CANDELA_CONFIG_FOLDER})
+    write_basic_package_version_file(
+        ${PROJECT_BINARY_DIR}/candela-config-version.cmake COMPATIBILITY SameMinorVersion)
+    install(FILES ${PROJECT_BINARY_DIR}/candela-config.cmake ${PROJECT_BINARY_DIR}/candela-config-version.cmake
+        DESTINATION ${CANDELA_CONFIG_FOLDER})
+endfunction()
