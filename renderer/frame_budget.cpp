@@ -26,12 +26,14 @@ bool is_better(const Quality& a, const Quality& b) {
 }  // namespace
 
 std::span<const std::string_view> pixel_passes() {
-    static constexpr std::array<std::string_view, 14> names{
-        "gbuffer",         "depth-prepass",      "tile-depths",
-        "light-tiles",     "light-clusters",     "vpl-reconstruct-rows",
-        "vpl-reconstruct", "vpl-lacking",        "vpl-fill",
-        "forward",         "deferred",           "transparent",
-        "accumulate",      "blended-light-tiles"};
+    static constexpr std::array<std::string_view, 15> names{"gbuffer",         "depth-prepass",
+                                                            "tile-depths",     "light-tiles",
+                                                            "light-clusters",  "vpl-reconstruct-rows",
+                                                            "vpl-reconstruct", "vpl-lacking",
+                                                            "vpl-fill",        "forward",
+                                                            "deferred",        "transparent",
+                                                            "accumulate",      "blended-light-tiles",
+                                                            "host-surfaces"};
     return names;
 }
 
@@ -41,9 +43,11 @@ FrameCost cost_of(const FrameReport& frame) {
         if (!pass.ran) {
             continue;
         }
-        if (pass.name == "vpl-gather") {
+        // Without the number of the view: see build_frame.
+        const std::string_view name = std::string_view(pass.name).substr(0, pass.name.find(' '));
+        if (name == "vpl-gather") {
             cost.gather += pass.gpu_ms;
-        } else if (std::ranges::find(pixel_passes(), std::string_view(pass.name)) != pixel_passes().end()) {
+        } else if (std::ranges::find(pixel_passes(), name) != pixel_passes().end()) {
             cost.pixels += pass.gpu_ms;
         }
     }

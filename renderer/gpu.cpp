@@ -55,6 +55,7 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
       mesh_vertices_(make_mesh_vertices(device_)),
       no_vertices_(device_, "no vertices"),
       white_(make_white(device_)),
+      nearest_(device_, "nearest", {.min_filter = GL_NEAREST, .mag_filter = GL_NEAREST}),
       layer_target_(device_, "layer target") {
     require_limits(device_.limits());
     layer_target_.draw_buffers(0);

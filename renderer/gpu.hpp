@@ -58,6 +58,8 @@ class Gpu {
     [[nodiscard]] const gl::VertexArray& no_vertices() const { return no_vertices_; }
     /// A 1 × 1 white texture, for materials without an image.
     [[nodiscard]] const gl::Texture& white() const { return white_; }
+    /// For textures of the host's, which may have any parameters: no filtering, mip level 0, no comparison.
+    [[nodiscard]] const gl::Sampler& nearest() const { return nearest_; }
     /// A framebuffer for passes that draw into single layers. They attach a layer and detach it again.
     [[nodiscard]] gl::Framebuffer& layer_target() { return layer_target_; }
 
@@ -72,6 +74,7 @@ class Gpu {
     gl::VertexArray mesh_vertices_;
     gl::VertexArray no_vertices_;
     gl::Texture white_;
+    gl::Sampler nearest_;
     gl::Framebuffer layer_target_;
 };
 

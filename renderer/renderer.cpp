@@ -1,6 +1,10 @@
 #include <candela/renderer.hpp>
 
+#include <algorithm>
+#include <utility>
+
 #include "renderer/device_of.hpp"
+#include "renderer/gl/shader_source.hpp"
 #include "renderer/renderer_state.hpp"
 
 namespace candela {
@@ -20,8 +24,25 @@ const Configuration& Renderer::configuration() const {
     return state_->configuration();
 }
 
+void Renderer::render(const World& world, std::span<const RenderView> views) {
+    state_->render(world, views);
+}
+
 void Renderer::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
-    state_->render(world, camera, target, jitter);
+    const RenderView view{.camera = camera, .target = target, .jitter = jitter};
+    state_->render(world, {&view, 1});
+}
+
+FrameResults Renderer::results(std::size_t view) const {
+    return state_->results(view);
+}
+
+std::vector<std::string> Renderer::extend(Extension extension) {
+    return state_->extend(std::move(extension));
+}
+
+void Renderer::remove_extension(std::string_view name) {
+    state_->remove_extension(name);
 }
 
 void Renderer::invalidate() {
@@ -36,12 +57,16 @@ void Renderer::tone_map(const std::vector<glm::vec3>& radiance, const Target& ta
     state_->tone_map(radiance, target);
 }
 
+void Renderer::tone_map(std::uint32_t texture, const Target& target) {
+    state_->tone_map(texture, target);
+}
+
 std::vector<FrameReport> Renderer::take_frames(bool wait) {
     return state_->take_frames(wait);
 }
 
-Report Renderer::report() {
-    return state_->report();
+Report Renderer::report(std::size_t view) {
+    return state_->report(view);
 }
 
 std::string Renderer::describe(GraphFormat format) const {
@@ -54,6 +79,11 @@ Quality Renderer::quality() const {
 
 const std::vector<PassRecord>& Renderer::last_passes() const {
     return state_->last_passes();
+}
+
+std::string_view glsl_types() {
+    const auto files = gl::embedded_shaders();
+    return std::ranges::find(files, "types.glsl", &gl::EmbeddedShader::name)->text;
 }
 
 gl::Device& device_of(Renderer& renderer) {

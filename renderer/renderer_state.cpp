@@ -101,7 +101,7 @@ bool same_radiance(Configuration a, const Configuration& b) {
 
 Renderer::State::State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
     : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
-    switch_to(configuration_, size_, {}, {});
+    switch_to(configuration_, shape_);
 }
 
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
@@ -109,47 +109,97 @@ std::vector<std::string> Renderer::State::configure(const Configuration& configu
     if (!errors.empty() || configuration == configuration_) {
         return errors;
     }
+    return try_to(configuration);
+}
+
+/// Switches to a configuration, or returns why that is not possible.
+std::vector<std::string> Renderer::State::try_to(const Configuration& configuration) {
     try {
-        switch_to(configuration, size_, quality_, contents_);
-    } catch (const gl::GlError& error) {
-        errors.emplace_back(error.what());
+        switch_to(configuration, shape_);
+    } catch (const std::exception& error) {
+        return {error.what()};
+    }
+    return {};
+}
+
+std::vector<std::string> Renderer::State::extend(Extension extension) {
+    std::vector<Extension> before = extensions_;
+    const auto same = std::ranges::find(extensions_, extension.name, &Extension::name);
+    if (same != extensions_.end()) {
+        *same = std::move(extension);
+    } else {
+        extensions_.push_back(std::move(extension));
+    }
+    std::vector<std::string> errors = try_to(configuration_);
+    if (!errors.empty()) {
+        extensions_ = std::move(before);
     }
     return errors;
 }
 
-void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality,
-                                const FrameContents& contents) {
+void Renderer::State::remove_extension(std::string_view name) {
+    if (std::erase_if(extensions_, [&](const Extension& extension) { return extension.name == name; }) > 0) {
+        switch_to(configuration_, shape_);
+    }
+}
+
+void Renderer::State::switch_to(const Configuration& configuration, const FrameShape& shape) {
     FrameGraph graph;
-    FrameHandles frame = build_frame(graph, gpu_, configuration,
-                                     {rendered_size(size, quality), size, quality.interleave}, contents);
+    FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions_);
     runtime_.switch_to(compile(std::move(graph)).take());
-    frame_ = frame;
-    if (size != size_ || quality != quality_ || contents != contents_ ||
-        !same_radiance(configuration, configuration_)) {
+    frame_ = std::move(frame);
+    if (shape != shape_ || !same_radiance(configuration, configuration_)) {
         ++refinement_clock_.epoch;
     }
     configuration_ = configuration;
-    size_ = size;
-    quality_ = quality;
-    contents_ = contents;
+    shape_ = shape;
     last_passes_.clear();
 }
 
-void Renderer::State::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
-    const std::uint32_t most = device().limits().texture_size;
-    if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
-        throw gl::GlError(
-            fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
-                        target.size.x, target.size.y, most));
+void Renderer::State::check_targets(std::span<const RenderView> views) const {
+    if (views.empty()) {
+        throw gl::GlError("a frame needs at least one view");
     }
+    const std::uint32_t most = gpu_.device().limits().texture_size;
+    for (const RenderView& view : views) {
+        const glm::uvec2 size = view.target.size;
+        if (size.x == 0 || size.y == 0 || size.x > most || size.y > most) {
+            throw gl::GlError(
+                fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}", size.x,
+                            size.y, most));
+        }
+    }
+}
+
+void Renderer::State::set_view(const ViewHandles& handles, const RenderView& view) {
+    const glm::uvec2 size = rendered_size(view.target.size, shape_.quality);
+    runtime_.set(handles.request, ViewRequest{view.camera, size, view.jitter});
+    runtime_.set(handles.target, view.target);
+    runtime_.bind(handles.picture, view.target.framebuffer, {view.target.size, Format::rgba8});
+    if (handles.host) {
+        runtime_.set(handles.host->description, *view.surfaces);
+        runtime_.bind(handles.host->depth, view.surfaces->depth, {});
+        runtime_.bind(handles.host->normal, view.surfaces->normal, {});
+        runtime_.bind(handles.host->albedo, view.surfaces->albedo, {});
+    }
+}
+
+void Renderer::State::render(const World& world, std::span<const RenderView> views) {
+    check_targets(views);
     const gl::HostState host_state(gpu_.gl());
-    const Quality quality = quality_now(world, {camera, target.size, jitter});
-    const FrameContents contents = contents_now(world);
-    if (target.size != size_ || quality != quality_ || contents != contents_) {
-        switch_to(configuration_, target.size, quality, contents);
+    FrameShape shape{.views = {}, .quality = {}, .contents = contents_now(world)};
+    std::vector<ViewRequest> requests;
+    for (const RenderView& view : views) {
+        shape.views.push_back({view.target.size, view.surfaces.has_value(), view.keep});
+        requests.push_back({view.camera, view.target.size, view.jitter});
     }
-    runtime_.set(frame_.request, ViewRequest{camera, rendered_size(target.size, quality), jitter});
-    runtime_.bind(frame_.target, target.framebuffer, {target.size, Format::rgba8});
+    shape.quality = quality_now(world, std::move(requests));
+    if (shape != shape_) {
+        switch_to(configuration_, shape);
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        set_view(frame_.views[i], views[i]);
+    }
     // The mean starts over after a frame that threw.
     if (!std::exchange(completed_, false)) {
         ++refinement_clock_.epoch;
@@ -167,17 +217,49 @@ void Renderer::State::render(const World& world, Entity camera, const Target& ta
         last_passes_ = runtime_.run(world, Timing::on).passes;
     }
     completed_ = true;
-    if (frame_.refinement) {
-        const std::uint32_t sets = runtime_.value(*frame_.refinement).set + 1;
-        constexpr std::uint32_t samples_of_direct_light = 64;
-        const std::uint32_t wanted = configuration_.refinement.frames;
-        refine_ = sets < (frame_.vpls ? wanted : std::min(wanted, samples_of_direct_light));
-    }
-    pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), this->quality()});
+    refine_ = refines();
+    pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality()});
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) {
         runtime_.verify(world);
     }
+}
+
+/// Whether another frame is to be added to the mean of a view.
+bool Renderer::State::refines() const {
+    constexpr std::uint32_t samples_of_direct_light = 64;
+    const std::uint32_t frames = configuration_.refinement.frames;
+    const std::uint32_t wanted = frame_.vpls ? frames : std::min(frames, samples_of_direct_light);
+    return std::ranges::any_of(frame_.views, [&](const ViewHandles& view) {
+        return view.averaged && runtime_.value(*view.averaged) + 1 < wanted;
+    });
+}
+
+const ViewHandles& Renderer::State::view_handles(std::size_t view) const {
+    if (view >= frame_.views.size()) {
+        throw GraphError(fmt::format("the frame has no view {}, only {}", view, frame_.views.size()));
+    }
+    return frame_.views[view];
+}
+
+FrameResults Renderer::State::results(std::size_t view) const {
+    const ViewHandles& handles = view_handles(view);
+    const FrameParts& keep = shape_.views[view].keep;
+    const ViewFrame& parts = handles.parts;
+    const auto texture = [&](bool wanted, const std::optional<TextureHandle>& handle) {
+        return wanted && handle ? ResultTexture{runtime_.object(*handle), parts.size} : ResultTexture{};
+    };
+    FrameResults results{.view = runtime_.value(handles.camera),
+                         .depth = texture(keep.depth, parts.depth),
+                         .normal = texture(keep.normal, parts.normal),
+                         .albedo = texture(keep.albedo, parts.albedo),
+                         .indirect = texture(keep.indirect, parts.indirect),
+                         .radiance = texture(keep.radiance, parts.radiance)};
+    if (keep.vpls && frame_.vpls) {
+        results.vpl_buffer = runtime_.object(frame_.vpls->vpls);
+        results.vpl_count = runtime_.value(frame_.vpls->plan).vpl_count;
+    }
+    return results;
 }
 
 /// Frame budget in milliseconds; 0: no limit.
@@ -191,26 +273,26 @@ double Renderer::State::budget_ms() const {
 }
 
 /// Full quality, unless there is a frame budget and something moved within the last quarter of a second.
-Quality Renderer::State::quality_now(const World& world, const ViewRequest& request) {
+Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest> requests) {
     constexpr std::chrono::milliseconds settled(250);
     const Clock::time_point now = Clock::now();
-    const bool moved = world.revision() != last_revision_ || request != last_request_;
+    const bool moved = world.revision() != last_revision_ || requests != last_requests_;
     last_revision_ = world.revision();
-    last_request_ = request;
+    last_requests_ = std::move(requests);
     if (moved) {
         last_move_ = now;
     }
     if (budget_ms() == 0.0 || now - last_move_ > settled) {
         return {};
     }
-    return moved ? quality_in_motion_ : quality_;
+    return moved ? quality_in_motion_ : shape_.quality;
 }
 
 FrameContents Renderer::State::contents_now(const World& world) {
     const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>(),
                                world.revision<Environment>()};
     if (revisions == contents_revisions_) {
-        return contents_;
+        return shape_.contents;
     }
     contents_revisions_ = revisions;
     return contents_of(world);
@@ -220,7 +302,7 @@ void Renderer::State::learn_cost(const PendingFrame& frame) {
     const FrameCost cost = cost_of(frame.report);
     if (budget_ms() > 0.0 && cost.pixels > 0.0) {
         const std::uint32_t configured =
-            interleaving(configuration_.interleave, configuration_.vpls.count, size_);
+            interleaving(configuration_.interleave, configuration_.vpls.count, shape_.views.front().target);
         quality_in_motion_ = choose_quality(cost, frame.quality, configured, budget_ms());
     }
 }
@@ -276,7 +358,14 @@ void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Tar
     }
     texture.upload(std::as_bytes(std::span(texels)));
     texture.bind(UNIT_RADIANCE);
-    draw_tone_mapped(gpu_, tone_map_program(gpu_), target.framebuffer, target.size, configuration_.tone_map);
+    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, configuration_.tone_map);
+}
+
+void Renderer::State::tone_map(GLuint texture, const Target& target) {
+    const gl::HostState host_state(gpu_.gl());
+    gpu_.gl().BindTextureUnit(UNIT_RADIANCE, texture);
+    gpu_.nearest().bind(UNIT_RADIANCE);
+    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, configuration_.tone_map);
 }
 
 std::string Renderer::State::describe(GraphFormat format) const {
@@ -292,7 +381,7 @@ std::string Renderer::State::describe(GraphFormat format) const {
     return describe_text(graph);
 }
 
-VplReport Renderer::State::report_vpls(const Vpls& vpls) const {
+VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view) const {
     const VplPlan& plan = runtime_.value(vpls.plan);
     auto placed = backend_.buffer(runtime_.object(vpls.vpls)).download<gpu::Vpl>();
     auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
@@ -305,29 +394,29 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls) const {
             .alive = static_cast<std::uint32_t>(alive),
             .paths = static_cast<std::uint32_t>(plan.paths.size()),
             .rays = count_rays(plan.paths, placed),
-            .interleave = frame_.interleave,
-            .lacking_pixels = count_lacking(),
+            .interleave = view.interleave,
+            .lacking_pixels = count_lacking(view),
             .flux = sum_up(accounts)};
 }
 
-std::uint32_t Renderer::State::count_lacking() const {
-    if (!frame_.indirect) {
+std::uint32_t Renderer::State::count_lacking(const ViewHandles& view) const {
+    if (!view.indirect) {
         return 0;
     }
-    return backend_.buffer(runtime_.object(frame_.indirect->lacking)).download<std::uint32_t>().at(3);
+    return backend_.buffer(runtime_.object(view.indirect->lacking)).download<std::uint32_t>().at(3);
 }
 
-LightReport Renderer::State::report_lights() const {
+LightReport Renderer::State::report_lights(const ViewHandles& view) const {
     const ShadowPlan& shadows = runtime_.value(frame_.shadows);
     LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
                        .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
                        .shadow_views = runtime_.value(frame_.drawn_shadows).newly_drawn,
                        .without_shadow = shadows.lights_without};
-    if (!frame_.lists) {
+    if (!view.lists) {
         return report;
     }
-    const LightBins& bins = runtime_.value(frame_.lists->bins);
-    auto counts = backend_.buffer(runtime_.object(frame_.lists->count)).download<std::uint32_t>();
+    const LightBins& bins = runtime_.value(view.lists->bins);
+    auto counts = backend_.buffer(runtime_.object(view.lists->count)).download<std::uint32_t>();
     counts.resize(bins.grid.cells());
     report.global = bins.global_count;
     report.tile_max = bins.global_count + *std::ranges::max_element(counts);
@@ -336,16 +425,17 @@ LightReport Renderer::State::report_lights() const {
     return report;
 }
 
-Report Renderer::State::report() {
+Report Renderer::State::report(std::size_t index) {
+    const ViewHandles& view = view_handles(index);
     Report report{.gl_renderer = device().renderer(),
                   .triangles = runtime_.value(frame_.metrics).triangles,
                   .vpls = std::nullopt,
-                  .refined = frame_.refinement ? runtime_.value(*frame_.refinement).set + 1 : 0,
-                  .rendered_size = rendered_size(size_, quality_),
-                  .lights = report_lights(),
+                  .refined = view.averaged ? runtime_.value(*view.averaged) + 1 : 0,
+                  .rendered_size = view.parts.size,
+                  .lights = report_lights(view),
                   .memory = runtime_.memory()};
     if (frame_.vpls && configuration_.show != Show::direct) {
-        report.vpls = report_vpls(*frame_.vpls);
+        report.vpls = report_vpls(*frame_.vpls, view);
     }
     return report;
 }

@@ -25,14 +25,18 @@ class CANDELA_PRIVATE Renderer::State {
 
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
-    void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter);
+    void render(const World& world, std::span<const RenderView> views);
+    [[nodiscard]] FrameResults results(std::size_t view) const;
+    [[nodiscard]] std::vector<std::string> extend(Extension extension);
+    void remove_extension(std::string_view name);
     void invalidate();
     void verify(bool on) { runtime_.set_verification(on); }
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
+    void tone_map(GLuint texture, const Target& target);
     [[nodiscard]] std::vector<FrameReport> take_frames(bool wait);
-    [[nodiscard]] Report report();
+    [[nodiscard]] Report report(std::size_t view);
     [[nodiscard]] std::string describe(GraphFormat format) const;
-    [[nodiscard]] Quality quality() const { return {quality_.scale, frame_.interleave}; }
+    [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
     [[nodiscard]] gl::Device& device() { return gpu_.device(); }
 
@@ -44,28 +48,31 @@ class CANDELA_PRIVATE Renderer::State {
         Quality quality;
     };
 
-    void switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality,
-                   const FrameContents& contents);
+    void switch_to(const Configuration& configuration, const FrameShape& shape);
+    [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration);
+    void check_targets(std::span<const RenderView> views) const;
+    void set_view(const ViewHandles& handles, const RenderView& view);
+    [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);
     [[nodiscard]] double budget_ms() const;
-    [[nodiscard]] Quality quality_now(const World& world, const ViewRequest& request);
+    [[nodiscard]] Quality quality_now(const World& world, std::vector<ViewRequest> requests);
     void learn_cost(const PendingFrame& frame);
     void set_refinement_clock();
     void match_times(const std::vector<gl::FrameTime>& times);
-    [[nodiscard]] VplReport report_vpls(const Vpls& vpls) const;
-    [[nodiscard]] std::uint32_t count_lacking() const;
-    [[nodiscard]] LightReport report_lights() const;
+    [[nodiscard]] bool refines() const;
+    [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
+    [[nodiscard]] std::uint32_t count_lacking(const ViewHandles& view) const;
+    [[nodiscard]] LightReport report_lights(const ViewHandles& view) const;
 
     Gpu gpu_;
     gl::GraphBackend backend_;
     GraphRuntime runtime_;
     Configuration configuration_;
-    FrameContents contents_;                    // of the world in the last frame
+    std::vector<Extension> extensions_;
+    FrameShape shape_;                          // of the last frame
     std::array<Tick, 3> contents_revisions_{};  // of the components that determine the contents
-    glm::uvec2 size_{1};                        // of the target
-    Quality quality_;
     Quality quality_in_motion_;
-    ViewRequest last_request_;
+    std::vector<ViewRequest> last_requests_;
     Tick last_revision_ = 0;  // the world's, in the last frame
     Clock::time_point last_move_;
     FrameHandles frame_;

@@ -1,25 +1,41 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <candela/configuration.hpp>
+#include <candela/extension.hpp>
 #include <candela/graph/frame_graph.hpp>
+#include <candela/report.hpp>
 #include "renderer/passes/indirect/vpl_reconstruct.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/lights/shadow_maps.hpp"
 #include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/surfaces/host_surfaces.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
 
 namespace candela {
 
-/// Handles into the frame graph: values that the renderer sets before each frame, and results that reports
-/// read.
+/// Handles of a view in the frame graph: values that the renderer sets before each frame, and results.
+struct ViewHandles {
+    ValueHandle<ViewRequest> request;                    ///< imported
+    ValueHandle<Target> target;                          ///< imported
+    TextureHandle picture;                               ///< imported: what is drawn to `target`
+    std::optional<HostSurfaceInputs> host;               ///< imported; none: Candela draws the surfaces
+    ValueHandle<CameraView> camera;                      ///< with refinement's samples
+    std::optional<ValueHandle<std::uint32_t>> averaged;  ///< see Refined; none without refinement
+    std::uint32_t interleave = 1;           ///< n: a pixel evaluates one in n² VPLs; 1: all of them
+    std::optional<IndirectLight> indirect;  ///< none if `interleave` is 1
+    std::optional<LightLists> lists;        ///< none if every surface evaluates all lights
+    ViewFrame parts;                        ///< what is kept, as far as it was asked for
+};
+
+/// Handles into the frame graph, of all views.
 struct FrameHandles {
-    ValueHandle<ViewRequest> request;  ///< imported
-    TextureHandle target;              ///< imported: its object is the GL name of a framebuffer
     ValueHandle<SceneMetrics> metrics;
     ValueHandle<LightTable> lights;
     ValueHandle<ShadowPlan> shadows;
@@ -28,17 +44,15 @@ struct FrameHandles {
     std::optional<ValueHandle<std::uint64_t>> epoch;
     std::optional<Vpls> vpls;                                      ///< none without indirect light
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
-    std::optional<ValueHandle<Refinement>> refinement;
-    std::uint32_t interleave = 1;           ///< n: a pixel evaluates one in n² VPLs; 1: all of them
-    std::optional<IndirectLight> indirect;  ///< none if `interleave` is 1
-    std::optional<LightLists> lists;        ///< none if every surface evaluates all lights
+    std::vector<ViewHandles> views;                                ///< at least one
 };
 
-/// Sizes of a frame, in pixels.
-struct FrameExtent {
-    glm::uvec2 size;                     ///< of the picture that is shaded
-    glm::uvec2 target;                   ///< of the target, to which that picture is scaled
-    std::uint32_t least_interleave = 1;  ///< lower bound for the interleave factor n
+/// What the passes of a view depend on.
+struct ViewShape {
+    glm::uvec2 target{1};        ///< of the target, pixels
+    bool host_surfaces = false;  ///< the host has drawn the surfaces
+    FrameParts keep{};           ///< see RenderView::keep
+    bool operator==(const ViewShape&) const = default;
 };
 
 /// What a world contains, as far as the passes of its frames depend on it.
@@ -50,9 +64,19 @@ struct FrameContents {
 };
 [[nodiscard]] FrameContents contents_of(const World& world);
 
-/// Declares all passes of a frame with a valid configuration and one size. `gpu` must outlive the graph.
-/// Throws gl::ProgramError if a shader does not compile.
+/// What the passes of a frame depend on.
+struct FrameShape {
+    std::vector<ViewShape> views{1};  ///< at least one
+    Quality quality;                  ///< of all views
+    FrameContents contents;
+    bool operator==(const FrameShape&) const = default;
+};
+
+/// Declares all passes of a frame with a valid configuration. VPLs and all that is independent of the camera
+/// are shared by the views; the names of the passes and resources of view 2, 3, ... end in that number. `gpu`
+/// and the functions of the extensions must outlive the graph. Throws gl::ProgramError if a shader does not
+/// compile, and passes on what an extension throws.
 [[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                                       const FrameExtent& extent, const FrameContents& contents);
+                                       const FrameShape& shape, std::span<const Extension> extensions);
 
 }  // namespace candela

@@ -1,11 +1,13 @@
-// Maps radiance to display colours, or copies it. One fragment a pixel of the target.
+// Maps radiance to display colours, or copies it. One fragment per pixel of the target.
 #include "bindings.glsl"
 #include "maths.glsl"
 
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
 
 uniform float exposure;   // multiplies radiance
-uniform bool curve;       // off: writes radiance unchanged, linear; alpha is 1 where there is a surface
+uniform bool curve;       // off: writes linear radiance; alpha is 1 where there is a surface
+uniform vec2 target_origin;  // in the framebuffer, pixels
+uniform vec2 target_size;
 
 layout(location = 0) out vec4 colour;
 
@@ -16,11 +18,9 @@ vec3 filmic(vec3 light) {
     return clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
 }
 
-uniform vec2 target_size;
-
 // Radiance of a picture of another size than the target, interpolated bilinearly.
-vec4 scaled_radiance(vec2 size) {
-    vec2 at = gl_FragCoord.xy / target_size * size - 0.5;
+vec4 scaled_radiance(vec2 pixel, vec2 size) {
+    vec2 at = pixel / target_size * size - 0.5;
     ivec2 first = ivec2(floor(at));
     ivec2 last = ivec2(size) - 1;
     vec2 share = at - vec2(first);
@@ -33,6 +33,8 @@ vec4 scaled_radiance(vec2 size) {
 
 void main() {
     vec2 size = vec2(textureSize(radiance, 0));
-    vec4 linear = size == target_size ? texelFetch(radiance, ivec2(gl_FragCoord.xy), 0) : scaled_radiance(size);
-    colour = curve ? vec4(srgb_encode(filmic(linear.rgb * exposure)), 1.0) : linear;
+    vec2 pixel = gl_FragCoord.xy - target_origin;
+    vec4 linear = size == target_size ? texelFetch(radiance, ivec2(pixel), 0) : scaled_radiance(pixel, size);
+    linear.rgb *= exposure;
+    colour = curve ? vec4(srgb_encode(filmic(linear.rgb)), 1.0) : linear;
 }

@@ -58,10 +58,15 @@ Declaration::Declaration() : arena_(std::make_unique<Arena>()) {
     resources.reserve(32);
 }
 
+std::string_view Declaration::store_name(std::string_view name) {
+    return ending_.empty() ? arena_->store_text(name)
+                           : arena_->store_text(fmt::format("{}{}", name, ending_));
+}
+
 ResourceHandle Declaration::add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
                                          std::size_t desc) {
     Resource resource;
-    resource.name = arena_->store_text(name);
+    resource.name = store_name(name);
     resource.kind = kind;
     resource.lifetime = lifetime;
     resource.desc = static_cast<std::uint32_t>(desc);
@@ -146,8 +151,10 @@ ResourceHandle Declaration::add_part(ResourceHandle of, TexturePart part) {
         return {id, of.resource, of.version};
     }
     const TextureDesc desc = part_desc(texture(resources[of.resource]), part);
+    const std::string ending = std::exchange(ending_, {});  // the name of the whole has it already
     const ResourceHandle handle =
         add_texture(fmt::format("{} {}", whole, to_string(part)), desc, Lifetime::persistent);
+    ending_ = ending;
     Resource& added = resources[handle.resource];
     Resource& parent = resources[of.resource];
     added.part_of = of.resource;
@@ -192,7 +199,7 @@ void Declaration::begin_pass(std::string_view name) {
     }
     declaring_ = true;
     PassNode pass;
-    pass.name = arena_->store_text(name);
+    pass.name = store_name(name);
     pass.first_access = size_of(accesses);
     pass.first_component = size_of(components);
     pass.first_parameter = size_of(parameters);

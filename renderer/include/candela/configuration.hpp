@@ -85,7 +85,7 @@ struct RefinementSettings {
 
 /// How radiance becomes the colours of the target.
 struct ToneMapSettings {
-    bool enabled = true;       ///< off: linear radiance without exposure; alpha 1 where there is a surface
+    bool enabled = true;       ///< off: linear radiance times the exposure; alpha 1 where there is a surface
     float exposure_ev = 0.0F;  ///< in stops, from -32 to 32: radiance is multiplied by 2^exposure_ev
     bool operator==(const ToneMapSettings&) const = default;
 };

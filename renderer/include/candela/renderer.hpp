@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -13,22 +15,17 @@
 #include <candela/api.hpp>
 #include <candela/configuration.hpp>
 #include <candela/ecs/world.hpp>
+#include <candela/extension.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/gl_loader.hpp>
 #include <candela/report.hpp>
+#include <candela/view.hpp>
 
 namespace candela {
 
 namespace gl {
 class Device;
 }
-
-/// The host's framebuffer that a frame is drawn into. The frame fills `size` pixels from the lower left
-/// corner. Only colour is written. The host keeps ownership.
-struct Target {
-    std::uint32_t framebuffer = 0;  ///< GL name; 0: the default framebuffer (the window)
-    glm::uvec2 size{1};             ///< pixels
-};
 
 /// Output of Renderer::describe: plain text, Graphviz DOT, or JSON.
 enum class GraphFormat : std::uint8_t { text, dot, json };
@@ -52,15 +49,29 @@ class CANDELA_API Renderer {
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
     [[nodiscard]] const Configuration& configuration() const;
 
-    /// Renders `world` as seen by `camera`, an entity with a Camera, into `target`. Only passes whose inputs
-    /// have changed since the last frame run. `jitter` moves the samples off the pixel centres, in rendered
-    /// pixels, +x right, +y up. Restores the host's GL state as described at gl::HostState.
+    /// Renders one frame: `world` in each of `views`, of which there must be at least one. VPLs, shadow maps
+    /// and uploads are made once for all views. Refinement averages frames by view; views are identified by
+    /// their position in `views`. Only passes whose inputs have changed since the last frame run. Restores
+    /// the host's GL state as described at gl::HostState.
     ///
     /// Throws EntityError if there is no such camera, SceneError if an entity's parents form a cycle or were
-    /// destroyed, and gl::GlError if the target's size is 0 or above the driver's limit, if a driver limit is
-    /// exceeded, or if the driver runs out of memory. After an exception, the next call runs the passes that
-    /// did not finish.
+    /// destroyed, and gl::GlError if there are no views, if the size of a target is 0 or above the driver's
+    /// limit, if a driver limit is exceeded, or if the driver runs out of memory. Passes on what an extension
+    /// throws. After an exception, the next call runs the passes that did not finish.
+    void render(const World& world, std::span<const RenderView> views);
+    /// The same with one view. `jitter`: see RenderView::jitter.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
+
+    /// What the last frame has left of view number `view`, as far as its RenderView::keep asked for it. Valid
+    /// until the next call of a function that is not const. Throws GraphError if there is no such view.
+    [[nodiscard]] FrameResults results(std::size_t view = 0) const;
+
+    /// Adds passes of the host's to the frames of all views from now on; extensions at the same place follow
+    /// each other in the order of these calls. An extension with the name of another one takes its place.
+    /// Returns the errors, one per string, with the names of the passes; if there are any, nothing changes.
+    [[nodiscard]] std::vector<std::string> extend(Extension extension);
+    /// Removes an extension; does nothing if there is none with the name.
+    void remove_extension(std::string_view name);
 
     /// Makes the next frame compute everything again. Not needed for another world, wherever it is: worlds
     /// are told apart by the revisions of their component pools.
@@ -76,6 +87,8 @@ class CANDELA_API Renderer {
     /// into `target`. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
     /// Throws gl::GlError if it holds another number of pixels.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
+    /// The same for a 2D texture of linear radiance on the GPU, by its GL name. It is scaled to the target.
+    void tone_map(std::uint32_t texture, const Target& target);
 
     /// CPU and GPU times of the frames whose GPU times have arrived since the last call, oldest first. Does
     /// not wait for the GPU unless `wait` is set; then it returns all finished frames. Of frames that are not
@@ -83,15 +96,16 @@ class CANDELA_API Renderer {
     [[nodiscard]] std::vector<FrameReport> take_frames(bool wait = false);
     static constexpr std::size_t kept_frames = 1024;
 
-    /// Reads counts and sums of the last frame back; waits for the GPU. Call it after a frame was rendered
-    /// with the current configuration; before the first frame it throws GraphError.
-    [[nodiscard]] Report report();
+    /// Reads counts and sums of the last frame back, those that depend on the view from view number `view`;
+    /// waits for the GPU. Call it after a frame was rendered with the current configuration; before the first
+    /// frame, or if there is no such view, it throws GraphError.
+    [[nodiscard]] Report report(std::size_t view = 0);
 
     /// The frame graph of the current configuration: passes, resources and barriers.
     [[nodiscard]] std::string describe(GraphFormat format) const;
 
-    /// Quality of the last frame. `scale` is below 1 only to keep the frame within its budget; `interleave`
-    /// is the factor n that was used.
+    /// Quality of the last frame, the same for all views. `scale` is below 1 only to keep the frame within
+    /// its budget; `interleave` is the factor n that was used in the first view.
     [[nodiscard]] Quality quality() const;
 
     /// All passes of the last frame, with whether each ran. Empty between a change of the configuration and

@@ -17,18 +17,6 @@ constexpr std::uint32_t least_share = 8;
 // change.
 constexpr std::uint32_t least_rows = 60;
 
-BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> paths) {
-    return graph.add("vpl-deal", [&](Pass& pass) {
-        pass.read(paths);
-        const auto order =
-            pass.write(graph.buffer<std::uint32_t>("vpl order", 1, Lifetime::persistent), Usage::copy);
-        pass.run([=, &gpu](Execution& run) {
-            upload<std::uint32_t>(gpu, run, order, deal_vpls(run.value(paths)));
-        });
-        return order;
-    });
-}
-
 /// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
 void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::uvec2 size,
@@ -100,9 +88,21 @@ std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
     return order;
 }
 
+BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> plan) {
+    return graph.add("vpl-deal", [&](Pass& pass) {
+        pass.read(plan);
+        const auto order =
+            pass.write(graph.buffer<std::uint32_t>("vpl order", 1, Lifetime::persistent), Usage::copy);
+        pass.run([=, &gpu](Execution& run) {
+            upload<std::uint32_t>(gpu, run, order, deal_vpls(run.value(plan)));
+        });
+        return order;
+    });
+}
+
 GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                            const VplLight& light, const FrameView& view, std::uint32_t interleave) {
-    const BufferHandle<std::uint32_t> order = add_vpl_deal(graph, gpu, light.vpls.plan);
+                            const VplLight& light, BufferHandle<std::uint32_t> order, const FrameView& view,
+                            std::uint32_t interleave) {
     return graph.add("vpl-gather", [&](Pass& pass) {
         pass.read(surfaces.normal, {Usage::sampled, UNIT_NORMAL});
         pass.read(surfaces.depth, {Usage::sampled, UNIT_DEPTH});

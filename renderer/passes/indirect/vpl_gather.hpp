@@ -32,12 +32,16 @@ struct GatheredVpls {
     std::uint32_t interleave = 1;       ///< n
 };
 
-/// Adds nodes `vpl-deal` (CPU, then upload: deal_vpls) and `vpl-gather` (compute): each pixel sums the light
-/// of the VPLs in the share of its class (Wald et al., "Interactive Global Illumination using Fast Ray
-/// Tracing", 2002; Segovia et al., "Non-interleaved Deferred Shading of Interleaved Sample Patterns", 2006).
-/// Depends on the VPLs, the visible surfaces and the view. `interleave`: n.
+/// Adds node `vpl-deal` (CPU, then upload): deal_vpls. Depends on the plan.
+[[nodiscard]] BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu,
+                                                       ValueHandle<VplPlan> plan);
+
+/// Adds node `vpl-gather` (compute): each pixel sums the light of the VPLs in the share of its class (Wald et
+/// al., "Interactive Global Illumination using Fast Ray Tracing", 2002; Segovia et al., "Non-interleaved
+/// Deferred Shading of Interleaved Sample Patterns", 2006). Depends on the VPLs, the visible surfaces and the
+/// view. `order`: of add_vpl_deal. `interleave`: n.
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                                          const VplLight& light, const FrameView& view,
-                                          std::uint32_t interleave);
+                                          const VplLight& light, BufferHandle<std::uint32_t> order,
+                                          const FrameView& view, std::uint32_t interleave);
 
 }  // namespace candela

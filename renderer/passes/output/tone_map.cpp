@@ -7,23 +7,27 @@
 
 namespace candela {
 
-void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, TextureHandle target, glm::uvec2 size,
-                  const ToneMapSettings& settings) {
+void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
+                  TextureHandle picture, const ToneMapSettings& settings) {
     graph.add("tone-map", [&](Pass& pass) {
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
+        pass.read(target);
         pass.parameter(settings);
         const gl::Program& program = tone_map_program(gpu);
-        const TextureHandle written = pass.write(target, Usage::layer_target);
+        (void)pass.write(picture, Usage::layer_target);
         pass.run([=, &gpu, &program](Execution& run) {
-            draw_tone_mapped(gpu, program, run.object(written), size, settings);
+            draw_tone_mapped(gpu, program, run.value(target), settings);
         });
     });
 }
 
-void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, GLuint framebuffer, glm::uvec2 size,
+void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, const Target& target,
                       const ToneMapSettings& settings) {
-    gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-    gpu.gl().Viewport(0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
+    const glm::ivec2 origin(target.origin);
+    const glm::ivec2 size(target.size);
+    gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+    gpu.gl().Viewport(origin.x, origin.y, size.x, size.y);
+    program.set("target_origin", glm::vec2(origin));
     program.set("target_size", glm::vec2(size));
     program.set("exposure", std::exp2(settings.exposure_ev));
     program.set("curve", settings.enabled);

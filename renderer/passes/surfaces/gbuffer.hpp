@@ -14,6 +14,9 @@ struct Gbuffer {
     TextureHandle depth;   ///< depth32f, reversed; 0 where there is no surface
 };
 
+/// Declares the textures of `size` pixels, as attachments that `pass` writes.
+[[nodiscard]] Gbuffer write_gbuffer(FrameGraph& graph, Pass& pass, glm::uvec2 size);
+
 /// Adds node `gbuffer` (raster): the opaque and masked surfaces, without holes of masks. Depends on meshes,
 /// materials and view. Textures of `view.size` pixels. The octahedral encoding of normals is that of Cigolle
 /// et al. (2014): shaders/maths.glsl.

@@ -1,49 +1,63 @@
 #include "renderer/passes/view/refinement.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
+
 #include <candela/graph/execute.hpp>
 
 namespace candela {
 
-ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
-                                       const SceneData& scene, const RefinedLight& light,
-                                       ValueHandle<CameraView> view) {
+Refined add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock, const SceneData& scene,
+                       const RefinedLight& light, const std::vector<ValueHandle<CameraView>>& views) {
     return graph.add("refinement", [&](Pass& pass) {
         pass.remembers();
         pass.read(clock);
+        std::vector<ResourceHandle> lit{scene.layout, scene.placement, light.lights};
         pass.read(scene.layout);
         pass.read(scene.placement);
         pass.read(light.lights);
         if (light.environment) {
             pass.read(*light.environment);
+            lit.push_back(*light.environment);
         }
-        pass.read(view);
-        const auto out = pass.update(graph.value<Refinement>("refinement"));
-        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
-            const Refinement* const last = run.previous(out);
+        Refined out{.refinement = pass.update(graph.value<Refinement>("refinement")), .averaged = {}};
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            pass.read(views[i]);
+            out.averaged.push_back(
+                pass.update(graph.value<std::uint32_t>(fmt::format("averaged frames of view {}", i + 1))));
+        }
+        pass.run([=](Execution& run) {
+            const Refinement* const last = run.previous(out.refinement);
             const std::uint64_t epoch = run.value(clock).epoch;
-            const bool moved = run.changed(layout) || run.changed(placement) || run.changed(light.lights) ||
-                               (light.environment && run.changed(*light.environment)) || run.changed(view);
+            const bool restarts = last == nullptr || last->epoch != epoch || run.changed(lit);
+            bool all_moved = true;
+            for (std::size_t i = 0; i < views.size(); ++i) {
+                const std::uint32_t* const before = run.previous(out.averaged[i]);
+                const bool moved = restarts || before == nullptr || run.changed(views[i]);
+                all_moved &= moved;
+                run.set(out.averaged[i], moved ? 0 : *before + 1);
+            }
             Refinement now{.epoch = epoch};
             if (last != nullptr) {
-                now.set = last->epoch != epoch || moved ? 0 : last->set + 1;
+                now.set = all_moved ? 0 : last->set + 1;
                 const bool next_surfels = now.set > 0 && now.set % frames_a_surfel_set == 0;
                 now.surfel_set = last->surfel_set + (next_surfels ? 1 : 0);
             }
-            run.set(out, now);
+            run.set(out.refinement, now);
         });
         return out;
     });
 }
 
 ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,
-                                         ValueHandle<Refinement> refinement) {
+                                         ValueHandle<std::uint32_t> averaged) {
     return graph.add("refined-view", [&](Pass& pass) {
         read_request(pass, request);
-        pass.read(refinement);
+        pass.read(averaged);
         const auto out = pass.write(graph.value<CameraView>("refined view"));
         pass.run([=](Execution& run) {
             ViewRequest sampled = run.value(request);
-            sampled.jitter += pixel_sample(run.value(refinement).set);
+            sampled.jitter += pixel_sample(run.value(averaged));
             run.set(out, requested_view(run.world(), sampled));
         });
         return out;

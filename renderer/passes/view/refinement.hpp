@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
@@ -15,7 +16,7 @@ namespace candela {
 
 /// Set by the renderer before each frame to control the refinement.
 struct RefinementClock {
-    std::uint64_t epoch = 0;  ///< a new value starts the mean over
+    std::uint64_t epoch = 0;  ///< a new value starts the means over
     std::uint64_t round = 0;  ///< a new value asks for the next set
     bool operator==(const RefinementClock&) const = default;
 };
@@ -24,33 +25,42 @@ struct RefinementClock {
 /// Moving something during the first frames of a mean never has to wait for a new set.
 inline constexpr std::uint32_t frames_a_surfel_set = 8;
 
-/// The samples that a frame is rendered with. Set 0 is that of a frame without refinement. Set k is seen at
-/// sample k of the pixels: see pixel_sample. VPLs on paths then have the seed VplSettings::seed + k; surfels
-/// have the seed VplSettings::seed + surfel_set. Any movement returns to set 0 but keeps surfel_set, so that
-/// the visibility between surfels remains valid.
+/// The VPLs that a frame is rendered with, for all views. Set 0 is that of a frame without refinement. In set
+/// k, VPLs on paths have the seed VplSettings::seed + k; surfels have the seed VplSettings::seed +
+/// surfel_set. Any movement in the scene, or of all views, returns to set 0 but keeps surfel_set, so that the
+/// visibility between surfels remains valid.
 struct Refinement {
-    std::uint32_t set = 0;         ///< k; also the number of frames in the mean before this one
-    std::uint32_t surfel_set = 0;  ///< advances by 1 every frames_a_surfel_set sets of a mean
+    std::uint32_t set = 0;         ///< k
+    std::uint32_t surfel_set = 0;  ///< advances by 1 every frames_a_surfel_set sets
     std::uint64_t epoch = 0;       ///< RefinementClock::epoch
     bool operator==(const Refinement&) const = default;
 };
 
-/// The light whose changes start the mean over.
+/// Results of node `refinement`.
+struct Refined {
+    ValueHandle<Refinement> refinement;
+    /// By view: number of frames in its mean before this one. The view is seen at this sample of the pixels:
+    /// see pixel_sample. With one view it is Refinement::set.
+    std::vector<ValueHandle<std::uint32_t>> averaged;
+};
+
+/// The light whose changes start the means over.
 struct RefinedLight {
     ValueHandle<LightTable> lights;
     std::optional<ValueHandle<Environment>> environment;  ///< none: the world has no sky
 };
 
-/// Adds node `refinement` (CPU): advances to the next set if the scene, the lights and the view are
-/// unchanged, and otherwise returns to set 0. Depends on the clock, the scene's layout and placement, the
-/// light and the view, and on its own last result.
-[[nodiscard]] ValueHandle<Refinement> add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
-                                                     const SceneData& scene, const RefinedLight& light,
-                                                     ValueHandle<CameraView> view);
+/// Adds node `refinement` (CPU): advances to the next set if the scene, the lights and at least one view are
+/// unchanged, and otherwise returns to set 0. The mean of a view starts over when the view moves, and all do
+/// when the scene or the lights change. Depends on the clock, the scene's layout and placement, the light and
+/// the views, and on its own last results.
+[[nodiscard]] Refined add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock,
+                                     const SceneData& scene, const RefinedLight& light,
+                                     const std::vector<ValueHandle<CameraView>>& views);
 
-/// Adds node `refined-view` (CPU): the requested view with the samples moved to pixel_sample of the current
-/// set. Depends on the request, Camera, Transform and the refinement.
+/// Adds node `refined-view` (CPU): the requested view with the samples moved to pixel_sample(averaged).
+/// Depends on the request, Camera, Transform and `averaged`.
 [[nodiscard]] ValueHandle<CameraView> add_refined_view(FrameGraph& graph, ValueHandle<ViewRequest> request,
-                                                       ValueHandle<Refinement> refinement);
+                                                       ValueHandle<std::uint32_t> averaged);
 
 }  // namespace candela

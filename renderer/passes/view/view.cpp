@@ -13,27 +13,52 @@
 namespace candela {
 namespace {
 
+bool is_orthographic(const Camera& camera) {
+    return camera.projection == Camera::Projection::orthographic ||
+           (camera.projection == Camera::Projection::custom && camera.matrix[3][3] != 0.0F);
+}
+
+/// How a projection maps view space to x and y of normalised device coordinates: scale · xy / depth + shift,
+/// without the division if it is orthographic.
+struct Lens {
+    glm::vec2 scale;
+    glm::vec2 shift{0.0F};
+};
+
+Lens lens_of(const Camera& camera, float aspect) {
+    switch (camera.projection) {
+        case Camera::Projection::orthographic:
+            return {{1.0F / (camera.half_height * aspect), 1.0F / camera.half_height}};
+        case Camera::Projection::custom: {
+            const glm::mat4& m = camera.matrix;
+            const glm::vec2 scale(m[0][0], m[1][1]);
+            return is_orthographic(camera) ? Lens{scale / m[3][3], glm::vec2(m[3]) / m[3][3]}
+                                           : Lens{scale / -m[2][3], glm::vec2(m[2]) / m[2][3]};
+        }
+        case Camera::Projection::perspective:
+            break;
+    }
+    const float focal = 1.0F / std::tan(camera.vertical_fov * 0.5F);
+    return {{focal / aspect, focal}};
+}
+
 /// Projection with reversed depth. Without a far plane it is near / z; otherwise depth falls from 1 at the
 /// near plane to 0 at the far plane, by the usual rational function or, in orthographic projections,
 /// linearly.
 glm::mat4 projection(const Camera& camera, float aspect) {
     const float n = camera.near_plane;
     const float f = camera.far_plane;
+    const Lens lens = lens_of(camera, aspect);
     glm::mat4 m(0.0F);
-    if (camera.projection == Camera::Projection::orthographic) {
-        m[0][0] = 1.0F / (camera.half_height * aspect);
-        m[1][1] = 1.0F / camera.half_height;
+    m[0][0] = lens.scale.x;
+    m[1][1] = lens.scale.y;
+    if (is_orthographic(camera)) {
         m[2][2] = 1.0F / (f - n);
-        m[3][2] = f / (f - n);
-        m[3][3] = 1.0F;
+        m[3] = glm::vec4(lens.shift, f / (f - n), 1.0F);
         return m;
     }
-    const float focal = 1.0F / std::tan(camera.vertical_fov * 0.5F);
     const bool infinite = std::isinf(f);
-    m[0][0] = focal / aspect;
-    m[1][1] = focal;
-    m[2][2] = infinite ? 0.0F : n / (f - n);
-    m[2][3] = -1.0F;
+    m[2] = glm::vec4(-lens.shift, infinite ? 0.0F : n / (f - n), -1.0F);
     m[3][2] = infinite ? n : n * f / (f - n);
     return m;
 }
@@ -74,7 +99,7 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, c
             .view_from_world = glm::mat4(view_from_world),
             .clip_from_view = glm::mat4(clip_from_view),
             .eye = glm::vec3(pose[3]),
-            .orthographic = camera.projection == Camera::Projection::orthographic};
+            .orthographic = is_orthographic(camera)};
 }
 
 CameraView requested_view(const World& world, const ViewRequest& request) {

@@ -7,6 +7,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
+#include <candela/view.hpp>
 #include "renderer/gpu.hpp"
 #include "renderer/gpu_types.hpp"
 
@@ -18,18 +19,6 @@ struct ViewRequest {
     glm::uvec2 size{1};      ///< of the rendered picture, pixels
     glm::vec2 jitter{0.0F};  ///< pixels by which samples move off the pixel centres, +x right, +y up
     bool operator==(const ViewRequest&) const = default;
-};
-
-/// Matrices of a view. Clip space is that of OpenGL with reversed depth in [0, 1]: 1 at the near plane. View
-/// space has the eye at its origin and looks along -z; a depth in metres is -z in view space.
-struct CameraView {
-    glm::mat4 clip_from_world{1.0F};
-    glm::mat4 world_from_clip{1.0F};
-    glm::mat4 view_from_world{1.0F};
-    glm::mat4 clip_from_view{1.0F};
-    glm::vec3 eye{0.0F};  ///< world space, metres
-    bool orthographic = false;
-    bool operator==(const CameraView&) const = default;
 };
 
 /// The view of a camera with this local-to-world matrix, whose scale is ignored. If Camera::far_plane is

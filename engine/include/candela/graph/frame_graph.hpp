@@ -131,6 +131,10 @@ class FrameGraph {
     // graphs (GraphRuntime::switch_to), so the names of persistent and imported resources must be unique
     // within each kind (texture, buffer, value). The graph copies the names.
 
+    /// Appends `ending` to the names of all passes and resources that are declared from now on, so that a
+    /// graph can contain the same passes several times, for example once for each view.
+    void append_to_names(std::string_view ending) { declared_.append_to_names(ending); }
+
     /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
     /// and GraphRuntime::bind gives the actual description.
     [[nodiscard]] TextureHandle texture(std::string_view name, const TextureDesc& desc,

@@ -6,6 +6,7 @@
 #include <memory_resource>
 #include <new>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <typeindex>
@@ -130,6 +131,8 @@ class CANDELA_API Declaration {
     ResourceHandle add_history(ResourceHandle of, ResourceKind kind);
     ResourceHandle add_part(ResourceHandle of, TexturePart part);
 
+    /// See FrameGraph::append_to_names.
+    void append_to_names(std::string_view ending) { ending_ = ending; }
     void begin_pass(std::string_view name);
     void end_pass();
     void read(ResourceHandle handle, ResourceKind kind, Binding binding);
@@ -175,6 +178,7 @@ class CANDELA_API Declaration {
         const std::size_t end = pass + 1 < passes.size() ? passes[pass + 1].*first : all.size();
         return std::span(all).subspan(begin, end - begin);
     }
+    [[nodiscard]] std::string_view store_name(std::string_view name);
     ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
                                 std::size_t desc);
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
@@ -186,6 +190,7 @@ class CANDELA_API Declaration {
     void check_attachments();
 
     std::unique_ptr<Arena> arena_;
+    std::string ending_;  // of the names of what is declared
     bool declaring_ = false;
 };
 

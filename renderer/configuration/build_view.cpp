@@ -1,0 +1,256 @@
+#include "renderer/configuration/build_view.hpp"
+
+#include <algorithm>
+
+#include "renderer/frame_budget.hpp"
+#include "renderer/passes/indirect/vpl_gather.hpp"
+#include "renderer/passes/output/accumulate.hpp"
+#include "renderer/passes/output/tone_map.hpp"
+#include "renderer/passes/shading/deferred.hpp"
+#include "renderer/passes/shading/emission.hpp"
+#include "renderer/passes/shading/forward.hpp"
+#include "renderer/passes/shading/transparent.hpp"
+#include "renderer/passes/sky/background.hpp"
+#include "renderer/passes/surfaces/depth_prepass.hpp"
+#include "renderer/passes/surfaces/gbuffer.hpp"
+#include "renderer/passes/view/view_cull.hpp"
+
+namespace candela {
+namespace {
+
+/// Most VPLs that a blended surface evaluates where solid surfaces are interleaved. With fewer, the pattern
+/// of which pixel evaluates which VPLs would be visible.
+constexpr std::uint32_t most_vpls_of_blended = 1024;
+
+/// Parts that the host asks for, of a view or for its extensions.
+FrameParts asked_parts(FrameParts keep, std::span<const Extension> extensions) {
+    for (const Extension& extension : extensions) {
+        keep.depth |= extension.needs.depth;
+        keep.normal |= extension.needs.normal;
+        keep.albedo |= extension.needs.albedo;
+        keep.indirect |= extension.needs.indirect;
+    }
+    return keep;
+}
+
+bool shows_emitters(const SharedFrame& shared) {
+    return shared.contents.emitters && shared.configuration.show != Show::indirect;
+}
+
+/// Surfaces that are found before they are shaded, if any.
+struct FoundSurfaces {
+    std::optional<TextureHandle> depth;
+    std::optional<TextureHandle> normal;
+    std::optional<TextureHandle> albedo;
+
+    FoundSurfaces() = default;
+    explicit FoundSurfaces(const Gbuffer& gbuffer)
+        : depth(gbuffer.depth), normal(gbuffer.normal), albedo(gbuffer.albedo) {}
+    explicit FoundSurfaces(const VisibleSurfaces& visible) : depth(visible.depth), normal(visible.normal) {}
+};
+
+/// `asked`: parts that passes other than that which shades need.
+FoundSurfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
+                            const FrameView& view, const FrameParts& asked) {
+    if (stage == SurfaceStage::gbuffer || asked.albedo) {
+        return FoundSurfaces(add_gbuffer(graph, gpu, seen, view));
+    }
+    if (stage == SurfaceStage::forward_after_prepass || asked.depth || asked.normal) {
+        return FoundSurfaces(add_depth_prepass(graph, gpu, seen, view));
+    }
+    return {};
+}
+
+/// The light lists of the shading path; none if each surface evaluates all lights. `depth` bounds tiles.
+std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
+                                    const LitScene& lit, const FrameView& view,
+                                    std::optional<TextureHandle> depth) {
+    switch (info_of(configuration.path).lights) {
+        case LightList::all:
+            break;
+        case LightList::tile: {
+            const LightGrid grid = add_tile_grid(graph, gpu, view.size, configuration.lists);
+            return add_light_tiles(graph, gpu, {lit.lights, view, grid}, depth);
+        }
+        case LightList::cluster: {
+            const LightGrid grid = add_cluster_grid(graph, gpu, view.camera, lit.tracing.metrics, view.size,
+                                                    configuration.lists);
+            return add_light_clusters(graph, gpu, {lit.lights, view, grid});
+        }
+    }
+    return std::nullopt;
+}
+
+/// Irradiance that is gathered from the VPLs before surfaces are shaded.
+TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& visible, const SharedVpls& vpls,
+                          const FrameView& view, ViewHandles& out) {
+    const GatheredVpls gathered =
+        add_vpl_gather(graph, gpu, visible, vpls.light, vpls.order, view, out.interleave);
+    if (out.interleave == 1) {
+        return gathered.irradiance;
+    }
+    out.indirect = add_vpl_reconstruct(graph, gpu, visible, gathered, vpls.light, view);
+    return out.indirect->irradiance;
+}
+
+/// What the passes that shade read, all but gathered light.
+Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>& lists) {
+    Lighting lighting{.lights = shared.lit.lights.table,
+                      .buffers = shared.lit.buffers,
+                      .shadows = shared.lit.shadows,
+                      .lists = lists,
+                      .show = shared.configuration.show};
+    if (shared.contents.suns && shared.configuration.shadows.enabled) {
+        lighting.sun_rays = shared.lit.tracing;
+    }
+    if (shared.vpls) {
+        lighting.vpls = shared.vpls->light;
+    }
+    return lighting;
+}
+
+/// Lighting of blended surfaces. They evaluate VPLs while they are shaded, because the gathered irradiance is
+/// that of the solid surface at the pixel. They lie in front of the depths that bound the light lists, so
+/// they get lists without depth bounds.
+Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewHandles& out) {
+    const ShadingPathInfo& path = info_of(shared.configuration.path);
+    Lighting lighting = lighting_of(shared, out.lists);
+    if (out.interleave > 1) {
+        lighting.most_vpls = most_vpls_of_blended;
+    }
+    if (path.lights == LightList::tile && path.surfaces != SurfaceStage::forward) {
+        lighting.lists = add_blended_light_tiles(graph, gpu, out.lists->inputs, shared.lit.scene.layout);
+    }
+    return lighting;
+}
+
+void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, ViewFrame& parts) {
+    for (const Extension& extension : shared.extensions) {
+        if (extension.place == place) {
+            extension.declare(graph, parts);
+        }
+    }
+}
+
+ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const FrameView& view,
+                      const FoundSurfaces& found) {
+    ViewFrame parts{.index = index,
+                    .size = view.size,
+                    .view = view.camera,
+                    .depth = found.depth,
+                    .normal = found.normal,
+                    .albedo = found.albedo,
+                    .lights = shared.lit.buffers.lights};
+    if (shared.vpls) {
+        parts.vpls = shared.vpls->light.vpls.vpls;
+    }
+    return parts;
+}
+
+/// The light that solid surfaces reflect: sets the parts `radiance` and `depth`.
+void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
+           const FrameView& view, const ViewHandles& out, ViewFrame& parts) {
+    Lighting lighting = lighting_of(shared, out.lists);
+    if (parts.indirect) {
+        lighting.indirect = parts.indirect;
+        lighting.vpls.reset();
+    }
+    if (out.host || info_of(shared.configuration.path).surfaces == SurfaceStage::gbuffer) {
+        const Gbuffer gbuffer{*parts.albedo, *parts.normal, *parts.depth};
+        parts.radiance = add_deferred(graph, gpu, gbuffer, lighting, view);
+        return;
+    }
+    const ShadedSurfaces shaded = add_forward(graph, gpu, seen, lighting, view, parts.depth);
+    parts.radiance = shaded.radiance;
+    parts.depth = shaded.depth;
+}
+
+/// What the surfaces and the sky emit.
+void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
+                 const FrameView& view, ViewFrame& parts) {
+    if (shows_emitters(shared)) {
+        parts.radiance = add_emission(graph, gpu, seen, view, {*parts.radiance, *parts.depth});
+    }
+    if (shared.lit.sky && shared.configuration.show != Show::indirect) {
+        parts.radiance = add_background(graph, gpu, *shared.lit.sky, view, {*parts.radiance, *parts.depth});
+    }
+}
+
+}  // namespace
+
+void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewShape& shape,
+                std::size_t index, ViewHandles& out) {
+    const Configuration& configuration = shared.configuration;
+    const ShadingPathInfo& path = info_of(configuration.path);
+    const FrameView view =
+        add_view_upload(graph, gpu, out.camera, rendered_size(shape.target, shared.quality));
+    const SceneData seen = add_view_cull(graph, gpu, shared.lit.scene, out.camera);
+
+    FrameParts asked = asked_parts(shape.keep, shared.extensions);
+    if (shared.vpls) {
+        out.interleave = std::max(interleaving(configuration.interleave, shared.vpls->count, shape.target),
+                                  shared.quality.interleave);
+    }
+    // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
+    const bool gathers = shared.vpls && (out.interleave > 1 || asked.indirect ||
+                                         shared.vpls->count > most_asked(shared.vpls->light));
+    asked.depth |= gathers;
+
+    const FoundSurfaces found = out.host ? FoundSurfaces(add_host_surfaces(graph, gpu, *out.host, view))
+                                         : find_surfaces(graph, gpu, path.surfaces, seen, view, asked);
+    ViewFrame parts = first_parts(shared, index, view, found);
+    extend(graph, shared, ExtensionPlace::after_surfaces, parts);
+
+    const bool bounds_lists = out.host || path.surfaces != SurfaceStage::forward;
+    out.lists =
+        add_lists(graph, gpu, configuration, shared.lit, view, bounds_lists ? parts.depth : std::nullopt);
+    if (out.lists) {
+        parts.list_first = out.lists->first;
+        parts.list_count = out.lists->count;
+        parts.list_entries = out.lists->entries;
+    }
+    if (gathers) {
+        parts.indirect = gather_vpls(graph, gpu, {*parts.depth, *parts.normal}, *shared.vpls, view, out);
+    }
+
+    shade(graph, gpu, shared, seen, view, out, parts);
+    if (!out.host) {
+        add_sources(graph, gpu, shared, seen, view, parts);
+    }
+    extend(graph, shared, ExtensionPlace::after_shading, parts);
+    if (!out.host) {
+        const Lighting lighting = lighting_of_blended(graph, gpu, shared, out);
+        parts.radiance = add_transparent(graph, gpu, seen, lighting, view, {*parts.radiance, *parts.depth},
+                                         shows_emitters(shared));
+    }
+    if (out.averaged) {
+        parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
+    }
+    extend(graph, shared, ExtensionPlace::before_tone_map, parts);
+    add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, configuration.tone_map);
+    out.parts = parts;
+}
+
+void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewFrame& parts) {
+    if (keep == FrameParts{}) {
+        return;
+    }
+    graph.add("keep", [&](Pass& pass) {
+        pass.side_effect();
+        const auto read = [&](bool wanted, const std::optional<TextureHandle>& texture) {
+            if (wanted && texture) {
+                pass.read(*texture, Usage::sampled);
+            }
+        };
+        read(keep.depth, parts.depth);
+        read(keep.normal, parts.normal);
+        read(keep.albedo, parts.albedo);
+        read(keep.indirect, parts.indirect);
+        read(keep.radiance, parts.radiance);
+        if (keep.vpls && parts.vpls) {
+            pass.read(*parts.vpls, Usage::storage);
+        }
+    });
+}
+
+}  // namespace candela

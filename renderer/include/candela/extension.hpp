@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <candela/api.hpp>
+#include <candela/graph/frame_graph.hpp>
+#include <candela/view.hpp>
+
+namespace candela {
+
+namespace gpu {
+struct Light;
+struct Vpl;
+}  // namespace gpu
+
+/// GLSL source of the structs in the buffers of a frame, such as Light and Vpl, for a host's own shaders:
+/// layout std430. Static storage duration.
+[[nodiscard]] CANDELA_API std::string_view glsl_types();
+
+/// Where in a view's frame an extension adds its passes.
+enum class ExtensionPlace : std::uint8_t {
+    after_surfaces,   ///< before shading; there is no radiance yet
+    after_shading,    ///< radiance of the solid surfaces and of the sky; blended surfaces follow
+    before_tone_map,  ///< radiance of the whole picture, with refinement the mean of all frames
+};
+
+/// Handles of a view's frame at the place of an extension: inputs for its passes. An extension replaces a
+/// handle by that of its own result, for example `radiance`; what follows in the frame then reads that. Sizes
+/// and formats are those of FrameResults. Parts that were not asked for may be missing.
+struct ViewFrame {
+    std::size_t index = 0;  ///< of the view in the call of Renderer::render
+    glm::uvec2 size{1};     ///< pixels of the textures
+    ValueHandle<CameraView> view{};
+    std::optional<TextureHandle> depth{};
+    std::optional<TextureHandle> normal{};
+    std::optional<TextureHandle> albedo{};
+    std::optional<TextureHandle> indirect{};
+    std::optional<TextureHandle> radiance{};
+    BufferHandle<gpu::Light> lights{};             ///< the scene's lights: `Light` as in glsl_types()
+    std::optional<BufferHandle<gpu::Vpl>> vpls{};  ///< the VPLs: `Vpl` as in glsl_types()
+    std::optional<BufferHandle<std::uint32_t>> list_first{};  ///< light lists, by cell: where its list begins
+    std::optional<BufferHandle<std::uint32_t>> list_count{};  ///< by cell: the length of its list
+    std::optional<BufferHandle<std::uint32_t>> list_entries{};  ///< indices of lights, list after list
+};
+
+/// Passes of a host in the frames of a renderer. They are declared like Candela's own: they run only when
+/// what they read has changed, appear in Renderer::describe and in the times, and are verified. Objects are
+/// GL names (Execution::object). Before a pass runs, its attachments and bindings are bound, the viewport
+/// covers the attachments, and depth test, culling and blending are off. A pass may leave other programs,
+/// vertex arrays and bindings behind, but no capabilities, masks or pixel-store state.
+struct Extension {
+    std::string name;  ///< identifies the extension; in messages
+    ExtensionPlace place = ExtensionPlace::before_tone_map;
+    FrameParts needs{};  ///< parts that are to be there, even if the configuration alone would not make them
+    /// Adds passes to the graph. Called for each view, each time that the graph is declared: after changes of
+    /// the configuration, of sizes, of the number of views, and of what the world contains.
+    std::function<void(FrameGraph& graph, ViewFrame& frame)> declare{};
+};
+
+}  // namespace candela

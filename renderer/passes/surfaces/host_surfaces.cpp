@@ -1,0 +1,46 @@
+#include "renderer/passes/surfaces/host_surfaces.hpp"
+
+#include <glm/matrix.hpp>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/surfaces/draw_scene.hpp"
+#include "shaders/bindings.glsl"
+
+namespace candela {
+
+HostSurfaceInputs import_host_surfaces(FrameGraph& graph) {
+    const TextureDesc any;  // the host's sizes and formats are known only to the shader
+    return {.depth = graph.texture("host depth", any, Lifetime::imported),
+            .normal = graph.texture("host normal", any, Lifetime::imported),
+            .albedo = graph.texture("host albedo", any, Lifetime::imported),
+            .description = graph.import_value<HostSurfaces>("host surfaces")};
+}
+
+Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
+                          const FrameView& view) {
+    return graph.add("host-surfaces", [&](Pass& pass) {
+        pass.read(inputs.albedo, {Usage::sampled, UNIT_ALBEDO});
+        pass.read(inputs.normal, {Usage::sampled, UNIT_NORMAL});
+        pass.read(inputs.depth, {Usage::sampled, UNIT_DEPTH});
+        pass.read(inputs.description);
+        read_view(pass, view);
+        const gl::Program& program = gpu.program({"output/fullscreen.vert", "surfaces/host_surfaces.frag"});
+        const Gbuffer out = write_gbuffer(graph, pass, view.size);
+        pass.run([=, &gpu, &program, description = inputs.description](Execution& run) {
+            const HostSurfaces& host = run.value(description);
+            program.set("view_from_host_clip", glm::inverse(host.clip_from_view));
+            program.set("clip_depth_from_0", host.clip_depth_from_0);
+            program.set("empty_depth", host.empty_depth);
+            program.set("normal_encoding", static_cast<std::uint32_t>(host.normal_encoding));
+            program.set("world_from_normal", host.world_from_normal);
+            for (const GLuint unit : {UNIT_ALBEDO, UNIT_NORMAL, UNIT_DEPTH}) {
+                gpu.nearest().bind(unit);
+            }
+            begin_surfaces(gpu);
+            gpu.draw_fullscreen(program);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <candela/graph/frame_graph.hpp>
+#include <candela/view.hpp>
+#include "renderer/gpu.hpp"
+#include "renderer/passes/surfaces/gbuffer.hpp"
+#include "renderer/passes/view/view.hpp"
+
+namespace candela {
+
+/// The host's textures in the frame graph, and how to read them.
+struct HostSurfaceInputs {
+    TextureHandle depth;  ///< imported, as are the others
+    TextureHandle normal;
+    TextureHandle albedo;
+    ValueHandle<HostSurfaces> description;  ///< imported
+};
+[[nodiscard]] HostSurfaceInputs import_host_surfaces(FrameGraph& graph);
+
+/// Adds node `host-surfaces` (raster): a G-buffer from surfaces that the host has drawn. Each pixel takes the
+/// texel of the host's at its centre. Depends on the host's textures and the view.
+[[nodiscard]] Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
+                                        const FrameView& view);
+
+}  // namespace candela

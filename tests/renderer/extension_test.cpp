@@ -1,0 +1,263 @@
+// Passes of a host in the frames of a renderer.
+
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/device_of.hpp"
+#include "renderer/gl/program.hpp"
+#include "tests/renderer/path_fixture.hpp"
+#include "tests/renderer/texels.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{24, 18};
+
+/// The host's own component.
+struct Gain {
+    float factor = 1.0F;
+    bool operator==(const Gain&) const = default;
+};
+
+float gain_of(const World& world) {
+    float factor = 1.0F;
+    for (const auto& [entity, gain] : world.view<Gain>()) {
+        factor *= gain.factor;
+    }
+    return factor;
+}
+
+constexpr std::string_view triangle = R"(
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+})";
+constexpr std::string_view scale = R"(
+layout(binding = 3) uniform sampler2D radiance;
+uniform float factor;
+layout(location = 0) out vec4 scaled;
+void main() { scaled = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0) * vec4(vec3(factor), 1.0); })";
+
+class ExtensionTests : public RenderFixture {
+ protected:
+    ExtensionTests() {
+        Configuration configuration = linear_configuration();
+        configuration.vpls.count = 32;
+        configure(configuration);
+    }
+
+    /// Multiplies radiance by `factor(world)`, in a pass of this name.
+    template <class Factor>
+    [[nodiscard]] Extension scaling(std::string name, ExtensionPlace place, Factor factor) {
+        const std::vector<gl::EmbeddedShader> files{{"triangle.vert", triangle}, {"scale.frag", scale}};
+        const auto program = std::make_shared<gl::Program>(
+            gl::compile(device, gl::ShaderLibrary{files}, {"triangle.vert", "scale.frag"}));
+        const auto vertices = std::make_shared<gl::VertexArray>(device, "host's");
+        Extension extension{.name = name, .place = place};
+        extension.declare = [=, this](FrameGraph& graph, ViewFrame& frame) {
+            frame.radiance = graph.add(name, [&](Pass& pass) {
+                pass.read<Gain>();
+                pass.read(*frame.radiance, {Usage::sampled, 3});
+                const auto out = pass.write(graph.texture(name + " radiance", {frame.size, Format::rgba32f}),
+                                            Usage::colour_target);
+                pass.run([=, this](Execution& run) {
+                    program->set("factor", factor(run.world()));
+                    program->use();
+                    vertices->bind();
+                    device.gl().DrawArrays(GL_TRIANGLES, 0, 3);
+                });
+                return out;
+            });
+        };
+        return extension;
+    }
+
+    Picture frame() { return render(scene, size); }
+
+    Scene scene = cornell_box();
+};
+
+Picture operator*(float factor, Picture picture) {
+    for (glm::vec3& pixel : picture.pixels) {
+        pixel *= factor;
+    }
+    return picture;
+}
+
+}  // namespace
+
+TEST_SUITE("extensions") {
+    TEST_CASE_FIXTURE(ExtensionTests, "a pass of the host's is driven by its own component") {
+        const Picture usual = frame();
+        REQUIRE(renderer.extend(scaling("gain", ExtensionPlace::before_tone_map, gain_of)).empty());
+        CHECK(frame() == usual);
+        CHECK(frame() == usual);
+        CHECK_FALSE(ran("gain"));
+        CHECK_FALSE(ran("deferred"));
+        const Entity knob = add(scene.world, Gain{2.0F});
+        CHECK(frame() == 2.0F * usual);
+        CHECK(ran("gain"));
+        CHECK_FALSE(ran("deferred"));
+        scene.world.destroy(knob);
+        CHECK(frame() == usual);
+        CHECK(renderer.describe(GraphFormat::text).find("gain radiance") != std::string::npos);
+        renderer.remove_extension("gain");
+        CHECK(frame() == usual);
+        CHECK(renderer.describe(GraphFormat::text).find("gain") == std::string::npos);
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views and configurations") {
+        const Picture usual = frame();
+        REQUIRE(
+            renderer
+                .extend(scaling("double", ExtensionPlace::after_shading, [](const World&) { return 2.0F; }))
+                .empty());
+        REQUIRE(
+            renderer
+                .extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 3.0F; }))
+                .empty());
+        CHECK(frame() == 6.0F * usual);
+        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::clustered_deferred}) {
+            Configuration configuration = renderer.configuration();
+            configuration.path = path;
+            configure(configuration);
+            CHECK(relative_mean_square(frame(), 6.0F * usual) < 1e-10);  // paths differ by rounding
+        }
+        const RenderTarget second(device, size);
+        const RenderTarget first(device, size);
+        const std::vector<RenderView> views{{.camera = scene.camera, .target = first.target()},
+                                            {.camera = scene.camera, .target = second.target()}};
+        renderer.render(scene.world, views);
+        CHECK(first.read() == second.read());
+        CHECK(renderer.describe(GraphFormat::text).find("triple 2") != std::string::npos);
+        // The same name replaces.
+        REQUIRE(
+            renderer
+                .extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 0.5F; }))
+                .empty());
+        CHECK(relative_mean_square(frame(), usual) < 1e-10);
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests, "extensions get the parts that they need, on every path") {
+        std::vector<ViewFrame> seen;
+        Extension look{.name = "look", .place = ExtensionPlace::after_surfaces};
+        look.needs = {.depth = true, .normal = true, .albedo = true};
+        look.declare = [&](FrameGraph&, ViewFrame& parts) { seen.push_back(parts); };
+        REQUIRE(renderer.extend(look).empty());
+        look.name = "look later";
+        look.place = ExtensionPlace::before_tone_map;
+        look.needs = {.indirect = true};
+        REQUIRE(renderer.extend(look).empty());
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            Configuration configuration = renderer.configuration();
+            configuration.path = path;
+            configuration.indirect = false;  // so that configuring declares the graph in any case
+            configure(configuration);
+            configuration.indirect = true;
+            seen.clear();
+            configure(configuration);
+            REQUIRE(seen.size() == 2);
+            CHECK(seen[0].depth);
+            CHECK(seen[0].normal);
+            CHECK(seen[0].albedo);
+            CHECK_FALSE(seen[0].radiance);
+            CHECK(seen[0].vpls);
+            CHECK(seen[1].indirect);
+            CHECK(seen[1].radiance);
+            CHECK(seen[1].list_count.has_value() == (info_of(path).lights != LightList::all));
+        }
+        CHECK(mean(frame()) > 0.01);
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests, "a faulty extension is refused by name and changes nothing") {
+        const Picture usual = frame();
+        const auto refused = [&](auto declare) {
+            Extension extension{.name = "faulty"};
+            extension.declare = declare;
+            const std::vector<std::string> errors = renderer.extend(extension);
+            CHECK(frame() == usual);
+            CHECK_FALSE(ran("deferred"));
+            REQUIRE(errors.size() == 1);
+            return errors.front();
+        };
+        const auto twice = [](FrameGraph& graph, ViewFrame&) { graph.add("deferred", [](Pass&) {}); };
+        CHECK(refused(twice).find("'deferred'") != std::string::npos);
+        const auto unwritten = [](FrameGraph& graph, ViewFrame&) {
+            graph.add("thirsty", [&](Pass& pass) {
+                pass.side_effect();
+                pass.read(graph.texture("nothing", {}), Usage::sampled);
+            });
+        };
+        CHECK(refused(unwritten).find("'thirsty'") != std::string::npos);
+        CHECK(refused([](FrameGraph&, ViewFrame&) { throw std::runtime_error("no such file"); }) ==
+              "no such file");
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests,
+                      "an extension that throws while it runs leaves the target, and can recover") {
+        const Picture usual = frame();
+        bool fails = true;
+        const auto factor = [&](const World&) {
+            if (fails) throw std::runtime_error("not now");
+            return 1.0F;
+        };
+        REQUIRE(renderer.extend(scaling("moody", ExtensionPlace::before_tone_map, factor)).empty());
+        const RenderTarget target(device, size);
+        CHECK_THROWS_WITH(renderer.render(scene.world, scene.camera, target.target()), "not now");
+        CHECK(mean(target.read()) == 0.0);
+        fails = false;
+        renderer.render(scene.world, scene.camera, target.target());
+        CHECK(target.read() == usual);
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests,
+                      "verification finds an input that a pass of the host's does not declare") {
+        float hidden = 1.0F;
+        REQUIRE(
+            renderer
+                .extend(scaling("sly", ExtensionPlace::after_shading, [&](const World&) { return hidden; }))
+                .empty());
+        renderer.verify(true);
+        static_cast<void>(frame());
+        hidden = 2.0F;
+        const RenderTarget target(device, size);
+        std::string message;
+        try {
+            renderer.render(scene.world, scene.camera, target.target());
+        } catch (const GraphError& error) {
+            message = error.what();
+        }
+        CHECK(message.find("'sly'") != std::string::npos);
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests, "extensions that come and go leak nothing") {
+        const auto come_and_go = [&] {
+            REQUIRE(renderer.extend(scaling("gain", ExtensionPlace::before_tone_map, gain_of)).empty());
+            static_cast<void>(frame());
+            renderer.remove_extension("gain");
+            static_cast<void>(frame());
+        };
+        // What was used remains in the pool of the graph, and passes draw to either of its textures in turn.
+        for (int i = 0; i < 4; ++i) {
+            come_and_go();
+        }
+        const gl::ObjectCounts before = device_of(renderer).live();
+        for (int i = 0; i < 20; ++i) {
+            come_and_go();
+        }
+        const gl::ObjectCounts after = device_of(renderer).live();
+        // Queries of times that have not arrived yet come in addition.
+        for (const gl::ObjectKind kind :
+             {gl::ObjectKind::buffer, gl::ObjectKind::texture, gl::ObjectKind::framebuffer,
+              gl::ObjectKind::vertex_array, gl::ObjectKind::sampler, gl::ObjectKind::program}) {
+            CAPTURE(kind);
+            CHECK(after[kind] == before[kind]);
+        }
+    }
+}

@@ -1,0 +1,188 @@
+// Surfaces that the host has drawn, in place of Candela's own.
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/matrix.hpp>
+#include <vector>
+
+#include "renderer/device_of.hpp"
+#include "tests/renderer/path_fixture.hpp"
+#include "tests/renderer/texels.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{48, 36};
+
+/// The inverse of the octahedral map, from its definition: the sum of the coordinates' absolute values is 1,
+/// and the lower half is folded over the diagonals.
+glm::vec3 decoded(glm::vec2 p) {
+    glm::vec3 n(p, 1.0F - std::abs(p.x) - std::abs(p.y));
+    if (n.z < 0.0F) {
+        n.x = std::copysign(1.0F - std::abs(p.y), p.x);
+        n.y = std::copysign(1.0F - std::abs(p.x), p.y);
+    }
+    return glm::normalize(n);
+}
+
+/// A texture of the host's with OpenGL's default parameters, which ask for mip levels that it does not have.
+class HostTexture {
+ public:
+    HostTexture(gl::Device& device, const std::vector<glm::vec4>& texels, Format format)
+        : texture_(device, "host's", {size, format}) {
+        std::vector<float> channels;
+        for (const glm::vec4& texel : texels) {
+            channels.push_back(texel.x);
+            if (format == Format::rgba32f) {
+                channels.insert(channels.end(), {texel.y, texel.z, texel.w});
+            }
+        }
+        texture_.upload(std::as_bytes(std::span(channels)));
+        device.gl().TextureParameteri(texture_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_LINEAR);
+    }
+    [[nodiscard]] GLuint name() const { return texture_.name(); }
+
+ private:
+    gl::Texture texture_;
+};
+
+class HostSurfaceTests : public RenderFixture {
+ protected:
+    HostSurfaceTests() {
+        configuration.vpls.count = 64;
+        configuration.shadows = {.cube_resolution = 64, .map_resolution = 64};
+    }
+
+    /// Renders the usual frame and keeps its surfaces.
+    Picture usual() {
+        configure(configuration);
+        const RenderView view{.camera = scene.camera,
+                              .target = target.target(),
+                              .keep = {.depth = true, .normal = true, .albedo = true}};
+        renderer.render(scene.world, {&view, 1});
+        return target.read();
+    }
+
+    /// A frame by another renderer from surfaces of the host's.
+    Picture from(const HostSurfaces& surfaces) {
+        TestedRenderer other(context->get_proc());
+        REQUIRE(other.configure(configuration).empty());
+        const RenderTarget to(device, size);
+        const RenderView view{.camera = scene.camera, .target = to.target(), .surfaces = surfaces};
+        other.render(scene.world, {&view, 1});
+        for (const PassRecord& pass : other.last_passes()) {
+            CHECK(pass.name != "gbuffer");
+            CHECK(pass.name != "forward");
+        }
+        return to.read();
+    }
+
+    Scene scene = cornell_box();
+    Configuration configuration = linear_configuration();
+    RenderTarget target{device, size};
+};
+
+// Positions that were stored and read again differ by rounding, which moves the edges of shadows by less than
+// a thousandth of a pixel; a wrong convention gives errors near 1.
+constexpr double rounding = 1e-4;
+
+}  // namespace
+
+TEST_SUITE("host surfaces") {
+    TEST_CASE_FIXTURE(HostSurfaceTests, "Candela's own surfaces come back in on every path") {
+        const Picture expected = usual();
+        const FrameResults results = renderer.results();
+        const HostSurfaces surfaces{.depth = results.depth.texture,
+                                    .normal = results.normal.texture,
+                                    .albedo = results.albedo.texture,
+                                    .clip_from_view = results.view.clip_from_view,
+                                    .clip_depth_from_0 = true,
+                                    .empty_depth = 0.0F,
+                                    .normal_encoding = NormalEncoding::octahedral};
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            configuration.path = path;
+            CHECK(relative_mean_square(from(surfaces), expected) < rounding);
+        }
+        CHECK(mean(expected) > 0.01);
+    }
+
+    TEST_CASE_FIXTURE(HostSurfaceTests, "surfaces in the conventions of other engines") {
+        // Seen at a slant, so that view space is not world space, and from far enough away that there are
+        // pixels without a surface.
+        scene.world.set(scene.camera, looking({2.5F, 2.2F, 4.7F}, {0, 1, 0}));
+        const Picture expected = usual();
+        const FrameResults results = renderer.results();
+        const gl::Functions& gl = device.gl();
+        const std::vector<glm::vec4> own_depth = depths(gl, results.depth);
+        const std::vector<glm::vec4> own_normal = texels(gl, results.normal);
+        const HostTexture albedo(device, texels(gl, results.albedo), Format::rgba32f);
+        const Camera camera = scene.world.get<Camera>(scene.camera);
+        const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+        const glm::mat4 projection =
+            glm::perspective(camera.vertical_fov, aspect, 0.5F, 20.0F);  // in [-1, 1]
+        const glm::mat3 view_from_world(results.view.view_from_world);
+
+        std::vector<glm::vec4> depth;
+        std::vector<glm::vec4> signed_world;
+        std::vector<glm::vec4> unsigned_view;
+        for (std::size_t i = 0; i < own_depth.size(); ++i) {
+            const float own = own_depth[i].x;  // near / distance: the camera has no far plane
+            const glm::vec4 clip = projection * glm::vec4(0.0F, 0.0F, -camera.near_plane / own, 1.0F);
+            depth.emplace_back(own > 0.0F ? 0.5F * clip.z / clip.w + 0.5F : 1.0F);
+            const glm::vec3 normal = decoded(own_normal[i]);
+            signed_world.emplace_back(normal, 0.0F);
+            unsigned_view.emplace_back(0.5F * (view_from_world * normal) + 0.5F, 0.0F);
+        }
+        const HostTexture host_depth(device, depth, Format::r32f);
+        HostSurfaces surfaces{
+            .depth = host_depth.name(), .albedo = albedo.name(), .clip_from_view = projection};
+
+        const HostTexture in_world(device, signed_world, Format::rgba32f);
+        surfaces.normal = in_world.name();
+        CHECK(relative_mean_square(from(surfaces), expected) < rounding);
+
+        const HostTexture in_view(device, unsigned_view, Format::rgba32f);
+        surfaces.normal = in_view.name();
+        surfaces.normal_encoding = NormalEncoding::unsigned_xyz;
+        surfaces.world_from_normal = glm::transpose(view_from_world);
+        CHECK(relative_mean_square(from(surfaces), expected) < rounding);
+
+        surfaces.world_from_normal = glm::mat3(1.0F);
+        CHECK(relative_mean_square(from(surfaces), expected) > 100.0 * rounding);
+    }
+
+    TEST_CASE_FIXTURE(HostSurfaceTests,
+                      "the host's camera may be orthographic, and refinement averages its light") {
+        scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                             .half_height = 1.2F,
+                                             .near_plane = 0.5F,
+                                             .far_plane = 8.0F});
+        const Picture expected = usual();
+        const FrameResults results = renderer.results();
+        const HostSurfaces surfaces{.depth = results.depth.texture,
+                                    .normal = results.normal.texture,
+                                    .albedo = results.albedo.texture,
+                                    .clip_from_view = results.view.clip_from_view,
+                                    .clip_depth_from_0 = true,
+                                    .empty_depth = 0.0F,
+                                    .normal_encoding = NormalEncoding::octahedral};
+        CHECK(relative_mean_square(from(surfaces), expected) < rounding);
+
+        configuration.refinement = {.enabled = true, .frames = 16};
+        TestedRenderer other(context->get_proc());
+        REQUIRE(other.configure(configuration).empty());
+        const RenderTarget to(device, size);
+        const RenderView view{.camera = scene.camera, .target = to.target(), .surfaces = surfaces};
+        for (std::uint32_t frame = 1; frame <= 8; ++frame) {
+            other.render(scene.world, {&view, 1});
+            CHECK(other.report().refined == frame);
+        }
+        // All 8 frames have the same surfels and the same samples of the pixels.
+        CHECK(relative_mean_square(to.read(), expected) < rounding);
+    }
+}

@@ -1,0 +1,208 @@
+// What a view leaves for the host after a frame.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <string>
+#include <vector>
+
+#include "renderer/device_of.hpp"
+#include "renderer/gpu_types.hpp"
+#include "tests/renderer/path_fixture.hpp"
+#include "tests/renderer/texels.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{40, 30};
+constexpr FrameParts all_parts{
+    .depth = true, .normal = true, .albedo = true, .indirect = true, .radiance = true, .vpls = true};
+
+class ResultTests : public RenderFixture {
+ protected:
+    void render(const Scene& scene, const FrameParts& keep) {
+        const RenderView view{.camera = scene.camera, .target = target.target(), .keep = keep};
+        renderer.render(scene.world, {&view, 1});
+    }
+
+    RenderTarget target{device, size};
+    const gl::Functions& gl = device.gl();
+};
+
+}  // namespace
+
+TEST_SUITE("results") {
+    TEST_CASE_FIXTURE(ResultTests, "depth, normals and albedo of a plane are those of its closed form") {
+        Scene scene = ground();
+        scene.world.set(scene.light, at({0, 1, 0}));
+        scene.world.set(scene.light, PointLight{});
+        const float near = scene.world.get<Camera>(scene.camera).near_plane;
+        const Transform pose = scene.world.get<Transform>(scene.camera);
+        const glm::dvec3 forward(pose.rotation * glm::vec3(0, 0, -1));
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            configure(linear_configuration(path));
+            render(scene, all_parts);
+            const FrameResults results = renderer.results();
+            const std::vector<glm::vec4> depth = depths(gl, results.depth);
+            const std::vector<glm::vec4> normal = texels(gl, results.normal);
+            const std::vector<glm::vec4> albedo = texels(gl, results.albedo);
+            REQUIRE(depth.size() == size.x * size.y);
+            double worst = 0.0;
+            for (std::uint32_t i = 0; i < depth.size(); ++i) {
+                const PixelRay ray =
+                    pixel_ray(scene.world.get<Camera>(scene.camera), pose, size, i % size.x, i / size.x);
+                const double t = -ray.origin.y / ray.direction.y;
+                const double distance = t * glm::dot(ray.direction, forward);
+                worst = std::max(worst, std::abs(near / distance / static_cast<double>(depth[i].r) - 1.0));
+                // (0, 1, 0) and 0.5 are stored exactly.
+                CHECK(normal[i].x == 0.0F);
+                CHECK(normal[i].y == 1.0F);
+                CHECK(albedo[i].r == 0.5F);
+            }
+            CHECK(worst < 1e-5);  // some hundred roundings of floats
+        }
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "radiance is what an untouched target shows") {
+        const Scene scene = cornell_box();
+        Configuration configuration = linear_configuration();
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            configuration.path = path;
+            configure(configuration);
+            render(scene, {.radiance = true});
+            CHECK(picture_of(gl, renderer.results().radiance) == target.read());
+        }
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "albedo times indirect light is the indirect radiance") {
+        const Scene scene = cornell_box();
+        for (const Interleave interleave : {Interleave::one, Interleave::two}) {
+            Configuration configuration = linear_configuration();
+            configuration.show = Show::indirect;
+            configuration.interleave = interleave;
+            configure(configuration);
+            render(scene, all_parts);
+            const FrameResults results = renderer.results();
+            const std::vector<glm::vec4> albedo = texels(gl, results.albedo);
+            const std::vector<glm::vec4> indirect = texels(gl, results.indirect);
+            const std::vector<glm::vec4> radiance = texels(gl, results.radiance);
+            constexpr double pi = 3.14159265358979;
+            for (std::size_t i = 0; i < albedo.size(); ++i) {
+                for (int channel = 0; channel < 3; ++channel) {
+                    const double expected = static_cast<double>(albedo[i][channel]) *
+                                            static_cast<double>(indirect[i][channel]) / (pi * pi);
+                    // A few roundings of floats.
+                    CHECK(static_cast<double>(radiance[i][channel]) ==
+                          doctest::Approx(expected).epsilon(1e-5));
+                }
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "the VPLs are records as glsl_types describes them") {
+        const Scene scene = cornell_box();
+        configure(linear_configuration());
+        render(scene, {.vpls = true});
+        const FrameResults results = renderer.results();
+        REQUIRE(results.vpl_count > 0);
+        std::vector<gpu::Vpl> vpls(results.vpl_count);
+        gl.GetNamedBufferSubData(results.vpl_buffer, 0,
+                                 static_cast<GLsizeiptr>(vpls.size() * sizeof(gpu::Vpl)), vpls.data());
+        for (const gpu::Vpl& vpl : vpls) {
+            CHECK(glm::length(vpl.normal) == doctest::Approx(1.0).epsilon(1e-5));
+            CHECK(vpl.flux.x >= 0.0F);
+        }
+        CHECK(glsl_types().find("struct Vpl {") != std::string_view::npos);
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "only what was asked for is there") {
+        const Scene scene = cornell_box();
+        configure(linear_configuration(ShadingPath::forward));
+        CHECK_THROWS_AS(static_cast<void>(renderer.results(1)), GraphError);
+        render(scene, {.depth = true});
+        CHECK(renderer.results().depth.texture != 0);
+        CHECK(renderer.results().normal.texture == 0);
+        CHECK(renderer.results().radiance.texture == 0);
+        CHECK(renderer.results().vpl_buffer == 0);
+        Configuration direct = linear_configuration();
+        direct.indirect = false;
+        configure(direct);
+        render(scene, all_parts);
+        CHECK(renderer.results().indirect.texture == 0);
+        CHECK(renderer.results().vpl_count == 0);
+        CHECK(renderer.results().radiance.texture != 0);
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "results stay while nothing changes, and are not redrawn") {
+        const Scene scene = cornell_box();
+        configure(linear_configuration());
+        render(scene, all_parts);
+        const std::vector<glm::vec4> albedo = texels(gl, renderer.results().albedo);
+        const std::vector<glm::vec4> radiance = texels(gl, renderer.results().radiance);
+        for (int frame = 0; frame < 3; ++frame) {
+            render(scene, all_parts);
+            CHECK_FALSE(ran("gbuffer"));
+            CHECK_FALSE(ran("deferred"));
+        }
+        CHECK(texels(gl, renderer.results().albedo) == albedo);
+        CHECK(texels(gl, renderer.results().radiance) == radiance);
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "a floating-point target stores radiance and coverage") {
+        Scene scene = cornell_box();
+        scene.world.edit<Transform>(scene.camera, [](Transform& pose) { pose.translation.z += 3.0F; });
+        configure(linear_configuration());
+        gl::Texture colour(device, "host's", {size, Format::rgba16f});
+        gl::Framebuffer framebuffer(device, "host's");
+        framebuffer.attach_colour(0, colour.name());
+        framebuffer.draw_buffers(1);
+        const RenderView view{.camera = scene.camera, .target = {framebuffer.name(), size}};
+        renderer.render(scene.world, {&view, 1});
+        render(scene, all_parts);
+        const std::vector<glm::vec4> exact = texels(gl, renderer.results().radiance);
+        const std::vector<glm::vec4> depth = depths(gl, renderer.results().depth);
+        const std::vector<float> halves = colour.read_floats();
+        std::size_t empty = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i) {
+            // Half floats have 11 significant bits; drivers may round them down.
+            CHECK(halves[4 * i] == doctest::Approx(exact[i].r).epsilon(std::exp2(-10)).scale(1e-3));
+            CHECK(halves[4 * i + 3] == (depth[i].r > 0.0F ? 1.0F : 0.0F));
+            empty += depth[i].r > 0.0F ? 0 : 1;
+        }
+        CHECK(empty > 0);
+        CHECK(empty < exact.size());
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "without the curve, the exposure still scales radiance") {
+        const Scene scene = cornell_box();
+        Configuration configuration = linear_configuration();
+        configure(configuration);
+        render(scene, {});
+        const Picture usual = target.read();
+        configuration.tone_map.exposure_ev = 1.0F;
+        configure(configuration);
+        render(scene, {});
+        const Picture brighter = target.read();
+        for (std::size_t i = 0; i < usual.pixels.size(); ++i) {
+            CHECK(brighter.pixels[i] == 2.0F * usual.pixels[i]);
+        }
+    }
+
+    TEST_CASE_FIXTURE(ResultTests, "a texture on the GPU is tone-mapped like a frame") {
+        const Scene scene = cornell_box();
+        Configuration configuration = linear_configuration();
+        configuration.tone_map = {.enabled = true, .exposure_ev = 0.5F};
+        configure(configuration);
+        render(scene, {.radiance = true});
+        const Picture frame = target.read();
+        const RenderTarget other(device, size);
+        renderer.tone_map(renderer.results().radiance.texture, other.target());
+        CHECK(other.read() == frame);
+        CHECK(mean(frame) > 0.01);
+    }
+}
