@@ -166,14 +166,14 @@ TEST_SUITE("configuration") {
             return names;
         };
         const std::string scene =
-            "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload "
-            "view view-upload view-cull ";
+            "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload view ";
         const std::string vpls =
             "scene-motion surfel-spread surfels surfel-visibility surfel-light surfel-bounce vpl-constants ";
-        CHECK(passes_of(ShadingPath::deferred, true) ==
-              scene + vpls + "gbuffer deferred transparent tone-map");
-        CHECK(passes_of(ShadingPath::forward, true) == scene + vpls + "forward transparent tone-map");
-        CHECK(passes_of(ShadingPath::deferred, false) == scene + "gbuffer deferred transparent tone-map");
+        const std::string deferred = "view-upload view-cull gbuffer deferred transparent tone-map";
+        const std::string forward = "view-upload view-cull forward transparent tone-map";
+        CHECK(passes_of(ShadingPath::deferred, true) == scene + vpls + deferred);
+        CHECK(passes_of(ShadingPath::forward, true) == scene + vpls + forward);
+        CHECK(passes_of(ShadingPath::deferred, false) == scene + deferred);
     }
 
     TEST_CASE_FIXTURE(

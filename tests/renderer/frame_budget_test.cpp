@@ -80,6 +80,10 @@ TEST_SUITE("frame budget") {
             configure(configuration);
             graphs += renderer.describe(GraphFormat::json);
         }
+        const RenderTarget target(device, {8, 8});
+        const RenderView view{.camera = scene.camera, .target = target.target(), .surfaces = HostSurfaces{}};
+        renderer.render(scene.world, {&view, 1});
+        graphs += renderer.describe(GraphFormat::json);
         CHECK(graphs.find("\"vpl-gather\"") != std::string::npos);
         for (const std::string_view name : pixel_passes()) {
             CHECK_MESSAGE(graphs.find(fmt::format("\"{}\"", name)) != std::string::npos, name);

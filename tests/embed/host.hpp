@@ -1,0 +1,137 @@
+#pragma once
+
+// What the hosts that draw with OpenGL have in common: a context, framebuffers, programs. GL must be included
+// before.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <candela/headless_context.hpp>
+#include <candela/renderer.hpp>
+#include <candela/scene/components.hpp>
+
+namespace host {
+
+/// Prints what went wrong, and remembers it for the exit status.
+class Checks {
+ public:
+    void check(bool holds, const std::string& what) {
+        if (!holds) {
+            std::fprintf(stderr, "wrong: %s\n", what.c_str());
+            status_ = 1;
+        }
+    }
+    [[nodiscard]] int status() const { return status_; }
+
+ private:
+    int status_ = 0;
+};
+
+inline std::unique_ptr<candela::HeadlessContext> make_context() {
+    auto context = candela::HeadlessContext::create(candela::ContextKind::egl);
+    context->make_current();
+    return context;
+}
+
+/// A texture, and a framebuffer with it as its first colour attachment.
+struct Picture {
+    GLuint texture = 0;
+    GLuint framebuffer = 0;
+    glm::uvec2 size{0};
+};
+
+inline GLuint make_texture(glm::uvec2 size, GLenum format) {
+    GLuint texture = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &texture);
+    glTextureStorage2D(texture, 1, format, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y));
+    return texture;
+}
+
+inline Picture make_picture(glm::uvec2 size, GLenum format = GL_RGBA32F) {
+    Picture picture{make_texture(size, format), 0, size};
+    glCreateFramebuffers(1, &picture.framebuffer);
+    glNamedFramebufferTexture(picture.framebuffer, GL_COLOR_ATTACHMENT0, picture.texture, 0);
+    return picture;
+}
+
+inline std::vector<glm::vec4> read(const Picture& picture) {
+    std::vector<glm::vec4> pixels(static_cast<std::size_t>(picture.size.x) * picture.size.y);
+    glGetTextureImage(picture.texture, 0, GL_RGBA, GL_FLOAT,
+                      static_cast<GLsizei>(pixels.size() * sizeof(glm::vec4)), pixels.data());
+    return pixels;
+}
+
+inline GLuint make_shader(GLenum stage, const std::string& source) {
+    const GLuint shader = glCreateShader(stage);
+    const std::string whole = "#version 450 core\n" + source;
+    const char* text = whole.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    return shader;
+}
+
+inline GLuint make_program(const std::string& vertex, const std::string& fragment) {
+    const GLuint program = glCreateProgram();
+    for (const GLuint shader :
+         {make_shader(GL_VERTEX_SHADER, vertex), make_shader(GL_FRAGMENT_SHADER, fragment)}) {
+        glAttachShader(program, shader);
+        glDeleteShader(shader);
+    }
+    glLinkProgram(program);
+    GLint linked = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked == 0) std::fprintf(stderr, "a program does not link\n");
+    return program;
+}
+
+/// One triangle that covers the viewport.
+inline const std::string whole_viewport = R"(
+void main() {
+    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+})";
+
+/// A square of `half` metres to each side in the plane y = 0, facing +Y.
+inline std::shared_ptr<const candela::Mesh> ground(float half, float albedo) {
+    auto material = std::make_shared<candela::Material>();
+    material->base_colour = glm::vec4(glm::vec3(albedo), 1.0F);
+    candela::Primitive square;
+    square.material = material;
+    for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(-1, 1), glm::vec2(1, 1), glm::vec2(1, -1)}) {
+        square.vertices.push_back({{half * corner.x, 0.0F, half * corner.y}, {0, 1, 0}, {0, 0}});
+    }
+    square.indices = {0, 1, 2, 0, 2, 3};
+    auto mesh = std::make_shared<candela::Mesh>();
+    mesh->primitives.push_back(std::move(square));
+    return mesh;
+}
+
+/// Looks straight down from 3 m above the origin.
+inline candela::Transform from_above() {
+    return {.translation = {0, 3, 0}, .rotation = glm::quat(std::sqrt(0.5F), -std::sqrt(0.5F), 0.0F, 0.0F)};
+}
+
+/// A ground of albedo 0.5 with a lamp of 3 cd, 1 m above its centre.
+struct Scene {
+    candela::World world;
+    candela::Entity camera;
+    candela::Entity lamp;
+};
+
+inline Scene make_scene() {
+    Scene scene;
+    const candela::Entity floor = scene.world.create();
+    scene.world.set(floor, candela::MeshInstance{ground(4.0F, 0.5F)});
+    scene.camera = scene.world.create();
+    scene.world.set(scene.camera, from_above());
+    scene.world.set(scene.camera, candela::Camera{});
+    scene.lamp = scene.world.create();
+    scene.world.set(scene.lamp, candela::Transform{.translation = {0, 1, 0}});
+    scene.world.set(scene.lamp, candela::PointLight{.intensity = 3.0F});
+    return scene;
+}
+
+}  // namespace host
