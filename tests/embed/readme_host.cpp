@@ -1,56 +1,32 @@
-// The first example of README.md, word for word: CMakeLists.txt extracts it. Around it stands what README.md
-// leaves to the host: a window, the lamp's way, and the end of the loop.
+// The program in README.md, word for word: CMakeLists.txt extracts it. It looks at what was drawn before it
+// is shown, and closes the window after a few frames.
 
 #include <GL/gl.h>
 #include <GLFW/glfw3.h>
 
 #include <array>
-#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
-#include "readme_includes.inc"
+static int frames = 0;
 
-namespace {
-
-constexpr unsigned width = 160;
-constexpr unsigned height = 120;
-int frames = 0;
-GLFWwindow* window = nullptr;
-std::array<unsigned char, 4> middle{};  // of the last frame
-
-/// Shows what was drawn, and asks for four frames.
-struct Running {
-    operator bool() const {
-        glReadPixels(width / 2, height / 2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, middle.data());
-        glfwSwapBuffers(window);
-        glfwPollEvents();
-        return frames++ < 4;
-    }
-};
-
-glm::vec3 lamp_position() {
-    return {0.3F * std::sin(static_cast<float>(frames)), 1.5F, 0.5F};
-}
-
-}  // namespace
-
-int main() {
-    if (glfwInit() == GLFW_FALSE) {
-        std::puts("readme_host needs a display");
-        return 1;
-    }
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    window = glfwCreateWindow(width, height, "host", nullptr, nullptr);
-    glfwMakeContextCurrent(window);
-    const Running running;
-
-#include "readme_body.inc"
-
+/// In place of glfwSwapBuffers.
+void look_and_swap(GLFWwindow* window) {
+    std::array<unsigned char, 4> middle{};
+    glReadPixels(320, 180, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, middle.data());
     if (middle[0] < 20) {
         std::puts("the lamp does not light the middle of the picture");
-        return 1;
+        std::exit(1);
     }
-    return 0;
+    ++frames;
+    glfwSwapBuffers(window);
 }
+
+/// In place of glfwWindowShouldClose.
+int close_after_four(GLFWwindow*) {
+    return frames == 4 ? GLFW_TRUE : GLFW_FALSE;
+}
+
+#define glfwSwapBuffers look_and_swap
+#define glfwWindowShouldClose close_after_four
+#include "readme_example.inc"
