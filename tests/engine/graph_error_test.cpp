@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <candela/graph/compile.hpp>
+#include <candela/graph/describe.hpp>
 
 namespace {
 
@@ -274,6 +275,29 @@ TEST_CASE("graph error: names used twice") {
     CHECK(errors[0] == CompileError{ErrorCode::duplicate_pass, "two passes are called 'draw'"});
     CHECK(errors[1] == CompileError{ErrorCode::duplicate_resource,
                                     "two textures that are kept or imported are called 'kept'"});
+}
+
+TEST_CASE("the same passes can be declared twice if something is appended to their names") {
+    FrameGraph graph;
+    const auto declare = [&] {
+        const TextureHandle image =
+            graph.texture("image", {.size = glm::uvec2(4), .mips = 2}, Lifetime::persistent);
+        graph.add("draw", [&](Pass& pass) {
+            pass.side_effect();
+            (void)pass.write(graph.mip(image, 1), Usage::colour_target);
+        });
+    };
+    declare();
+    graph.append_to_names(" 2");
+    declare();
+    graph.append_to_names("");
+    graph.add("last", [](Pass& pass) { pass.side_effect(); });
+    const std::string text = describe_text(compile(std::move(graph)).take());
+    for (const std::string line :
+         {"0 draw (side", "1 draw 2 (side", "2 last (side", "  image mip 1:", "  image 2 mip 1:"}) {
+        CAPTURE(line);
+        CHECK(text.find(line) != std::string::npos);
+    }
 }
 
 TEST_CASE("graph error: a pass inside a pass") {
