@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -257,6 +258,10 @@ std::string percent_decoded(std::string_view uri) {
 }
 
 }  // namespace
+
+bool starts_with(Bytes bytes, std::string_view prefix) {
+    return bytes.size() >= prefix.size() && std::memcmp(bytes.data(), prefix.data(), prefix.size()) == 0;
+}
 
 std::vector<unsigned char> read_file(const std::filesystem::path& path, std::string_view called) {
     std::error_code ignored;

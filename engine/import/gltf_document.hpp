@@ -29,6 +29,11 @@ struct Document {
     std::vector<std::string> warnings;
 };
 
+using Bytes = std::span<const unsigned char>;
+
+/// Whether a file of these bytes begins with `prefix`, which tells what kind of file it is.
+[[nodiscard]] bool starts_with(Bytes bytes, std::string_view prefix);
+
 /// Reads a whole regular file. Throws SceneError, which names the file as `called`.
 [[nodiscard]] std::vector<unsigned char> read_file(const std::filesystem::path& path,
                                                    std::string_view called);
@@ -40,7 +45,6 @@ struct Document {
 
 /// Parses and checks .gltf or .glb, distinguished by their first bytes, and loads the buffers. Throws
 /// SceneError for malformed data and for required extensions that are not supported.
-[[nodiscard]] Document read_document(std::span<const unsigned char> bytes,
-                                     const std::filesystem::path& base_directory);
+[[nodiscard]] Document read_document(Bytes bytes, const std::filesystem::path& base_directory);
 
 }  // namespace candela::gltf

@@ -18,13 +18,8 @@ namespace candela::gltf {
 
 namespace {
 
-using Bytes = std::span<const unsigned char>;
 using ImageKey = std::tuple<int, Wrap, Wrap>;  // index, wrap_u, wrap_v
 using Images = std::map<ImageKey, std::shared_ptr<const Image>>;
-
-bool starts_with(Bytes bytes, std::string_view prefix) {
-    return bytes.size() >= prefix.size() && std::memcmp(bytes.data(), prefix.data(), prefix.size()) == 0;
-}
 
 Image decode(Bytes encoded) {
     // Upper bound of pixels per encoded byte, to reject headers with impossible sizes. Deflate compresses at

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
@@ -17,10 +17,7 @@
 #include "engine/import/gltf_document.hpp"
 
 namespace candela {
-
 namespace {
-
-using Bytes = std::span<const unsigned char>;
 
 constexpr std::uint32_t widest = 16384;
 
@@ -52,11 +49,7 @@ SkyPicture to_picture(int width, int height, const Texels& texels, std::size_t c
     return picture;
 }
 
-bool starts_with(Bytes bytes, std::string_view prefix) {
-    return bytes.size() >= prefix.size() && std::memcmp(bytes.data(), prefix.data(), prefix.size()) == 0;
-}
-
-SkyPicture read_hdr(Bytes bytes) {
+SkyPicture read_hdr(gltf::Bytes bytes) {
     if (bytes.size() > std::numeric_limits<int>::max()) {
         throw SceneError("it exceeds 2 GiB");
     }
@@ -86,7 +79,7 @@ void check_exr(int result, const char* message) {
     throw SceneError(fmt::format("it is not a readable OpenEXR picture: {}", reason));
 }
 
-SkyPicture read_exr(Bytes bytes) {
+SkyPicture read_exr(gltf::Bytes bytes) {
     EXRVersion version{};
     check_exr(ParseEXRVersionFromMemory(&version, bytes.data(), bytes.size()), nullptr);
     EXRHeader header{};
@@ -122,11 +115,11 @@ std::shared_ptr<const SkyPicture> checked(SkyPicture picture) {
 
 }  // namespace
 
-std::shared_ptr<const SkyPicture> decode_sky_picture(Bytes bytes) {
-    if (starts_with(bytes, "\x76\x2f\x31\x01")) {
+std::shared_ptr<const SkyPicture> decode_sky_picture(gltf::Bytes bytes) {
+    if (gltf::starts_with(bytes, "\x76\x2f\x31\x01")) {
         return checked(read_exr(bytes));
     }
-    if (starts_with(bytes, "#?")) {
+    if (gltf::starts_with(bytes, "#?")) {
         return checked(read_hdr(bytes));
     }
     throw SceneError("it is neither a Radiance (.hdr) nor an OpenEXR (.exr) picture");

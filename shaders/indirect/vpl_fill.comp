@@ -1,6 +1,6 @@
 // Gathers VPLs for the listed pixels, for which reconstruction found too few classes. Such a pixel sums every second
 // VPL; neighbouring pixels sum different halves. The result is the mean of both estimates, weighted by
-// the number of VPLs behind each: theory.md, "Pixels that lack neighbours". One invocation a listed pixel.
+// the number of VPLs behind each: theory.md, "Pixels that lack neighbours". One invocation per listed pixel.
 #include "bindings.glsl"
 #include "surfaces/visible_surface.glsl"
 #include "indirect/vpl_light.glsl"

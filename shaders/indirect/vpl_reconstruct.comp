@@ -2,7 +2,7 @@
 // first along rows, then (COLUMNS) along columns of that result. Along a line the classes repeat every `interleave`
 // pixels. Each class counts once, interpolated linearly between its two nearest pixels, as far as they lie on the same
 // surface as the pixel. Alpha: the share of the classes that were found. See theory.md, "Interpolation between
-// classes". One invocation a pixel.
+// classes". One invocation per pixel.
 #include "bindings.glsl"
 #include "surfaces/visible_surface.glsl"
 

@@ -1,4 +1,4 @@
-// Culls the light lists of clusters: screen tiles divided into depth slices. One invocation a cluster.
+// Culls the light lists of clusters: screen tiles divided into depth slices. One invocation per cluster.
 #include "lights/light_cull.glsl"
 
 void main() {

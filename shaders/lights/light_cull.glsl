@@ -1,4 +1,4 @@
-// Culls the light list of a cell in place: lights that reach the cell are kept, in their order. One invocation a cell.
+// Culls the light list of a cell in place: lights that reach the cell are kept, in their order. One invocation per cell.
 #include "bindings.glsl"
 #include "lights/light_cells.glsl"
 #include "lights/lights.glsl"

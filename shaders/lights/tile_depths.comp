@@ -1,5 +1,5 @@
 // Finds the nearest and farthest surface in each screen tile, and which of 32 depth slices between them have surfaces.
-// One work group a tile.
+// One work group per tile.
 #include "bindings.glsl"
 #include "lights/light_cells.glsl"
 #include "types.glsl"

@@ -1,4 +1,4 @@
-// Running mean of the radiance of `count` frames. One fragment a pixel.
+// Running mean of the radiance of `count` frames. One fragment per pixel.
 #include "bindings.glsl"
 
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;

@@ -1,4 +1,4 @@
-// Shades the G-buffer. One work group a block of PIXEL_BLOCK² pixels, one invocation SURFACES of them.
+// Shades the G-buffer. One work group per block of PIXEL_BLOCK² pixels, one invocation SURFACES of them.
 #include "bindings.glsl"
 
 #include "shading/pixel_block.glsl"

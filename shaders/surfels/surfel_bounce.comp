@@ -1,6 +1,6 @@
 // One bounce: surfels gather the light that others reflect. In the first dispatch (FIRST) that is the reflected flux of
 // the lights, placed where it falls within each cell; later it is what the others gathered in the previous bounce. Adds
-// to CellLight::indirect. One invocation a surfel.
+// to CellLight::indirect. One invocation per surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;

@@ -1,6 +1,6 @@
 // Sums up the points of a cell: its flux, mean albedo, area, and the disc that its emitted and directly
 // reflected flux comes from.
-// One invocation a surfel.
+// One invocation per surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;

@@ -1,5 +1,5 @@
 // Finds which share of a surfel's hemisphere is covered by reflecting surfaces, with COVER_PARTS · COVER_RAYS
-// cosine-weighted rays. The form factors of the surfel's row should add up to it. One work group a surfel, COVER_RAYS
+// cosine-weighted rays. The form factors of the surfel's row should add up to it. One work group per surfel, COVER_RAYS
 // rays an invocation, which bounds its loops.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"

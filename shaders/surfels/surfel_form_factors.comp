@@ -1,5 +1,5 @@
 // Form factors: the share of a surfel's cosine-weighted hemisphere that the cell in each column fills, 0 where a ray
-// finds the other surfel hidden. One invocation a row and two columns; work groups: x along rows, y along pairs of
+// finds the other surfel hidden. One invocation per row and two columns; work groups: x along rows, y along pairs of
 // columns.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"

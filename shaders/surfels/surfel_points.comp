@@ -1,5 +1,5 @@
 // Finds which points of its cell a surfel sees. If a wall stands on the cell, light that falls behind the wall must not
-// be sent on from in front of it: that would leak through the wall. One invocation a cell point.
+// be sent on from in front of it: that would leak through the wall. One invocation per cell point.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "surfels/surfel.glsl"

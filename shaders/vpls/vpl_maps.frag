@@ -1,4 +1,4 @@
-// Depth map of a VPL: traces a ray through the centre of the texel. One fragment a texel.
+// Depth map of a VPL: traces a ray through the centre of the texel. One fragment per texel.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"

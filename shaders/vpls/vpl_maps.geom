@@ -1,4 +1,4 @@
-// Emits the square of a VPL's slot in its layer of the atlas. One invocation a VPL.
+// Emits the square of a VPL's slot in its layer of the atlas. One invocation per VPL.
 #include "bindings.glsl"
 #include "scene/changed_boxes.glsl"
 #include "types.glsl"

@@ -1,4 +1,4 @@
-// Writes a VPL for every bounce of the traced paths, and the account of their flux. One invocation a path. Path and
+// Writes a VPL for every bounce of the traced paths, and the account of their flux. One invocation per path. Path and
 // bounce give the VPL's index, so VPLs are in the order of the paths.
 #include "bindings.glsl"
 #include "lights/lights.glsl"

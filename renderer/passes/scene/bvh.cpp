@@ -76,7 +76,7 @@ void upload_hierarchy(const Gpu& gpu, Execution& run, const Tracing& out, const 
 
 Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
     return graph.add("bvh", [&](Pass& pass) {
-        pass.remembers();  // a tree refitted to moved triangles differs from one that is built anew
+        pass.remembers();  // a tree refitted to moved triangles differs from a new one
         pass.read(scene.layout);
         pass.read(scene.placement);
         const auto hierarchy = pass.update(graph.value<SceneHierarchy>("hierarchy"));

@@ -24,7 +24,8 @@ struct SkyGrid {
     }
 };
 
-[[nodiscard]] inline float sum_of_channels(glm::vec3 rgb) {
+template <class T>
+[[nodiscard]] T sum_of_channels(const glm::vec<3, T>& rgb) {
     return rgb.r + rgb.g + rgb.b;
 }
 

@@ -13,26 +13,25 @@
 namespace candela {
 namespace {
 
-/// All light of a patch.
-struct PatchLight {
+SkyPatch patch_of(const SkyGrid& grid, glm::uvec2 first, glm::uvec2 last) {
+    SkyPatch patch{.first = first, .last = last};
+    for (std::uint32_t y = first.y; y < last.y; ++y) {
+        for (std::uint32_t x = first.x; x < last.x; ++x) {
+            patch.light += grid.at(x, y).light;
+            patch.moment += grid.at(x, y).moment;
+        }
+    }
+    return patch;
+}
+
+/// Sums over the cells in a cone around a unit direction.
+struct ConeLight {
     glm::dvec3 light{0.0};
     glm::dvec3 moment{0.0};
 };
 
-PatchLight light_of(const SkyGrid& grid, const SkyPatch& patch) {
-    PatchLight sum;
-    for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
-        for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x) {
-            sum.light += grid.at(x, y).light;
-            sum.moment += grid.at(x, y).moment;
-        }
-    }
-    return sum;
-}
-
-/// Light of the cells in a cone around a unit direction.
-PatchLight light_in_cone(const SkyGrid& grid, glm::vec3 axis, float cosine) {
-    PatchLight sum;
+ConeLight light_in_cone(const SkyGrid& grid, glm::vec3 axis, float cosine) {
+    ConeLight sum;
     for (const SkyGrid::Cell& cell : grid.cells) {
         if (glm::dot(cell.moment, axis) > cosine * glm::length(cell.moment)) {
             sum.light += cell.light;
@@ -55,10 +54,10 @@ std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
     // The brightest cell may be at the sun's edge.
     const glm::dvec3 near = light_in_cone(grid, glm::normalize(brightest->moment), two_degrees).moment;
     const glm::vec3 axis(glm::normalize(near));
-    const PatchLight sun = light_in_cone(grid, axis, one_degree);
-    const double light = sun.light.r + sun.light.g + sun.light.b;
-    const glm::dvec3 around = light_in_cone(grid, axis, two_degrees).light;
-    if (light < 0.05 * all || light < 0.8 * (around.r + around.g + around.b)) {
+    const ConeLight sun = light_in_cone(grid, axis, one_degree);
+    const double light = sum_of_channels(sun.light);
+    const double around = sum_of_channels(light_in_cone(grid, axis, two_degrees).light);
+    if (light < 0.05 * all || light < 0.8 * around) {
         return std::nullopt;
     }
     for (SkyGrid::Cell& cell : grid.cells) {
@@ -71,10 +70,10 @@ std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
 
 std::vector<SkySun> take_suns(SkyGrid& grid) {
     constexpr std::size_t most_suns = 4;
-    const glm::dvec3 light = light_of(grid, {glm::uvec2(0), grid.size}).light;
+    const double all = sum_of_channels(patch_of(grid, glm::uvec2(0), grid.size).light);
     std::vector<SkySun> suns;
     while (suns.size() < most_suns) {
-        const std::optional<SkySun> sun = take_sun(grid, light.r + light.g + light.b);
+        const std::optional<SkySun> sun = take_sun(grid, all);
         if (!sun) {
             break;
         }
@@ -100,10 +99,10 @@ struct Candidate {
     float need = 0.0F;
 };
 
-Candidate candidate_of(const SkyGrid& grid, const SkyPatch& patch) {
+Candidate candidate_of(const SkyGrid& grid, glm::uvec2 first, glm::uvec2 last) {
+    const SkyPatch patch = patch_of(grid, first, last);
     const glm::vec2 extent = extent_of(grid, patch);
-    const glm::dvec3 light = light_of(grid, patch).light;
-    return {patch, static_cast<float>(light.r + light.g + light.b) * std::max(extent.x, extent.y)};
+    return {patch, static_cast<float>(sum_of_channels(patch.light)) * std::max(extent.x, extent.y)};
 }
 
 /// Where the light along an axis (0: columns, 1: rows) is divided most evenly.
@@ -164,9 +163,9 @@ gpu::Vpl vpl_of(glm::vec3 direction, float half_width2, glm::vec3 light) {
 
 }  // namespace
 
-glm::vec3 rotated_sky(glm::vec3 direction, float angle) {
-    const float c = std::cos(angle);
-    const float s = std::sin(angle);
+glm::vec3 rotated_sky(glm::vec3 direction, float rotation) {
+    const float c = std::cos(rotation);
+    const float s = std::sin(rotation);
     return {c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x};
 }
 
@@ -175,7 +174,7 @@ SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
     SkyGrid grid = sky_grid(picture == nullptr ? white : *picture);
     SplitSky sky{.suns = take_suns(grid), .grid = nullptr, .patches = {}};
     const auto less = [](const Candidate& a, const Candidate& b) { return a.need < b.need; };
-    std::vector<Candidate> heap{candidate_of(grid, {glm::uvec2(0), grid.size})};
+    std::vector<Candidate> heap{candidate_of(grid, glm::uvec2(0), grid.size)};
     while (heap.size() < count && heap.front().need > 0.0F) {
         std::ranges::pop_heap(heap, less);
         const SkyPatch whole = heap.back().patch;
@@ -183,13 +182,13 @@ SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
         const glm::vec2 extent = extent_of(grid, whole);
         const int axis = extent.x > extent.y ? 0 : 1;
         const std::uint32_t middle = median(grid, whole, axis);
-        SkyPatch lower = whole;
-        SkyPatch upper = whole;
-        lower.last[axis] = upper.first[axis] = middle;
-        for (const SkyPatch& half : {lower, upper}) {
-            heap.push_back(candidate_of(grid, half));
-            std::ranges::push_heap(heap, less);
-        }
+        glm::uvec2 last_of_lower = whole.last;
+        glm::uvec2 first_of_upper = whole.first;
+        last_of_lower[axis] = first_of_upper[axis] = middle;
+        heap.push_back(candidate_of(grid, whole.first, last_of_lower));
+        std::ranges::push_heap(heap, less);
+        heap.push_back(candidate_of(grid, first_of_upper, whole.last));
+        std::ranges::push_heap(heap, less);
     }
     for (const Candidate& candidate : heap) {
         sky.patches.push_back(candidate.patch);
@@ -201,12 +200,11 @@ SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
 std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environment, std::uint32_t sample) {
     std::vector<gpu::Vpl> vpls;
     for (const SkyPatch& patch : sky.patches) {
-        const auto [light, moment] = light_of(*sky.grid, patch);
-        const double weight = light.r + light.g + light.b;
+        const double weight = sum_of_channels(patch.light);
         if (weight <= 0.0) {
             continue;
         }
-        const glm::vec3 facing = environment.radiance * glm::vec3(std::numbers::pi * light);
+        const glm::vec3 facing = environment.radiance * glm::vec3(std::numbers::pi * patch.light);
         if (sample > 0) {
             const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(vpls.size()), glm::dvec2(0.5));
             const glm::vec2 u(r2_point(sample, start));
@@ -216,8 +214,9 @@ std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environm
         }
         // Share of the light that arrives from the mean direction. It is 1 - h²/3 for a small square of
         // directions of half width h.
-        const double share = std::min(glm::length(moment) / weight, 1.0);
-        const glm::vec3 direction = rotated_sky(glm::vec3(glm::normalize(moment)), environment.rotation);
+        const double share = std::min(glm::length(patch.moment) / weight, 1.0);
+        const glm::vec3 direction =
+            rotated_sky(glm::vec3(glm::normalize(patch.moment)), environment.rotation);
         vpls.push_back(
             vpl_of(direction, static_cast<float>(3.0 * (1.0 - share)), static_cast<float>(share) * facing));
     }

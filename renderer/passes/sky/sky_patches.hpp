@@ -14,10 +14,12 @@
 
 namespace candela {
 
-/// A rectangle of cells: `first` inclusive, `last` exclusive.
+/// A rectangle of cells: `first` inclusive, `last` exclusive; and the sums over these: see SkyGrid::Cell.
 struct SkyPatch {
     glm::uvec2 first{0};
     glm::uvec2 last{0};
+    glm::dvec3 light{0.0};
+    glm::dvec3 moment{0.0};
 };
 
 /// A small bright part of the sky.

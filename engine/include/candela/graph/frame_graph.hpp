@@ -102,7 +102,7 @@ class Pass {
     /// The pass is never culled and runs in every frame.
     void side_effect() { declared_.passes.back().side_effect = true; }
 
-    /// The result depends on what the pass updates: computed anew from the same inputs, it may be different.
+    /// The result depends on what the pass updates: computed again from the same inputs, it may be different.
     /// Implied for passes that read a history. Only verification uses this: it does not run such passes
     /// again.
     void remembers() { declared_.passes.back().remembers = true; }
