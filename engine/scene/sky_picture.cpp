@@ -135,10 +135,10 @@ std::shared_ptr<const SkyPicture> decode_sky_picture(Bytes bytes) {
 std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path) {
     try {
         return decode_sky_picture(gltf::read_file(path, "the file"));
-    } catch (const SceneError& error) {
-        throw SceneError(fmt::format("{}: {}", path.string(), error.what()));
     } catch (const std::bad_alloc&) {
         throw SceneError(fmt::format("{}: it does not fit into memory", path.string()));
+    } catch (const std::exception& error) {
+        throw SceneError(fmt::format("{}: {}", path.string(), error.what()));
     }
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
+
+#include <candela/error.hpp>
 
 namespace candela {
 
@@ -28,9 +29,9 @@ struct CompileError {
 
 /// Thrown for misuse of a GraphRuntime or an Execution, for a failed verification, and by CompileResult::take
 /// if the graph did not compile.
-class GraphError : public std::runtime_error {
+class GraphError : public Error {
  public:
-    using std::runtime_error::runtime_error;
+    using Error::Error;
 };
 
 }  // namespace candela
