@@ -49,8 +49,10 @@ void require_limits(const gl::Limits& limits) {
     }
 }
 
-Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
-    : device_(get_proc),
+Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererOptions& options)
+    : log_(options.log),
+      device_(get_proc, options.debug_output ? gl::DebugOutput::on : gl::DebugOutput::off,
+              [this](const gl::DebugMessage& message) { log_.warn("OpenGL: " + message.text); }),
       shaders_(std::move(shaders)),
       mesh_vertices_(make_mesh_vertices(device_)),
       no_vertices_(device_, "no vertices"),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -99,8 +100,10 @@ bool same_radiance(Configuration a, const Configuration& b) {
 
 }  // namespace
 
-Renderer::State::State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
-    : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
+Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& options)
+    : gpu_(get_proc, shader_library(options.shader_directory), options),
+      backend_(gpu_.device()),
+      runtime_(backend_) {
     switch_to(configuration_, size_, {}, {});
 }
 
@@ -135,13 +138,19 @@ void Renderer::State::switch_to(const Configuration& configuration, glm::uvec2 s
     last_passes_.clear();
 }
 
-void Renderer::State::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
-    const std::uint32_t most = device().limits().texture_size;
+void Renderer::State::require_possible(const Target& target) const {
+    const std::uint32_t most = gpu_.device().limits().texture_size;
     if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
         throw gl::GlError(
             fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
                         target.size.x, target.size.y, most));
     }
+    gl::require_complete(gpu_.gl(), target.framebuffer,
+                         fmt::format("the target, framebuffer {},", target.framebuffer));
+}
+
+void Renderer::State::render(const World& world, Entity camera, const Target& target, glm::vec2 jitter) {
+    require_possible(target);
     const gl::HostState host_state(gpu_.gl());
     const Quality quality = quality_now(world, {camera, target.size, jitter});
     const FrameContents contents = contents_now(world);
@@ -267,6 +276,7 @@ std::vector<FrameReport> Renderer::State::take_frames(bool wait) {
 }
 
 void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
+    require_possible(target);
     const gl::HostState host_state(gpu_.gl());
     gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
     std::vector<glm::vec4> texels;

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,7 +19,7 @@ namespace candela {
 /// What a Renderer is made of. Its functions are those of the same names there.
 class Renderer::State {
  public:
-    State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory);
+    State(const gl::GetProc& get_proc, const RendererOptions& options);
 
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
@@ -43,6 +42,8 @@ class Renderer::State {
         Quality quality;
     };
 
+    /// Throws gl::GlError if the target cannot be drawn into.
+    void require_possible(const Target& target) const;
     void switch_to(const Configuration& configuration, glm::uvec2 size, const Quality& quality,
                    const FrameContents& contents);
     [[nodiscard]] FrameContents contents_now(const World& world);

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/gl_loader.hpp>
+#include <candela/renderer_options.hpp>
 #include <candela/report.hpp>
 
 namespace candela {
@@ -37,10 +37,9 @@ enum class GraphFormat : std::uint8_t { text, dot, json };
 class Renderer {
  public:
     /// `get_proc` returns the addresses of GL functions, as glfwGetProcAddress does; it is called only here.
-    /// The shaders are embedded in the library; `shader_directory`, if given, is read in their place. Throws
-    /// gl::GlError if the context offers less than OpenGL 4.5 or lacks a function, and gl::ProgramError if a
-    /// shader does not compile.
-    explicit Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {});
+    /// Throws gl::GlError if no context is current, if it offers less than OpenGL 4.5, lacks a function or
+    /// has a limit that is too low, and gl::ProgramError if a shader does not compile.
+    explicit Renderer(const gl::GetProc& get_proc, const RendererOptions& options = {});
     Renderer(Renderer&& other) noexcept;
     Renderer& operator=(Renderer&& other) noexcept;
     ~Renderer();
