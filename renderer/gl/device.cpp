@@ -60,6 +60,8 @@ Limits get_limits(const Functions& gl, bool anisotropic) {
     limits.storage_blocks = std::min({get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS)});
+    limits.drawing_storage_blocks = std::min(get_unsigned(gl, GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS),
+                                             get_unsigned(gl, GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS));
     limits.storage_bindings = get_unsigned(gl, GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
     limits.uniform_bindings = get_unsigned(gl, GL_MAX_UNIFORM_BUFFER_BINDINGS);
     limits.texture_units = get_unsigned(gl, GL_MAX_TEXTURE_IMAGE_UNITS);

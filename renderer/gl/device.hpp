@@ -31,14 +31,15 @@ struct ObjectCounts {
 
 /// The driver's limits.
 struct Limits {
-    std::uint32_t texture_size = 0;      ///< texels along an edge of a 2D texture
-    std::uint32_t texture_layers = 0;    ///< layers of an array texture
-    std::uint32_t storage_blocks = 0;    ///< of a program: the least of what its stages allow
-    std::uint32_t storage_bindings = 0;  ///< binding points of storage blocks
-    std::uint32_t uniform_bindings = 0;  ///< binding points of uniform blocks
-    std::uint32_t texture_units = 0;     ///< of a shader stage
-    std::int32_t debug_groups = 0;       ///< depth of the stack of debug groups, the default group included
-    float anisotropy = 1.0F;             ///< largest degree; 1: no anisotropic filtering
+    std::uint32_t texture_size = 0;            ///< texels along an edge of a 2D texture
+    std::uint32_t texture_layers = 0;          ///< layers of an array texture
+    std::uint32_t storage_blocks = 0;          ///< of a program: the least of what its stages allow
+    std::uint32_t drawing_storage_blocks = 0;  ///< of a vertex or geometry shader: the lesser
+    std::uint32_t storage_bindings = 0;        ///< binding points of storage blocks
+    std::uint32_t uniform_bindings = 0;        ///< binding points of uniform blocks
+    std::uint32_t texture_units = 0;           ///< of a shader stage
+    std::int32_t debug_groups = 0;  ///< depth of the stack of debug groups, the default group included
+    float anisotropy = 1.0F;        ///< largest degree; 1: no anisotropic filtering
 };
 
 /// Whether a device turns on the debug output of its context: see DebugLog. If off, it neither reads nor

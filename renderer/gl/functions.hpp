@@ -38,6 +38,7 @@
     X(ClearColor, CLEARCOLOR) \
     X(ClearDepthf, CLEARDEPTHF) \
     X(SampleMaski, SAMPLEMASKI) \
+    X(ProvokingVertex, PROVOKINGVERTEX) \
     X(PrimitiveRestartIndex, PRIMITIVERESTARTINDEX) \
     /* queries of state */ \
     X(GetError, GETERROR) \

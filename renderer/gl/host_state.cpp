@@ -274,16 +274,19 @@ Restore save_rasterisation(const Functions& gl) {
     Restore restore =
         [&gl, offset, mode = static_cast<GLenum>(polygon_mode[0]),
          front_face = get_unsigned(gl, GL_FRONT_FACE), cull_face = get_unsigned(gl, GL_CULL_FACE_MODE),
-         clip_origin = get_unsigned(gl, GL_CLIP_ORIGIN), clip_depth = get_unsigned(gl, GL_CLIP_DEPTH_MODE)] {
+         clip_origin = get_unsigned(gl, GL_CLIP_ORIGIN), clip_depth = get_unsigned(gl, GL_CLIP_DEPTH_MODE),
+         provoking_vertex = get_unsigned(gl, GL_PROVOKING_VERTEX)] {
             gl.PolygonOffset(offset[0], offset[1]);
             gl.PolygonMode(GL_FRONT_AND_BACK, mode);
             gl.FrontFace(front_face);
             gl.CullFace(cull_face);
             gl.ClipControl(clip_origin, clip_depth);
+            gl.ProvokingVertex(provoking_vertex);
         };
     gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     gl.CullFace(GL_BACK);
     gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.ProvokingVertex(GL_LAST_VERTEX_CONVENTION);  // drivers may round interpolated values in another way
     return restore;
 }
 

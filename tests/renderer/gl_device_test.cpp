@@ -105,6 +105,12 @@ TEST_SUITE("gl device") {
         CHECK_THROWS_WITH_AS(require_limits(limits),
                              "the driver offers 8 storage blocks a program; Candela needs 12", gl::GlError);
         limits = device.limits();
+        limits.drawing_storage_blocks = 0;
+        CHECK_THROWS_WITH_AS(
+            require_limits(limits),
+            "the driver offers 0 storage blocks of a vertex or geometry shader; Candela needs 1",
+            gl::GlError);
+        limits = device.limits();
         limits.texture_units = 4;
         CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 10",
                              gl::GlError);

@@ -52,12 +52,19 @@ class Renderer {
 
     /// Renders `world` as seen by `camera`, an entity with a Camera, into `target`. Only passes whose inputs
     /// have changed since the last frame run. `jitter` moves the samples off the pixel centres, in rendered
-    /// pixels, +x right, +y up. Restores the host's GL state as described at gl::HostState.
+    /// pixels, +x right, +y up.
+    ///
+    /// All state of OpenGL 4.5 is the same afterwards, and none of the host's changes the picture, with these
+    /// exceptions. Conditional rendering must not be active. A query of the host that is active also counts
+    /// what is drawn here. A program that the host has deleted while it was current is gone, and the
+    /// subroutine uniforms of a current program are reset. The clamp of the polygon offset (OpenGL 4.6) is
+    /// reset. Transform feedback is paused meanwhile. Errors that the host has not yet asked for stay.
     ///
     /// Throws EntityError if there is no such camera, SceneError if an entity's parents form a cycle or were
-    /// destroyed, and gl::GlError if the target's size is 0 or above the driver's limit, if a driver limit is
-    /// exceeded, or if the driver runs out of memory. After an exception, the next call runs the passes that
-    /// did not finish.
+    /// destroyed, and gl::GlError if the target does not exist, is incomplete, or has a size of 0 or above
+    /// the driver's limit, if a driver limit is exceeded, or if the driver runs out of memory; then
+    /// GL_OUT_OF_MEMORY is also pending for the host's glGetError. After an exception, the next call runs the
+    /// passes that did not finish.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 
     /// Makes the next frame compute everything again. Not needed for another world, wherever it is: worlds
@@ -72,7 +79,7 @@ class Renderer {
 
     /// Tone-maps a picture of linear radiance that was computed elsewhere, for example an average of frames,
     /// into `target`. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
-    /// Throws gl::GlError if it holds another number of pixels.
+    /// Throws gl::GlError if it holds another number of pixels, and where `render` does because of a target.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
 
     /// CPU and GPU times of the frames whose GPU times have arrived since the last call, oldest first. Does
