@@ -13,6 +13,7 @@
 #include "renderer/gl/shader_source.hpp"
 #include "renderer/gl/texture.hpp"
 #include "renderer/log.hpp"
+#include "renderer/scene_check.hpp"
 
 namespace candela {
 
@@ -68,12 +69,15 @@ class Gpu {
 
     /// Warnings to the host.
     [[nodiscard]] Log& log() { return log_; }
+    /// What of a world is rendered.
+    [[nodiscard]] SceneCheck& scene_check() { return scene_check_; }
 
     /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
     void draw_fullscreen(const gl::Program& program) const;
 
  private:
     Log log_;
+    SceneCheck scene_check_;
     gl::Device device_;
     gl::ShaderLibrary shaders_;
     using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -15,9 +16,14 @@ class Log {
 
     explicit Log(Receiver receiver) : receiver_(std::move(receiver)) {}
 
-    void warn(const std::string& line) {
-        if (receiver_ && known_.insert(line).second) {
-            receiver_(line);
+    /// Line breaks and other control characters in `line` become spaces.
+    void warn(std::string line) {
+        std::ranges::replace_if(
+            line, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+        line.erase(line.find_last_not_of(' ') + 1);
+        const auto [known, is_new] = known_.insert(std::move(line));
+        if (receiver_ && is_new) {
+            receiver_(*known);
         }
     }
 

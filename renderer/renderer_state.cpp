@@ -218,11 +218,17 @@ Quality Renderer::State::quality_now(const World& world, const ViewRequest& requ
 FrameContents Renderer::State::contents_now(const World& world) {
     const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>(),
                                world.revision<Environment>()};
-    if (revisions == contents_revisions_) {
+    const Tick transforms = world.revision<Transform>();
+    const bool may_differ = revisions != contents_revisions_ ||
+                            (contents_depend_on_transforms_ && transforms != contents_transforms_);
+    if (!may_differ) {
         return contents_;
     }
+    const WorldContents contents = contents_of(world, gpu_.scene_check());
     contents_revisions_ = revisions;
-    return contents_of(world);
+    contents_transforms_ = transforms;
+    contents_depend_on_transforms_ = contents.depend_on_transforms;
+    return contents.of_frame;
 }
 
 void Renderer::State::learn_cost(const PendingFrame& frame) {

@@ -62,7 +62,9 @@ class Renderer::State {
     Configuration configuration_;
     FrameContents contents_;                    // of the world in the last frame
     std::array<Tick, 3> contents_revisions_{};  // of the components that determine the contents
-    glm::uvec2 size_{1};                        // of the target
+    Tick contents_transforms_ = 0;              // revision of Transform then
+    bool contents_depend_on_transforms_ = false;
+    glm::uvec2 size_{1};  // of the target
     Quality quality_;
     Quality quality_in_motion_;
     ViewRequest last_request_;

@@ -60,11 +60,24 @@ class Renderer {
     /// subroutine uniforms of a current program are reset. The clamp of the polygon offset (OpenGL 4.6) is
     /// reset. Transform feedback is paused meanwhile. Errors that the host has not yet asked for stay.
     ///
-    /// Throws EntityError if there is no such camera, SceneError if an entity's parents form a cycle or were
-    /// destroyed, and gl::GlError if the target does not exist, is incomplete, or has a size of 0 or above
-    /// the driver's limit, if a driver limit is exceeded, or if the driver runs out of memory; then
-    /// GL_OUT_OF_MEMORY is also pending for the host's glGetError. After an exception, the next call runs the
-    /// passes that did not finish.
+    /// What cannot be rendered is left out, as if it were not in the world, with a warning that names the
+    /// entity and the fault (see RendererOptions):
+    ///
+    /// - a mesh that is null, that has a primitive without material, an index out of range, a number of
+    ///   indices that is no multiple of 3, or a vertex that is not finite, or whose material has a negative
+    ///   or infinite colour or emission, or an image with another number of texels than its size says;
+    /// - a light with a negative or infinite value, its range excepted, or a cone without width;
+    /// - an Environment with a negative or infinite value or another number of texels than its size says;
+    /// - all components of an entity whose world matrix is not finite.
+    ///
+    /// To find this, each mesh and each picture is read once, when it is seen for the first time.
+    ///
+    /// Throws EntityError if there is no such camera, SceneError if the camera or its world matrix is not
+    /// finite or cannot show anything, or if an entity's parents form a cycle or were destroyed, and
+    /// gl::GlError if the target does not exist, is incomplete, or has a size of 0 or above the driver's
+    /// limit, if a driver limit is exceeded, or if the driver runs out of memory; then GL_OUT_OF_MEMORY is
+    /// also pending for the host's glGetError. After an exception, the next call runs the passes that did not
+    /// finish.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
 
     /// Makes the next frame compute everything again. Not needed for another world, wherever it is: worlds

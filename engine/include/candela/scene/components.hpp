@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -161,8 +162,10 @@ struct Environment {
     bool operator==(const Environment&) const = default;
 };
 
-/// The first environment in the world's view whose radiance is not zero; radiance 0 if there is none.
-[[nodiscard]] Environment environment_of(const World& world);
+/// The first environment in the world's view whose radiance is not zero and that `accepts`, if given,
+/// accepts; radiance 0 if there is none.
+[[nodiscard]] Environment environment_of(const World& world,
+                                         const std::function<bool(Entity, const Environment&)>& accepts = {});
 
 /// The direction that a point of the sky's picture shows, without rotation: a unit vector. `at` is in [0,
 /// 1]², (0, 0) the top left corner.
