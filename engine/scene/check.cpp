@@ -171,8 +171,9 @@ Fault fault_of(const SkyPicture& picture) {
         std::ranges::find_if_not(picture.texels, [](glm::vec3 texel) { return is_amount(texel); });
     if (wrong != picture.texels.end()) {
         const auto i = static_cast<std::size_t>(wrong - picture.texels.begin());
-        return negative_or_infinite(
-            fmt::format("the picture, in column {} of row {},", i % picture.width, i / picture.width));
+        return fmt::format(
+            "the picture holds a radiance that is negative or not finite, in column {} of row {}",
+            i % picture.width, i / picture.width);
     }
     return {};
 }

@@ -1,7 +1,5 @@
 #include <candela/scene/sky_picture.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -14,6 +12,7 @@
 #include <stb/stb_image.h>
 #include <tinyexr.h>
 
+#include "engine/scene/check.hpp"
 #include "engine/scene/gltf_document.hpp"
 
 namespace candela {
@@ -105,17 +104,9 @@ SkyPicture read_exr(Bytes bytes) {
     return to_picture(width, height, texels, 4);
 }
 
-bool is_radiance(glm::vec3 texel) {
-    return std::isfinite(texel.r + texel.g + texel.b) && std::min({texel.r, texel.g, texel.b}) >= 0.0F;
-}
-
 std::shared_ptr<const SkyPicture> checked(SkyPicture picture) {
-    const auto wrong = std::ranges::find_if_not(picture.texels, is_radiance);
-    if (wrong != picture.texels.end()) {
-        const auto i = static_cast<std::size_t>(wrong - picture.texels.begin());
-        throw SceneError(
-            fmt::format("it holds a radiance that is negative or not finite, in column {} of row {}",
-                        i % picture.width, i / picture.width));
+    if (const Fault fault = fault_of(picture)) {
+        throw SceneError(*fault);
     }
     return std::make_shared<const SkyPicture>(std::move(picture));
 }

@@ -211,9 +211,9 @@ std::vector<FaultCase> sky_faults() {
             sky("the rotation is not finite", good, sky_picture(8, 4, 32), not_a_number),
             sky("the picture has 31 texels for 8 × 4", good, sky_picture(8, 4, 31)),
             sky("the picture has 0 texels for 0 × 0", good, sky_picture(0, 0, 0)),
-            sky("the picture, in column 7 of row 3, is negative or not finite", good,
+            sky("the picture holds a radiance that is negative or not finite, in column 7 of row 3", good,
                 sky_picture(8, 4, 32, not_a_number)),
-            sky("the picture, in column 7 of row 3, is negative or not finite", good,
+            sky("the picture holds a radiance that is negative or not finite, in column 7 of row 3", good,
                 sky_picture(8, 4, 32, -1.0F))};
 }
 

@@ -15,8 +15,8 @@ struct RendererOptions {
     /// every message. Off: the debug state of the context is neither read nor changed.
     bool debug_output = false;
     /// Receives warnings, without a line break at their ends; the same line only once per renderer. Called
-    /// during calls of the renderer, in the same thread. It must not call GL or the renderer. Without it,
-    /// warnings are lost: the library prints nothing.
+    /// during calls of the renderer, in the same thread. It must not throw, nor call GL or the renderer.
+    /// Without it, warnings are lost: the library prints nothing.
     std::function<void(std::string_view line)> log{};
     /// Throws SceneError where parts of a world would otherwise be left out with a warning (see
     /// Renderer::render), and also if a normal is not of unit length. For development.
