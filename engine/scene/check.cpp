@@ -14,6 +14,13 @@
 namespace candela {
 namespace {
 
+/// Of coordinates and scales. Squares of areas, as in the length of a cross product, must not overflow.
+constexpr float most = 1e9F;
+
+bool is_too_large(glm::vec3 vector) {
+    return std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)}) > most;
+}
+
 /// How large a value may be.
 enum class Limit : std::uint8_t { finite, infinite };
 
@@ -92,6 +99,9 @@ Fault fault_of(const Material& material) {
 Fault fault_of(const Vertex& vertex, Strictness strictness) {
     if (!is_finite(vertex.position)) {
         return "its position is not finite";
+    }
+    if (is_too_large(vertex.position)) {
+        return fmt::format("its position is farther than {:g} metres from the origin", most);
     }
     if (!is_finite(vertex.normal)) {
         return "its normal is not finite";
@@ -224,6 +234,9 @@ Fault fault_of(const glm::mat4& world) {
     for (int column = 0; column < 4; ++column) {
         if (!is_finite(world[column])) {
             return "the world matrix is not finite";
+        }
+        if (column < 3 && is_too_large(world[column])) {
+            return fmt::format("the world matrix scales by more than {:g}", most);
         }
     }
     return {};

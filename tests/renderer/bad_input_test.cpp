@@ -87,6 +87,8 @@ std::vector<FaultCase> mesh_faults() {
                   [](Primitive& p) { p.vertices[2].position.y = not_a_number; }),
         primitive("vertex 0: its position is not finite",
                   [](Primitive& p) { p.vertices[0].position.x = -infinity; }),
+        primitive("vertex 0: its position is farther than 1e+09 metres from the origin",
+                  [](Primitive& p) { p.vertices[0].position.x = -1.1e9F; }),
         primitive("vertex 1: its normal is not finite",
                   [](Primitive& p) { p.vertices[1].normal.z = infinity; }),
         primitive("vertex 3: its texture coordinates are not finite",
@@ -110,8 +112,9 @@ std::vector<FaultCase> mesh_faults() {
 
 /// A transform that is not finite, of an entity with a component to be shown.
 template <class C>
-FaultCase misplaced(C component, Transform transform, Transform right) {
-    return {"left out, because the world matrix is not finite",
+FaultCase misplaced(C component, Transform transform, Transform right,
+                    std::string words = "left out, because the world matrix is not finite") {
+    return {std::move(words),
             [=](World& world, Entity entity) {
                 world.set(entity, component);
                 world.set(entity, transform);
@@ -125,6 +128,8 @@ std::vector<FaultCase> transform_faults() {
     nowhere.translation.y = not_a_number;
     Transform endless = right;
     endless.scale.x = infinity;
+    Transform huge = right;
+    huge.scale = glm::vec3(1.1e9F);
     Transform turned = right;
     turned.rotation.w = not_a_number;
     const Change by_parent = [=](World& world, Entity entity) {
@@ -135,6 +140,7 @@ std::vector<FaultCase> transform_faults() {
         misplaced(square_instance(), nowhere, right),
         misplaced(square_instance(), endless, right),
         misplaced(square_instance(), turned, right),
+        misplaced(square_instance(), huge, right, "the world matrix scales by more than 1e+09"),
         misplaced(MeshInstance{square(0.3F, emitter(glm::vec3(2.0F)))}, nowhere, upside_down_at(in_the_box)),
         misplaced(PointLight{.intensity = 0.1F}, nowhere, right),
         misplaced(SpotLight{.intensity = 1.0F}, turned, right),

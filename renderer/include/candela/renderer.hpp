@@ -64,11 +64,12 @@ class Renderer {
     /// entity and the fault (see RendererOptions):
     ///
     /// - a mesh that is null, that has a primitive without material, an index out of range, a number of
-    ///   indices that is no multiple of 3, or a vertex that is not finite, or whose material has a negative
-    ///   or infinite colour or emission, or an image with another number of texels than its size says;
+    ///   indices that is no multiple of 3, or a vertex that is not finite or beyond 10⁹ metres, or whose
+    ///   material has a negative or infinite colour or emission, or an image with another number of texels
+    ///   than its size says;
     /// - a light with a negative or infinite value, its range excepted, or a cone without width;
     /// - an Environment with a negative or infinite value or another number of texels than its size says;
-    /// - all components of an entity whose world matrix is not finite.
+    /// - all components of an entity whose world matrix is not finite or scales by more than 10⁹.
     ///
     /// To find this, each mesh and each picture is read once, when it is seen for the first time.
     ///
