@@ -36,8 +36,9 @@ void require_limits(const gl::Limits& limits) {
         std::uint32_t offered;
         std::uint32_t needed;
     };
-    const std::array<Need, 4> needs{
+    const std::array<Need, 5> needs{
         {{"storage blocks a program", limits.storage_blocks, MOST_STORAGE_BLOCKS},
+         {"storage blocks of a vertex or geometry shader", limits.drawing_storage_blocks, 1},
          {"binding points of storage blocks", limits.storage_bindings, BINDING_LAST + 1},
          {"binding points of uniform blocks", limits.uniform_bindings, UNIFORMS_LAST + 1},
          {"texture units", limits.texture_units, UNIT_LAST + 1}}};
@@ -49,8 +50,11 @@ void require_limits(const gl::Limits& limits) {
     }
 }
 
-Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders)
-    : device_(get_proc),
+Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererOptions& options)
+    : log_(options.log),
+      scene_check_(log_, options.checked),
+      device_(get_proc, options.debug_output ? gl::DebugOutput::on : gl::DebugOutput::off,
+              [this](const gl::DebugMessage& message) { log_.warn("OpenGL: " + message.text); }),
       shaders_(std::move(shaders)),
       mesh_vertices_(make_mesh_vertices(device_)),
       no_vertices_(device_, "no vertices"),

@@ -6,11 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include <candela/renderer_options.hpp>
 #include "renderer/gl/device.hpp"
 #include "renderer/gl/objects.hpp"
 #include "renderer/gl/program.hpp"
 #include "renderer/gl/shader_source.hpp"
 #include "renderer/gl/texture.hpp"
+#include "renderer/log.hpp"
+#include "renderer/scene_check.hpp"
 
 namespace candela {
 
@@ -41,7 +44,10 @@ void require_limits(const gl::Limits& limits);
 class Gpu {
  public:
     /// Throws gl::GlError if the context does not offer what the renderer needs.
-    Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders);
+    Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererOptions& options);
+    Gpu(const Gpu&) = delete;
+    Gpu& operator=(const Gpu&) = delete;
+    ~Gpu() = default;
 
     [[nodiscard]] gl::Device& device() { return device_; }
     [[nodiscard]] const gl::Device& device() const { return device_; }
@@ -63,10 +69,17 @@ class Gpu {
     /// A framebuffer for passes that draw into single layers. They attach a layer and detach it again.
     [[nodiscard]] gl::Framebuffer& layer_target() { return layer_target_; }
 
+    /// Warnings to the host.
+    [[nodiscard]] Log& log() { return log_; }
+    /// What of a world is rendered.
+    [[nodiscard]] SceneCheck& scene_check() { return scene_check_; }
+
     /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
     void draw_fullscreen(const gl::Program& program) const;
 
  private:
+    Log log_;
+    SceneCheck scene_check_;
     gl::Device device_;
     gl::ShaderLibrary shaders_;
     using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;

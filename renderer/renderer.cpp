@@ -9,8 +9,8 @@
 
 namespace candela {
 
-Renderer::Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
-    : state_(std::make_unique<State>(get_proc, shader_directory)) {}
+Renderer::Renderer(const gl::GetProc& get_proc, const RendererOptions& options)
+    : state_(std::make_unique<State>(get_proc, options)) {}
 
 Renderer::Renderer(Renderer&& other) noexcept = default;
 Renderer& Renderer::operator=(Renderer&& other) noexcept = default;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -99,8 +100,10 @@ bool same_radiance(Configuration a, const Configuration& b) {
 
 }  // namespace
 
-Renderer::State::State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory)
-    : gpu_(get_proc, shader_library(shader_directory)), backend_(gpu_.device()), runtime_(backend_) {
+Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& options)
+    : gpu_(get_proc, shader_library(options.shader_directory), options),
+      backend_(gpu_.device()),
+      runtime_(backend_) {
     switch_to(configuration_, shape_);
 }
 
@@ -156,17 +159,33 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     last_passes_.clear();
 }
 
-void Renderer::State::check_targets(std::span<const RenderView> views) const {
+void Renderer::State::require_possible(const Target& target) const {
+    const std::uint32_t most = gpu_.device().limits().texture_size;
+    if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
+        throw gl::GlError(
+            fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
+                        target.size.x, target.size.y, most));
+    }
+    gl::require_complete(gpu_.gl(), target.framebuffer,
+                         fmt::format("the target, framebuffer {},", target.framebuffer));
+}
+
+void Renderer::State::require_texture(GLuint texture, std::string_view what) const {
+    if (gpu_.gl().IsTexture(texture) == GL_FALSE) {
+        throw gl::GlError(fmt::format("{}, texture {}, does not exist", what, texture));
+    }
+}
+
+void Renderer::State::require_possible(std::span<const RenderView> views) const {
     if (views.empty()) {
         throw gl::GlError("a frame needs at least one view");
     }
-    const std::uint32_t most = gpu_.device().limits().texture_size;
     for (const RenderView& view : views) {
-        const glm::uvec2 size = view.target.size;
-        if (size.x == 0 || size.y == 0 || size.x > most || size.y > most) {
-            throw gl::GlError(
-                fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}", size.x,
-                            size.y, most));
+        require_possible(view.target);
+        if (view.surfaces) {
+            require_texture(view.surfaces->depth, "the host's depth");
+            require_texture(view.surfaces->normal, "the host's normals");
+            require_texture(view.surfaces->albedo, "the host's albedo");
         }
     }
 }
@@ -185,7 +204,7 @@ void Renderer::State::set_view(const ViewHandles& handles, const RenderView& vie
 }
 
 void Renderer::State::render(const World& world, std::span<const RenderView> views) {
-    check_targets(views);
+    require_possible(views);
     const gl::HostState host_state(gpu_.gl());
     FrameShape shape{.views = {}, .quality = {}, .contents = contents_now(world)};
     std::vector<ViewRequest> requests;
@@ -291,11 +310,17 @@ Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest
 FrameContents Renderer::State::contents_now(const World& world) {
     const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>(),
                                world.revision<Environment>()};
-    if (revisions == contents_revisions_) {
+    const Tick transforms = world.revision<Transform>();
+    const bool may_differ = revisions != contents_revisions_ ||
+                            (contents_depend_on_transforms_ && transforms != contents_transforms_);
+    if (!may_differ) {
         return shape_.contents;
     }
+    const WorldContents contents = contents_of(world, gpu_.scene_check());
     contents_revisions_ = revisions;
-    return contents_of(world);
+    contents_transforms_ = transforms;
+    contents_depend_on_transforms_ = contents.depend_on_transforms;
+    return contents.of_frame;
 }
 
 void Renderer::State::learn_cost(const PendingFrame& frame) {
@@ -349,6 +374,7 @@ std::vector<FrameReport> Renderer::State::take_frames(bool wait) {
 }
 
 void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
+    require_possible(target);
     const gl::HostState host_state(gpu_.gl());
     gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
     std::vector<glm::vec4> texels;
@@ -362,6 +388,8 @@ void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Tar
 }
 
 void Renderer::State::tone_map(GLuint texture, const Target& target) {
+    require_possible(target);
+    require_texture(texture, "the radiance");
     const gl::HostState host_state(gpu_.gl());
     gpu_.gl().BindTextureUnit(UNIT_RADIANCE, texture);
     gpu_.nearest().bind(UNIT_RADIANCE);

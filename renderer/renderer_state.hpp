@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -21,7 +20,7 @@ namespace candela {
 /// What a Renderer is made of. Its functions are those of the same names there.
 class CANDELA_PRIVATE Renderer::State {
  public:
-    State(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory);
+    State(const gl::GetProc& get_proc, const RendererOptions& options);
 
     [[nodiscard]] std::vector<std::string> configure(const Configuration& configuration);
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
@@ -50,7 +49,10 @@ class CANDELA_PRIVATE Renderer::State {
 
     void switch_to(const Configuration& configuration, const FrameShape& shape);
     [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration);
-    void check_targets(std::span<const RenderView> views) const;
+    // These throw gl::GlError: if a target cannot be drawn into, or a texture is none.
+    void require_possible(const Target& target) const;
+    void require_possible(std::span<const RenderView> views) const;
+    void require_texture(GLuint texture, std::string_view what) const;
     void set_view(const ViewHandles& handles, const RenderView& view);
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);
@@ -71,6 +73,8 @@ class CANDELA_PRIVATE Renderer::State {
     std::vector<Extension> extensions_;
     FrameShape shape_;                          // of the last frame
     std::array<Tick, 3> contents_revisions_{};  // of the components that determine the contents
+    Tick contents_transforms_ = 0;              // revision of Transform then
+    bool contents_depend_on_transforms_ = false;
     Quality quality_in_motion_;
     std::vector<ViewRequest> last_requests_;
     Tick last_revision_ = 0;  // the world's, in the last frame

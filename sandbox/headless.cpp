@@ -1,5 +1,6 @@
 #include "sandbox/headless.hpp"
 
+#include <cstdio>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -36,6 +37,10 @@ int frames_of(const Options& options, const Scene& scene) {
     return options.frames.value_or(scene.animation ? scene.animation->script().frames : 1);
 }
 
+void print_warning(std::string_view line) {
+    fmt::print(stderr, "candela: {}\n", line);
+}
+
 void apply(Renderer& renderer, const Configuration& configuration) {
     const std::vector<std::string> errors = renderer.configure(configuration);
     if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
@@ -43,7 +48,7 @@ void apply(Renderer& renderer, const Configuration& configuration) {
 
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size) {
-    Renderer renderer(context.get_proc());
+    Renderer renderer(context.get_proc(), {.log = print_warning});
     apply(renderer, configuration);
     Capture capture(renderer, size);
     const std::optional<fs::path> out = picture_path(options);

@@ -126,7 +126,7 @@ void run_session(const Options& options) {
         return;
     }
     Scene scene = open_scene(options);
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "candela: {}\n", warning);
+    for (const std::string& warning : scene.warnings) print_warning(warning);
 
     std::vector<std::string> tried;
     const glm::ivec2 size_in_window = options.size.value_or(window_size);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,10 +27,10 @@ namespace candela::sandbox {
 namespace {
 
 /// Compiling shaders takes a moment; the window says so meanwhile.
-Renderer open_renderer(Gui& gui, Window& window, const Scene& scene) {
+Renderer open_renderer(Gui& gui, Window& window, const Scene& scene, const RendererOptions& options) {
     show_words(gui, window,
                fmt::format("{}: compiling shaders, placing virtual lights", scene.path.filename().string()));
-    return Renderer(Window::get_proc());
+    return Renderer(Window::get_proc(), options);
 }
 
 class WindowSession {
@@ -41,10 +42,11 @@ class WindowSession {
           watch_(watch),
           options_(options),
           gui_(window),
-          renderer_(open_renderer(gui_, window, scene)),
+          renderer_(
+              open_renderer(gui_, window, scene, {.log = [this](std::string_view line) { warn(line); }})),
           interaction_(scene.world, camera) {
         apply(renderer_, configuration);
-        panel_.warnings = scene.warnings;
+        panel_.warnings.insert(panel_.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
         if (scene.animation) playback_.emplace(*scene.animation);
     }
 
@@ -150,14 +152,19 @@ class WindowSession {
         fmt::print("picture          {}\n", std::filesystem::absolute(path).string());
     }
 
+    void warn(std::string_view line) {
+        print_warning(line);
+        panel_.warnings.emplace_back(line);
+    }
+
     Window& window_;
     Scene& scene_;
     ConfigWatch& watch_;
     const Options& options_;
     Gui gui_;
+    Panel panel_;
     Renderer renderer_;
     Interaction interaction_;
-    Panel panel_;
     std::optional<Playback> playback_;
     glm::ivec2 pixels_{1};
     int frame_ = 0;

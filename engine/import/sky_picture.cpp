@@ -1,7 +1,5 @@
 #include <candela/scene/sky_picture.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -15,6 +13,7 @@
 #include <tinyexr.h>
 
 #include "engine/import/gltf_document.hpp"
+#include "engine/scene/check.hpp"
 
 namespace candela {
 namespace {
@@ -98,17 +97,9 @@ SkyPicture read_exr(gltf::Bytes bytes) {
     return to_picture(width, height, texels, 4);
 }
 
-bool is_radiance(glm::vec3 texel) {
-    return std::isfinite(texel.r + texel.g + texel.b) && std::min({texel.r, texel.g, texel.b}) >= 0.0F;
-}
-
 std::shared_ptr<const SkyPicture> checked(SkyPicture picture) {
-    const auto wrong = std::ranges::find_if_not(picture.texels, is_radiance);
-    if (wrong != picture.texels.end()) {
-        const auto i = static_cast<std::size_t>(wrong - picture.texels.begin());
-        throw SceneError(
-            fmt::format("it holds a radiance that is negative or not finite, in column {} of row {}",
-                        i % picture.width, i / picture.width));
+    if (const Fault fault = fault_of(picture)) {
+        throw SceneError(*fault);
     }
     return std::make_shared<const SkyPicture>(std::move(picture));
 }
@@ -128,10 +119,10 @@ std::shared_ptr<const SkyPicture> decode_sky_picture(gltf::Bytes bytes) {
 std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path) {
     try {
         return decode_sky_picture(gltf::read_file(path, "the file"));
-    } catch (const SceneError& error) {
-        throw SceneError(fmt::format("{}: {}", path.string(), error.what()));
     } catch (const std::bad_alloc&) {
         throw SceneError(fmt::format("{}: it does not fit into memory", path.string()));
+    } catch (const std::exception& error) {
+        throw SceneError(fmt::format("{}: {}", path.string(), error.what()));
     }
 }
 

@@ -1,22 +1,14 @@
 #include <candela/scene/hierarchy.hpp>
 
 #include <cstddef>
-#include <string>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "engine/scene/check.hpp"
+
 namespace candela {
-
-namespace {
-
-std::string describe(const World& world, Entity entity) {
-    const Name* name = world.find<Name>(entity);
-    return name ? fmt::format("entity \"{}\"", name->value) : fmt::format("entity {}", entity.index);
-}
-
-}  // namespace
 
 glm::mat4 local_matrix(const Transform& transform) {
     const glm::mat4 translation = glm::translate(glm::mat4(1.0F), transform.translation);

@@ -12,9 +12,11 @@ constexpr float pi = std::numbers::pi_v<float>;
 
 }  // namespace
 
-Environment environment_of(const World& world) {
+Environment environment_of(const World& world,
+                           const std::function<bool(Entity, const Environment&)>& accepts) {
     for (const auto& [entity, environment] : world.view<Environment>()) {
-        if (environment.radiance != glm::vec3(0.0F)) {
+        const bool shines = environment.radiance != glm::vec3(0.0F);
+        if (shines && (!accepts || accepts(entity, environment))) {
             return environment;
         }
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <string>
 
+#include <candela/scene/hierarchy.hpp>
 #include "renderer/configuration/build_view.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/sky/sky_vpls.hpp"
@@ -19,9 +20,9 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
     frame.metrics = tracing.metrics;
     std::optional<Sky> sky;
     if (contents.sky) {
-        sky = add_sky(graph, sky_patches(configuration.vpls.count));
+        sky = add_sky(graph, gpu.scene_check(), sky_patches(configuration.vpls.count));
     }
-    frame.lights = add_lights(graph, tracing.metrics, sky);
+    frame.lights = add_lights(graph, gpu.scene_check(), tracing.metrics, sky);
     const ShadowMaps shadows =
         add_shadow_maps(graph, gpu, scene, frame.lights, frame.metrics, configuration.shadows);
     frame.shadows = shadows.plan;
@@ -162,16 +163,27 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
 
 }  // namespace
 
-FrameContents contents_of(const World& world) {
-    FrameContents contents;
+WorldContents contents_of(const World& world, SceneCheck& check) {
+    WorldContents contents;
+    const auto is_placed = [&](Entity entity) {
+        contents.depend_on_transforms = true;
+        return check.accepts_at(world, entity, world_matrix(world, entity));
+    };
+    FrameContents& of_frame = contents.of_frame;
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
-        contents.emitters |= emits(*instance.mesh);
+        of_frame.emitters =
+            check.accepts(world, entity, instance) && emits(*instance.mesh) && is_placed(entity);
+        if (of_frame.emitters) {
+            break;
+        }
     }
-    const Environment environment = environment_of(world);
-    contents.sky = environment.radiance != glm::vec3(0.0F);
-    contents.suns = environment.picture != nullptr;
+    const Environment environment = accepted_environment(world, check);
+    of_frame.sky = environment.radiance != glm::vec3(0.0F);
+    of_frame.suns = environment.picture != nullptr;
     for (const auto& [entity, light] : world.view<DirectionalLight>()) {
-        contents.suns |= light.casts_shadow;
+        if (check.accepts(world, entity, light) && light.casts_shadow) {
+            of_frame.suns |= is_placed(entity);
+        }
     }
     return contents;
 }

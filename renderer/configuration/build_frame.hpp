@@ -17,6 +17,7 @@
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
+#include "renderer/scene_check.hpp"
 
 namespace candela {
 
@@ -62,7 +63,13 @@ struct FrameContents {
     bool sky = false;       ///< an Environment that is not black
     bool operator==(const FrameContents&) const = default;
 };
-[[nodiscard]] FrameContents contents_of(const World& world);
+
+struct WorldContents {
+    FrameContents of_frame;
+    bool depend_on_transforms = false;  ///< whether `of_frame` may be another after a Transform has changed
+};
+/// What the world contains of what `check` accepts.
+[[nodiscard]] WorldContents contents_of(const World& world, SceneCheck& check);
 
 /// What the passes of a frame depend on.
 struct FrameShape {

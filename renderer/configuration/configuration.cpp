@@ -235,7 +235,12 @@ class Reader {
     requires std::is_enum_v<E>
     void read(const char* name, const Json& json, E& value, Range /*range*/) {
         const auto names = names_of(value);
-        const std::string given = json.is_string() ? json.get<std::string>() : json.dump();
+        std::string given;
+        if (json.is_string()) {
+            given = json.get<std::string>();
+        } else if (json.is_number()) {
+            given = json.dump();
+        }
         for (std::size_t i = 0; i < names.size(); ++i) {
             if (given == names[i]) {
                 value = static_cast<E>(i);

@@ -22,7 +22,8 @@ bool DebugMessage::is_error() const {
            severity == GL_DEBUG_SEVERITY_HIGH;
 }
 
-DebugLog::DebugLog(const Functions& gl) : gl_(&gl), previous_(current()) {
+DebugLog::DebugLog(const Functions& gl, DebugReceiver receiver)
+    : gl_(&gl), previous_(current()), receiver_(std::move(receiver)) {
     install({.function = &receive, .user = &self_, .enabled = true, .synchronous = true});
 }
 
@@ -83,8 +84,11 @@ void DebugLog::record(GLenum type, GLuint id, GLenum severity, std::string text)
     const auto known = std::find_if(messages_.begin(), messages_.end(), same);
     if (known != messages_.end()) {
         ++known->times;
-    } else {
-        messages_.push_back({.type = type, .severity = severity, .id = id, .text = std::move(text)});
+        return;
+    }
+    messages_.push_back({.type = type, .severity = severity, .id = id, .text = std::move(text)});
+    if (receiver_ && messages_.back().is_error()) {
+        receiver_(messages_.back());
     }
 }
 

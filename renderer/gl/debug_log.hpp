@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,17 @@ struct DebugMessage {
     [[nodiscard]] bool is_error() const;
 };
 
+/// Called with a message that is_error. It must not call GL.
+using DebugReceiver = std::function<void(const DebugMessage&)>;
+
 /// Collects the debug output of the current context, synchronously, as long as it lives. A callback that was
 /// installed before still receives every message. The destructor reinstalls it, together with the enable
 /// states of debug output. Several logs may listen to one context, and may be destroyed in any order.
 class DebugLog {
  public:
-    /// `gl` must outlive the log. The context must be current here and in the destructor.
-    explicit DebugLog(const Functions& gl);
+    /// `gl` must outlive the log. The context must be current here and in the destructor. `receiver`, if any,
+    /// is told of each error at once, the first time since `take`.
+    DebugLog(const Functions& gl, DebugReceiver receiver);
     ~DebugLog();
     DebugLog(const DebugLog&) = delete;
     DebugLog& operator=(const DebugLog&) = delete;
@@ -53,6 +58,7 @@ class DebugLog {
     const Functions* gl_;
     DebugLog* self_ = this;  ///< user pointer given to the driver, which returns it as const
     Listener previous_;
+    DebugReceiver receiver_;
     std::vector<DebugMessage> messages_;
 };
 

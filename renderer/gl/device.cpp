@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace candela::gl {
 namespace {
@@ -17,6 +18,7 @@ std::string get_string(PFNGLGETSTRINGPROC get, GLenum name) {
 /// Checked before functions are loaded: otherwise, with too old a version, the error would name a single
 /// missing function.
 void require_version(const GetProc& get_proc) {
+    if (!get_proc) throw GlError("the host gives no function to look up GL functions");
     const auto get = reinterpret_cast<PFNGLGETSTRINGPROC>(get_proc("glGetString"));
     const auto get_integer = reinterpret_cast<PFNGLGETINTEGERVPROC>(get_proc("glGetIntegerv"));
     if (!get || !get_integer)
@@ -58,9 +60,12 @@ Limits get_limits(const Functions& gl, bool anisotropic) {
     limits.storage_blocks = std::min({get_unsigned(gl, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS),
                                       get_unsigned(gl, GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS)});
+    limits.drawing_storage_blocks = std::min(get_unsigned(gl, GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS),
+                                             get_unsigned(gl, GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS));
     limits.storage_bindings = get_unsigned(gl, GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
     limits.uniform_bindings = get_unsigned(gl, GL_MAX_UNIFORM_BUFFER_BINDINGS);
     limits.texture_units = get_unsigned(gl, GL_MAX_TEXTURE_IMAGE_UNITS);
+    gl.GetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &limits.debug_groups);
     if (anisotropic) gl.GetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &limits.anisotropy);
     return limits;
 }
@@ -72,14 +77,21 @@ Functions load_checked(const GetProc& get_proc) {
 
 }  // namespace
 
-Device::Device(const GetProc& get_proc)
+Device::Device(const GetProc& get_proc, DebugOutput debug_output, DebugReceiver receiver)
     : functions_(load_checked(get_proc)),
       renderer_(get_string(functions_.GetString, GL_RENDERER)),
       version_(get_string(functions_.GetString, GL_VERSION)),
       extensions_(get_extensions(functions_)),
       limits_(get_limits(functions_, has_extension("GL_ARB_texture_filter_anisotropic") ||
-                                         has_extension("GL_EXT_texture_filter_anisotropic"))),
-      log_(functions_) {}
+                                         has_extension("GL_EXT_texture_filter_anisotropic"))) {
+    if (debug_output == DebugOutput::on) {
+        log_.emplace(functions_, std::move(receiver));
+    }
+}
+
+std::vector<DebugMessage> Device::take_messages() {
+    return log_ ? log_->take() : std::vector<DebugMessage>();
+}
 
 bool Device::is_software() const {
     constexpr std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "SWR", "Software"};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,14 +31,20 @@ struct ObjectCounts {
 
 /// The driver's limits.
 struct Limits {
-    std::uint32_t texture_size = 0;      ///< texels along an edge of a 2D texture
-    std::uint32_t texture_layers = 0;    ///< layers of an array texture
-    std::uint32_t storage_blocks = 0;    ///< of a program: the least of what its stages allow
-    std::uint32_t storage_bindings = 0;  ///< binding points of storage blocks
-    std::uint32_t uniform_bindings = 0;  ///< binding points of uniform blocks
-    std::uint32_t texture_units = 0;     ///< of a shader stage
-    float anisotropy = 1.0F;             ///< largest degree; 1: no anisotropic filtering
+    std::uint32_t texture_size = 0;            ///< texels along an edge of a 2D texture
+    std::uint32_t texture_layers = 0;          ///< layers of an array texture
+    std::uint32_t storage_blocks = 0;          ///< of a program: the least of what its stages allow
+    std::uint32_t drawing_storage_blocks = 0;  ///< of a vertex or geometry shader: the lesser
+    std::uint32_t storage_bindings = 0;        ///< binding points of storage blocks
+    std::uint32_t uniform_bindings = 0;        ///< binding points of uniform blocks
+    std::uint32_t texture_units = 0;           ///< of a shader stage
+    std::int32_t debug_groups = 0;  ///< depth of the stack of debug groups, the default group included
+    float anisotropy = 1.0F;        ///< largest degree; 1: no anisotropic filtering
 };
+
+/// Whether a device turns on the debug output of its context: see DebugLog. If off, it neither reads nor
+/// changes the debug state of the context.
+enum class DebugOutput : std::uint8_t { off, on };
 
 /// One GL context: its functions, limits and debug log, and counts of the objects made for it. Holds no
 /// global state: several devices may exist side by side, for one context or for several. It must outlive its
@@ -45,8 +52,9 @@ struct Limits {
 /// destroyed.
 class Device {
  public:
-    /// The context must be current. Throws GlError if it is older than OpenGL 4.5 or a function is missing.
-    explicit Device(const GetProc& get_proc);
+    /// The context must be current. `receiver` is that of the DebugLog. Throws GlError if no context is
+    /// current, if it is older than OpenGL 4.5, or if a function is missing.
+    Device(const GetProc& get_proc, DebugOutput debug_output, DebugReceiver receiver = {});
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
     ~Device() = default;
@@ -58,8 +66,9 @@ class Device {
     [[nodiscard]] bool is_software() const;  ///< whether the driver renders on the CPU
     [[nodiscard]] bool has_extension(std::string_view name) const;
 
-    /// The driver's messages since the last call, oldest first: see DebugLog::take.
-    [[nodiscard]] std::vector<DebugMessage> take_messages() { return log_.take(); }
+    /// The driver's messages since the last call, oldest first: see DebugLog::take. None without debug
+    /// output.
+    [[nodiscard]] std::vector<DebugMessage> take_messages();
 
     /// Objects made for this device that are alive now.
     [[nodiscard]] const ObjectCounts& live() const { return live_; }
@@ -73,7 +82,7 @@ class Device {
     std::vector<std::string> extensions_;  ///< sorted
     Limits limits_;
     ObjectCounts live_;
-    DebugLog log_;
+    std::optional<DebugLog> log_;
 };
 
 }  // namespace candela::gl

@@ -11,6 +11,10 @@
     X(Enable, ENABLE) \
     X(Disable, DISABLE) \
     X(IsEnabled, ISENABLED) \
+    X(IsTexture, ISTEXTURE) \
+    X(Enablei, ENABLEI) \
+    X(Disablei, DISABLEI) \
+    X(IsEnabledi, ISENABLEDI) \
     X(CullFace, CULLFACE) \
     X(FrontFace, FRONTFACE) \
     X(PolygonMode, POLYGONMODE) \
@@ -19,18 +23,23 @@
     X(DepthMask, DEPTHMASK) \
     X(DepthRangef, DEPTHRANGEF) \
     X(ClipControl, CLIPCONTROL) \
+    X(DepthRangeIndexed, DEPTHRANGEINDEXED) \
     X(ColorMask, COLORMASK) \
+    X(ColorMaski, COLORMASKI) \
     X(BlendFunc, BLENDFUNC) \
     X(BlendFuncSeparate, BLENDFUNCSEPARATE) \
+    X(BlendFuncSeparatei, BLENDFUNCSEPARATEI) \
     X(BlendEquation, BLENDEQUATION) \
-    X(BlendEquationSeparate, BLENDEQUATIONSEPARATE) \
+    X(BlendEquationSeparatei, BLENDEQUATIONSEPARATEI) \
     X(StencilFunc, STENCILFUNC) \
     X(Viewport, VIEWPORT) \
+    X(ViewportIndexedfv, VIEWPORTINDEXEDFV) \
     X(Scissor, SCISSOR) \
     X(PixelStorei, PIXELSTOREI) \
     X(ClearColor, CLEARCOLOR) \
     X(ClearDepthf, CLEARDEPTHF) \
     X(SampleMaski, SAMPLEMASKI) \
+    X(ProvokingVertex, PROVOKINGVERTEX) \
     X(PrimitiveRestartIndex, PRIMITIVERESTARTINDEX) \
     /* queries of state */ \
     X(GetError, GETERROR) \
@@ -38,8 +47,12 @@
     X(GetStringi, GETSTRINGI) \
     X(GetIntegerv, GETINTEGERV) \
     X(GetIntegeri_v, GETINTEGERI_V) \
+    X(GetInteger64i_v, GETINTEGER64I_V) \
     X(GetFloatv, GETFLOATV) \
+    X(GetFloati_v, GETFLOATI_V) \
+    X(GetDoublei_v, GETDOUBLEI_V) \
     X(GetBooleanv, GETBOOLEANV) \
+    X(GetBooleani_v, GETBOOLEANI_V) \
     X(GetPointerv, GETPOINTERV) \
     /* buffers */ \
     X(CreateBuffers, CREATEBUFFERS) \
@@ -49,6 +62,8 @@
     X(GetNamedBufferSubData, GETNAMEDBUFFERSUBDATA) \
     X(BindBuffer, BINDBUFFER) \
     X(BindBufferBase, BINDBUFFERBASE) \
+    X(BindBufferRange, BINDBUFFERRANGE) \
+    X(GetNamedBufferParameteri64v, GETNAMEDBUFFERPARAMETERI64V) \
     /* textures */ \
     X(CreateTextures, CREATETEXTURES) \
     X(GenTextures, GENTEXTURES) \
@@ -60,9 +75,11 @@
     X(TextureSubImage3D, TEXTURESUBIMAGE3D) \
     X(TextureParameteri, TEXTUREPARAMETERI) \
     X(GetTextureSubImage, GETTEXTURESUBIMAGE) \
+    X(GetTextureParameteriv, GETTEXTUREPARAMETERIV) \
     X(GetTextureLevelParameteriv, GETTEXTURELEVELPARAMETERIV) \
     X(GenerateTextureMipmap, GENERATETEXTUREMIPMAP) \
     X(ClearTexImage, CLEARTEXIMAGE) \
+    X(BindTexture, BINDTEXTURE) \
     X(BindTextureUnit, BINDTEXTUREUNIT) \
     X(ActiveTexture, ACTIVETEXTURE) \
     X(BindImageTexture, BINDIMAGETEXTURE) \
@@ -80,6 +97,7 @@
     X(NamedFramebufferTextureLayer, NAMEDFRAMEBUFFERTEXTURELAYER) \
     X(NamedFramebufferDrawBuffers, NAMEDFRAMEBUFFERDRAWBUFFERS) \
     X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS) \
+    X(IsFramebuffer, ISFRAMEBUFFER) \
     X(BindFramebuffer, BINDFRAMEBUFFER) \
     X(ClearNamedFramebufferfv, CLEARNAMEDFRAMEBUFFERFV) \
     X(ReadPixels, READPIXELS) \
@@ -108,6 +126,7 @@
     X(AttachShader, ATTACHSHADER) \
     X(DetachShader, DETACHSHADER) \
     X(LinkProgram, LINKPROGRAM) \
+    X(IsProgram, ISPROGRAM) \
     X(UseProgram, USEPROGRAM) \
     X(GetProgramiv, GETPROGRAMIV) \
     X(GetProgramInfoLog, GETPROGRAMINFOLOG) \
@@ -138,6 +157,8 @@
     X(DispatchComputeIndirect, DISPATCHCOMPUTEINDIRECT) \
     X(MemoryBarrier, MEMORYBARRIER) \
     X(Finish, FINISH) \
+    X(PauseTransformFeedback, PAUSETRANSFORMFEEDBACK) \
+    X(ResumeTransformFeedback, RESUMETRANSFORMFEEDBACK) \
     /* queries and fences */ \
     X(CreateQueries, CREATEQUERIES) \
     X(DeleteQueries, DELETEQUERIES) \

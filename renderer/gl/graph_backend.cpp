@@ -75,7 +75,13 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
     if (targets != nullptr) {
         bind_targets(*targets);
     }
-    gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
+    // The host may have used up the stack.
+    GLint depth = 0;
+    gl.GetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &depth);
+    in_debug_group_ = depth < device_->limits().debug_groups;
+    if (in_debug_group_) {
+        gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
+    }
     timer_.begin_pass(index);
     gl.Disable(GL_DEPTH_TEST);
     gl.Disable(GL_CULL_FACE);
@@ -89,7 +95,9 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
 
 void GraphBackend::end_pass() {
     timer_.end_pass();
-    device_->gl().PopDebugGroup();
+    if (in_debug_group_) {
+        device_->gl().PopDebugGroup();
+    }
 }
 
 void GraphBackend::bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) {

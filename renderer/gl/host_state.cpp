@@ -1,107 +1,332 @@
 #include "renderer/gl/host_state.hpp"
 
+#include <array>
+#include <cstddef>
+#include <utility>
+
 #include "shaders/bindings.glsl"
 
 namespace candela::gl {
 namespace {
 
-// Capabilities that would change the picture if the host had enabled them.
-constexpr std::array<GLenum, 17> capabilities{
-    GL_BLEND, GL_COLOR_LOGIC_OP, GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DEPTH_TEST, GL_FRAMEBUFFER_SRGB,
-    GL_MULTISAMPLE, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART, GL_PRIMITIVE_RESTART_FIXED_INDEX,
-    GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_COVERAGE, GL_SAMPLE_MASK, GL_SCISSOR_TEST,
-    GL_STENCIL_TEST,
+// Capabilities that would change the picture if the host had enabled them. Blending and the scissor test are
+// saved with the draw buffers and viewports.
+constexpr std::array<GLenum, 18> capabilities{
+    GL_COLOR_LOGIC_OP, GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DEPTH_TEST, GL_FRAMEBUFFER_SRGB, GL_MULTISAMPLE,
+    GL_POLYGON_OFFSET_FILL, GL_POLYGON_SMOOTH, GL_PRIMITIVE_RESTART, GL_PRIMITIVE_RESTART_FIXED_INDEX,
+    GL_RASTERIZER_DISCARD, GL_SAMPLE_ALPHA_TO_COVERAGE, GL_SAMPLE_ALPHA_TO_ONE, GL_SAMPLE_COVERAGE,
+    GL_SAMPLE_MASK, GL_SAMPLE_SHADING, GL_STENCIL_TEST,
     // Seamless filtering would compare depths across two faces of a cube shadow map.
     GL_TEXTURE_CUBE_MAP_SEAMLESS};
 
-}  // namespace
+/// A texture target that rendering binds, and the query for what is bound there.
+struct TextureTarget {
+    GLenum target;
+    GLenum binding;
+};
+constexpr std::array<TextureTarget, 3> texture_targets{
+    {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
+     {GL_TEXTURE_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY},
+     {GL_TEXTURE_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY}}};
 
-HostState::HostState(const Functions& gl)
-    : gl_(&gl),
-      draw_framebuffer_(get(GL_DRAW_FRAMEBUFFER_BINDING)),
-      read_framebuffer_(get(GL_READ_FRAMEBUFFER_BINDING)),
-      program_(get(GL_CURRENT_PROGRAM)),
-      vertex_array_(get(GL_VERTEX_ARRAY_BINDING)),
-      active_texture_(get(GL_ACTIVE_TEXTURE)),
-      depth_func_(get(GL_DEPTH_FUNC)),
-      front_face_(get(GL_FRONT_FACE)),
-      cull_face_(get(GL_CULL_FACE_MODE)),
-      clip_origin_(get(GL_CLIP_ORIGIN)),
-      clip_depth_(get(GL_CLIP_DEPTH_MODE)),
-      blend_equation_{get(GL_BLEND_EQUATION_RGB), get(GL_BLEND_EQUATION_ALPHA)},
-      blend_factors_{get(GL_BLEND_SRC_RGB), get(GL_BLEND_DST_RGB), get(GL_BLEND_SRC_ALPHA),
-                     get(GL_BLEND_DST_ALPHA)} {
-    gl.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask_);
-    gl.GetBooleanv(GL_COLOR_WRITEMASK, colour_mask_.data());
-    gl.GetIntegerv(GL_VIEWPORT, viewport_.data());
-    gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode_.data());
-    gl.GetFloatv(GL_DEPTH_RANGE, depth_range_.data());
-    gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour_.data());
-    gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth_);
-    gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &polygon_offset_factor_);
-    gl.GetFloatv(GL_POLYGON_OFFSET_UNITS, &polygon_offset_units_);
-    for (const GLenum capability : capabilities) {
-        enabled_.push_back(gl.IsEnabled(capability) == GL_TRUE);
+/// A target of indexed buffers, with the queries for what is bound there.
+struct IndexedTarget {
+    GLenum target;
+    GLenum binding;
+    GLenum start;
+    GLenum size;
+    GLuint count;  ///< of the binding points that rendering uses
+};
+constexpr std::array<IndexedTarget, 2> indexed_targets{
+    {{GL_SHADER_STORAGE_BUFFER, GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+      GL_SHADER_STORAGE_BUFFER_SIZE, BINDING_LAST + 1},
+     {GL_UNIFORM_BUFFER, GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE,
+      UNIFORMS_LAST + 1}}};
+
+GLint get(const Functions& gl, GLenum what) {
+    GLint value = 0;
+    gl.GetIntegerv(what, &value);
+    return value;
+}
+
+/// For names of objects, enumerations and counts.
+GLuint get_unsigned(const Functions& gl, GLenum what) {
+    return static_cast<GLuint>(get(gl, what));
+}
+
+GLint get_at(const Functions& gl, GLenum what, GLuint index) {
+    GLint value = 0;
+    gl.GetIntegeri_v(what, index, &value);
+    return value;
+}
+
+GLuint get_unsigned_at(const Functions& gl, GLenum what, GLuint index) {
+    return static_cast<GLuint>(get_at(gl, what, index));
+}
+
+void set_enabled(const Functions& gl, GLenum capability, bool enabled) {
+    if (enabled) {
+        gl.Enable(capability);
+    } else {
         gl.Disable(capability);
     }
-    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+}
+
+void set_enabled_at(const Functions& gl, GLenum capability, GLuint index, bool enabled) {
+    if (enabled) {
+        gl.Enablei(capability, index);
+    } else {
+        gl.Disablei(capability, index);
+    }
+}
+
+// Each of the following functions saves a part of the state, sets what rendering assumes, and returns what
+// restores the part.
+
+using Restore = std::function<void()>;
+
+Restore pause_transform_feedback(const Functions& gl) {
+    const bool running =
+        get(gl, GL_TRANSFORM_FEEDBACK_ACTIVE) == GL_TRUE && get(gl, GL_TRANSFORM_FEEDBACK_PAUSED) == GL_FALSE;
+    if (!running) {
+        return [] {};
+    }
+    gl.PauseTransformFeedback();
+    return [&gl] { gl.ResumeTransformFeedback(); };
+}
+
+Restore save_objects(const Functions& gl) {
+    return
+        [&gl, draw = get_unsigned(gl, GL_DRAW_FRAMEBUFFER_BINDING),
+         read = get_unsigned(gl, GL_READ_FRAMEBUFFER_BINDING), program = get_unsigned(gl, GL_CURRENT_PROGRAM),
+         vertex_array = get_unsigned(gl, GL_VERTEX_ARRAY_BINDING),
+         draw_indirect = get_unsigned(gl, GL_DRAW_INDIRECT_BUFFER_BINDING),
+         dispatch_indirect = get_unsigned(gl, GL_DISPATCH_INDIRECT_BUFFER_BINDING)] {
+            gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, draw);
+            gl.BindFramebuffer(GL_READ_FRAMEBUFFER, read);
+            gl.UseProgram(gl.IsProgram(program) == GL_TRUE ? program : 0);
+            gl.BindVertexArray(vertex_array);
+            gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, draw_indirect);
+            gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, dispatch_indirect);
+        };
+}
+
+Restore save_texture_units(const Functions& gl) {
+    struct Unit {
+        std::array<GLuint, texture_targets.size()> textures;
+        GLuint sampler;
+    };
+    std::array<Unit, UNIT_LAST + 1> units{};
+    const GLuint active = get_unsigned(gl, GL_ACTIVE_TEXTURE);
+    for (GLuint i = 0; i < units.size(); ++i) {
+        gl.ActiveTexture(GL_TEXTURE0 + i);
+        for (std::size_t target = 0; target < texture_targets.size(); ++target) {
+            units[i].textures[target] = get_unsigned(gl, texture_targets[target].binding);
+        }
+        units[i].sampler = get_unsigned(gl, GL_SAMPLER_BINDING);
+        gl.BindSampler(i, 0);
+    }
+    return [&gl, units, active] {
+        for (GLuint i = 0; i < units.size(); ++i) {
+            gl.ActiveTexture(GL_TEXTURE0 + i);
+            for (std::size_t target = 0; target < texture_targets.size(); ++target) {
+                gl.BindTexture(texture_targets[target].target, units[i].textures[target]);
+            }
+            gl.BindSampler(i, units[i].sampler);
+        }
+        gl.ActiveTexture(active);
+    };
+}
+
+Restore save_images(const Functions& gl) {
+    struct Image {
+        GLuint texture;
+        GLint level;
+        GLboolean layered;
+        GLint layer;
+        GLenum access;
+        GLenum format;
+    };
+    std::array<Image, IMAGE_LAST + 1> images{};
+    for (GLuint i = 0; i < images.size(); ++i) {
+        images[i] = {.texture = get_unsigned_at(gl, GL_IMAGE_BINDING_NAME, i),
+                     .level = get_at(gl, GL_IMAGE_BINDING_LEVEL, i),
+                     .layered = static_cast<GLboolean>(get_at(gl, GL_IMAGE_BINDING_LAYERED, i)),
+                     .layer = get_at(gl, GL_IMAGE_BINDING_LAYER, i),
+                     .access = get_unsigned_at(gl, GL_IMAGE_BINDING_ACCESS, i),
+                     .format = get_unsigned_at(gl, GL_IMAGE_BINDING_FORMAT, i)};
+    }
+    return [&gl, images] {
+        for (GLuint i = 0; i < images.size(); ++i) {
+            const Image& image = images[i];
+            gl.BindImageTexture(i, image.texture, image.level, image.layered, image.layer, image.access,
+                                image.format);
+        }
+    };
+}
+
+Restore save_indexed_buffers(const Functions& gl, const IndexedTarget& target) {
+    struct Binding {
+        GLuint buffer;
+        GLint64 start;
+        GLint64 size;
+    };
+    std::vector<Binding> bindings(target.count);
+    for (GLuint i = 0; i < target.count; ++i) {
+        bindings[i].buffer = get_unsigned_at(gl, target.binding, i);
+        gl.GetInteger64i_v(target.start, i, &bindings[i].start);
+        gl.GetInteger64i_v(target.size, i, &bindings[i].size);
+    }
+    return [&gl, &target, bindings = std::move(bindings), generic = get_unsigned(gl, target.binding)] {
+        for (GLuint i = 0; i < bindings.size(); ++i) {
+            const auto& [buffer, start, size] = bindings[i];
+            if (size == 0) {  // the whole buffer, or none
+                gl.BindBufferBase(target.target, i, buffer);
+            } else {
+                gl.BindBufferRange(target.target, i, buffer, static_cast<GLintptr>(start),
+                                   static_cast<GLsizeiptr>(size));
+            }
+        }
+        gl.BindBuffer(target.target, generic);  // each indexed binding also sets this one
+    };
+}
+
+Restore save_viewports(const Functions& gl) {
+    struct Viewport {
+        std::array<GLfloat, 4> rectangle;
+        std::array<GLdouble, 2> depth_range;
+        bool scissor_test;
+    };
+    std::vector<Viewport> viewports(get_unsigned(gl, GL_MAX_VIEWPORTS));
+    for (GLuint i = 0; i < viewports.size(); ++i) {
+        gl.GetFloati_v(GL_VIEWPORT, i, viewports[i].rectangle.data());
+        gl.GetDoublei_v(GL_DEPTH_RANGE, i, viewports[i].depth_range.data());
+        viewports[i].scissor_test = gl.IsEnabledi(GL_SCISSOR_TEST, i) == GL_TRUE;
+    }
     gl.DepthRangef(0.0F, 1.0F);
-    gl.CullFace(GL_BACK);
-    gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    gl.Disable(GL_SCISSOR_TEST);
+    return [&gl, viewports = std::move(viewports)] {
+        for (GLuint i = 0; i < viewports.size(); ++i) {
+            const Viewport& viewport = viewports[i];
+            gl.ViewportIndexedfv(i, viewport.rectangle.data());
+            gl.DepthRangeIndexed(i, viewport.depth_range[0], viewport.depth_range[1]);
+            set_enabled_at(gl, GL_SCISSOR_TEST, i, viewport.scissor_test);
+        }
+    };
+}
+
+Restore save_draw_buffers(const Functions& gl) {
+    struct DrawBuffer {
+        bool blends;
+        std::array<GLenum, 2> equation;  // RGB, alpha
+        std::array<GLenum, 4> factors;   // source RGB, destination RGB, source alpha, destination alpha
+        std::array<GLboolean, 4> mask;
+    };
+    std::vector<DrawBuffer> buffers(get_unsigned(gl, GL_MAX_DRAW_BUFFERS));
+    for (GLuint i = 0; i < buffers.size(); ++i) {
+        buffers[i] = {
+            .blends = gl.IsEnabledi(GL_BLEND, i) == GL_TRUE,
+            .equation = {get_unsigned_at(gl, GL_BLEND_EQUATION_RGB, i),
+                         get_unsigned_at(gl, GL_BLEND_EQUATION_ALPHA, i)},
+            .factors = {get_unsigned_at(gl, GL_BLEND_SRC_RGB, i), get_unsigned_at(gl, GL_BLEND_DST_RGB, i),
+                        get_unsigned_at(gl, GL_BLEND_SRC_ALPHA, i),
+                        get_unsigned_at(gl, GL_BLEND_DST_ALPHA, i)},
+            .mask = {}};
+        gl.GetBooleani_v(GL_COLOR_WRITEMASK, i, buffers[i].mask.data());
+    }
+    gl.Disable(GL_BLEND);
     gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    return [&gl, buffers = std::move(buffers)] {
+        for (GLuint i = 0; i < buffers.size(); ++i) {
+            const auto& [blends, equation, factors, mask] = buffers[i];
+            set_enabled_at(gl, GL_BLEND, i, blends);
+            gl.BlendEquationSeparatei(i, equation[0], equation[1]);
+            gl.BlendFuncSeparatei(i, factors[0], factors[1], factors[2], factors[3]);
+            gl.ColorMaski(i, mask[0], mask[1], mask[2], mask[3]);
+        }
+    };
+}
+
+Restore save_capabilities(const Functions& gl) {
+    std::vector<GLenum> all(capabilities.begin(), capabilities.end());
+    const GLuint clip_distances = get_unsigned(gl, GL_MAX_CLIP_DISTANCES);
+    for (GLuint i = 0; i < clip_distances; ++i) {
+        all.push_back(GL_CLIP_DISTANCE0 + i);
+    }
+    std::vector<bool> enabled;
+    for (const GLenum capability : all) {
+        enabled.push_back(gl.IsEnabled(capability) == GL_TRUE);
+        gl.Disable(capability);
+    }
+    return [&gl, all = std::move(all), enabled = std::move(enabled)] {
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            set_enabled(gl, all[i], enabled[i]);
+        }
+    };
+}
+
+Restore save_rasterisation(const Functions& gl) {
+    std::array<GLfloat, 2> offset{};
+    std::array<GLint, 2> polygon_mode{};  // only [0] is used; some drivers write two values
+    gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &offset[0]);
+    gl.GetFloatv(GL_POLYGON_OFFSET_UNITS, &offset[1]);
+    gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode.data());
+    Restore restore =
+        [&gl, offset, mode = static_cast<GLenum>(polygon_mode[0]),
+         front_face = get_unsigned(gl, GL_FRONT_FACE), cull_face = get_unsigned(gl, GL_CULL_FACE_MODE),
+         clip_origin = get_unsigned(gl, GL_CLIP_ORIGIN), clip_depth = get_unsigned(gl, GL_CLIP_DEPTH_MODE),
+         provoking_vertex = get_unsigned(gl, GL_PROVOKING_VERTEX)] {
+            gl.PolygonOffset(offset[0], offset[1]);
+            gl.PolygonMode(GL_FRONT_AND_BACK, mode);
+            gl.FrontFace(front_face);
+            gl.CullFace(cull_face);
+            gl.ClipControl(clip_origin, clip_depth);
+            gl.ProvokingVertex(provoking_vertex);
+        };
+    gl.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    gl.CullFace(GL_BACK);
+    gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl.ProvokingVertex(GL_LAST_VERTEX_CONVENTION);  // drivers may round interpolated values in another way
+    return restore;
+}
+
+Restore save_depth_and_clears(const Functions& gl) {
+    GLboolean depth_mask = GL_TRUE;
+    std::array<GLfloat, 4> clear_colour{};
+    GLfloat clear_depth = 0.0F;
+    gl.GetBooleanv(GL_DEPTH_WRITEMASK, &depth_mask);
+    gl.GetFloatv(GL_COLOR_CLEAR_VALUE, clear_colour.data());
+    gl.GetFloatv(GL_DEPTH_CLEAR_VALUE, &clear_depth);
+    return [&gl, depth_mask, clear_colour, clear_depth, depth_func = get_unsigned(gl, GL_DEPTH_FUNC)] {
+        gl.DepthFunc(depth_func);
+        gl.DepthMask(depth_mask);
+        gl.ClearColor(clear_colour[0], clear_colour[1], clear_colour[2], clear_colour[3]);
+        gl.ClearDepthf(clear_depth);
+    };
+}
+
+}  // namespace
+
+HostState::HostState(const Functions& gl) {
+    // While transform feedback runs, the program can be neither changed nor restored.
+    Restore resume = pause_transform_feedback(gl);
+    restore_ = {save_objects(gl),
+                save_texture_units(gl),
+                save_images(gl),
+                save_indexed_buffers(gl, indexed_targets[0]),
+                save_indexed_buffers(gl, indexed_targets[1]),
+                save_viewports(gl),
+                save_draw_buffers(gl),
+                save_capabilities(gl),
+                save_rasterisation(gl),
+                save_depth_and_clears(gl),
+                std::move(resume)};
 }
 
 HostState::~HostState() {
-    const Functions& gl = *gl_;
-    for (GLuint unit = 0; unit <= UNIT_LAST; ++unit) {
-        gl.BindTextureUnit(unit, 0);
-        gl.BindSampler(unit, 0);
+    for (const Restore& restore : restore_) {
+        restore();
     }
-    for (GLuint binding = 0; binding <= BINDING_LAST; ++binding) {
-        gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, 0);
-    }
-    for (GLuint binding = 0; binding <= UNIFORMS_LAST; ++binding) {
-        gl.BindBufferBase(GL_UNIFORM_BUFFER, binding, 0);
-    }
-    for (GLuint image = 0; image <= IMAGE_LAST; ++image) {
-        gl.BindImageTexture(image, 0, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R8);
-    }
-    gl.BindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
-    gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, 0);
-    for (std::size_t i = 0; i < capabilities.size(); ++i) {
-        if (enabled_[i]) {
-            gl.Enable(capabilities[i]);
-        } else {
-            gl.Disable(capabilities[i]);
-        }
-    }
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_framebuffer_));
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_framebuffer_));
-    gl.UseProgram(static_cast<GLuint>(program_));
-    gl.BindVertexArray(static_cast<GLuint>(vertex_array_));
-    gl.ActiveTexture(static_cast<GLenum>(active_texture_));
-    gl.DepthFunc(static_cast<GLenum>(depth_func_));
-    gl.FrontFace(static_cast<GLenum>(front_face_));
-    gl.CullFace(static_cast<GLenum>(cull_face_));
-    gl.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygon_mode_[0]));
-    gl.ClipControl(static_cast<GLenum>(clip_origin_), static_cast<GLenum>(clip_depth_));
-    gl.BlendEquationSeparate(static_cast<GLenum>(blend_equation_[0]),
-                             static_cast<GLenum>(blend_equation_[1]));
-    gl.BlendFuncSeparate(static_cast<GLenum>(blend_factors_[0]), static_cast<GLenum>(blend_factors_[1]),
-                         static_cast<GLenum>(blend_factors_[2]), static_cast<GLenum>(blend_factors_[3]));
-    gl.DepthRangef(depth_range_[0], depth_range_[1]);
-    gl.DepthMask(depth_mask_);
-    gl.ColorMask(colour_mask_[0], colour_mask_[1], colour_mask_[2], colour_mask_[3]);
-    gl.Viewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
-    gl.ClearColor(clear_colour_[0], clear_colour_[1], clear_colour_[2], clear_colour_[3]);
-    gl.ClearDepthf(clear_depth_);
-    gl.PolygonOffset(polygon_offset_factor_, polygon_offset_units_);
-}
-
-GLint HostState::get(GLenum what) const {
-    GLint value = 0;
-    gl_->GetIntegerv(what, &value);
-    return value;
 }
 
 }  // namespace candela::gl

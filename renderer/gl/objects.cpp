@@ -75,6 +75,8 @@ std::string_view framebuffer_status(GLenum status) {
             return "layered and flat attachments are mixed";
         case GL_FRAMEBUFFER_INCOMPLETE_MULTISAMPLE:
             return "attachments differ in samples";
+        case GL_FRAMEBUFFER_UNDEFINED:
+            return "the context has no default framebuffer";
         case GL_FRAMEBUFFER_UNSUPPORTED:
             return "the driver does not support this combination of formats";
         default:
@@ -137,7 +139,10 @@ Buffer::Buffer(Device& device, std::string_view label, std::uint64_t size)
     // OpenGL does not allow storage of size 0.
     const auto stored = static_cast<GLsizeiptr>(std::max<std::uint64_t>(size, 4));
     gl().NamedBufferStorage(name(), stored, nullptr, GL_DYNAMIC_STORAGE_BIT);
-    if (gl().GetError() == GL_OUT_OF_MEMORY) fail();
+    // Not glGetError: it would also return, and clear, an error of the host.
+    GLint64 offered = 0;
+    gl().GetNamedBufferParameteri64v(name(), GL_BUFFER_SIZE, &offered);
+    if (offered != stored) fail();
     set_bytes(size);
 }
 
@@ -211,12 +216,19 @@ void Framebuffer::draw_buffers(std::uint32_t count) {
 }
 
 void Framebuffer::check() const {
-    const GLenum status = gl().CheckNamedFramebufferStatus(name(), GL_DRAW_FRAMEBUFFER);
-    if (status == GL_FRAMEBUFFER_COMPLETE) return;
     std::array<char, 256> label{};
     gl().GetObjectLabel(GL_FRAMEBUFFER, name(), static_cast<GLsizei>(label.size()), nullptr, label.data());
-    throw GlError(
-        fmt::format("framebuffer \"{}\" is incomplete: {}", label.data(), framebuffer_status(status)));
+    require_complete(gl(), name(), fmt::format("framebuffer \"{}\"", label.data()));
+}
+
+void require_complete(const Functions& gl, GLuint framebuffer, std::string_view called) {
+    if (framebuffer != 0 && gl.IsFramebuffer(framebuffer) != GL_TRUE) {
+        throw GlError(fmt::format("{} does not exist", called));
+    }
+    const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE) {
+        throw GlError(fmt::format("{} is incomplete: {}", called, framebuffer_status(status)));
+    }
 }
 
 void Framebuffer::bind() const {

@@ -135,6 +135,10 @@ class Framebuffer : public Object {
     void bind() const;
 };
 
+/// Throws GlError if there is no such framebuffer or if it is incomplete, with the reason. `called` names it
+/// in the message. 0 is the default framebuffer.
+void require_complete(const Functions& gl, GLuint framebuffer, std::string_view called);
+
 /// A vertex array. It does not own its buffers: they must stay alive while it is used.
 class VertexArray : public Object {
  public:

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 namespace candela::gl {
@@ -127,7 +128,8 @@ class Assembler {
 }  // namespace
 
 bool ShaderLibrary::contains(std::string_view name) const {
-    if (!directory_.empty()) return std::filesystem::is_regular_file(directory_ / name);
+    std::error_code ignored;
+    if (!directory_.empty()) return std::filesystem::is_regular_file(directory_ / name, ignored);
     return std::any_of(files_.begin(), files_.end(),
                        [&](const EmbeddedShader& file) { return file.name == name; });
 }

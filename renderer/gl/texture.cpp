@@ -153,7 +153,10 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     } else {
         gl().TextureStorage3D(name(), mips, internal, width, height, static_cast<GLsizei>(desc.layers));
     }
-    if (gl().GetError() == GL_OUT_OF_MEMORY) fail("no memory");
+    // Not glGetError: it would also return, and clear, an error of the host.
+    GLint stored = GL_FALSE;
+    gl().GetTextureParameteriv(name(), GL_TEXTURE_IMMUTABLE_FORMAT, &stored);
+    if (stored != GL_TRUE) fail("no memory");
     set_bytes(byte_size(desc));
     set_sampling();
 }

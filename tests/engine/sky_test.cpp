@@ -105,13 +105,13 @@ TEST_SUITE("sky") {
         std::vector<glm::vec3> wrong = eight;
         wrong[6].g = -1.0F;
         CHECK(error_of_picture(exr(wrong, 4)) ==
-              "it holds a radiance that is negative or not finite, in column 2 of row 1");
+              "the picture holds a radiance that is negative or not finite, in column 2 of row 1");
         wrong[6].g = std::numeric_limits<float>::quiet_NaN();
         CHECK(error_of_picture(exr(wrong, 4)) ==
-              "it holds a radiance that is negative or not finite, in column 2 of row 1");
+              "the picture holds a radiance that is negative or not finite, in column 2 of row 1");
         wrong[6].g = std::numeric_limits<float>::infinity();
         CHECK(error_of_picture(exr(wrong, 4)) ==
-              "it holds a radiance that is negative or not finite, in column 2 of row 1");
+              "the picture holds a radiance that is negative or not finite, in column 2 of row 1");
         const std::string huge = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 32768\n";
         CHECK(error_of_picture(Bytes(huge.begin(), huge.end())) ==
               "it is 32768 pixels wide; 16384 are possible");

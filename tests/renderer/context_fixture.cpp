@@ -39,7 +39,7 @@ std::unique_ptr<HeadlessContext> make_current_context() {
     return context;
 }
 
-GlFixture::GlFixture() : context(make_current_context()), device(context->get_proc()) {}
+GlFixture::GlFixture() : context(make_current_context()), device(context->get_proc(), gl::DebugOutput::on) {}
 
 GlFixture::~GlFixture() {
     context->make_current();

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
@@ -17,12 +17,18 @@ void set_tested_context(ContextKind kind);
 [[nodiscard]] bool tests_verify();
 void set_tests_verify(bool on);
 
-/// A renderer with the options of this run of the tests.
+/// A renderer with debug output and the options of this run of the tests.
 class TestedRenderer : public Renderer {
  public:
-    explicit TestedRenderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {})
-        : Renderer(get_proc, shader_directory) {
+    explicit TestedRenderer(const gl::GetProc& get_proc, RendererOptions options = {})
+        : Renderer(get_proc, with_debug_output(std::move(options))) {
         verify(tests_verify());
+    }
+
+ private:
+    static RendererOptions with_debug_output(RendererOptions options) {
+        options.debug_output = true;
+        return options;
     }
 };
 

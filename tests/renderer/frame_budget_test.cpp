@@ -81,7 +81,12 @@ TEST_SUITE("frame budget") {
             graphs += renderer.describe(GraphFormat::json);
         }
         const RenderTarget target(device, {8, 8});
-        const RenderView view{.camera = scene.camera, .target = target.target(), .surfaces = HostSurfaces{}};
+        const gl::Texture texture(device, "host's", {.size = {8, 8}, .format = Format::rgba32f});
+        const RenderView view{
+            .camera = scene.camera,
+            .target = target.target(),
+            .surfaces =
+                HostSurfaces{.depth = texture.name(), .normal = texture.name(), .albedo = texture.name()}};
         renderer.render(scene.world, {&view, 1});
         graphs += renderer.describe(GraphFormat::json);
         CHECK(graphs.find("\"vpl-gather\"") != std::string::npos);

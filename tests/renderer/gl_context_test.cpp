@@ -19,7 +19,7 @@ namespace {
 struct Place {
     explicit Place(ContextKind kind, std::uint32_t mark) : context(HeadlessContext::create(kind)) {
         context->make_current();
-        device = std::make_unique<gl::Device>(context->get_proc());
+        device = std::make_unique<gl::Device>(context->get_proc(), gl::DebugOutput::on);
         buffer = gl::Buffer(*device, "mark", std::array{mark});
     }
     ~Place() {
@@ -71,7 +71,7 @@ TEST_SUITE("gl context") {
 
     TEST_CASE("a context is OpenGL 4.5 core") {
         const auto context = make_current_context();
-        const gl::Device device(context->get_proc());
+        const gl::Device device(context->get_proc(), gl::DebugOutput::on);
         GLint profile = 0;
         device.gl().GetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
         CHECK(profile == GL_CONTEXT_CORE_PROFILE_BIT);

@@ -10,6 +10,7 @@
 #include "tests/renderer/context_fixture.hpp"
 
 using namespace candela;
+using gl::DebugOutput;
 using gl::Device;
 
 namespace {
@@ -27,7 +28,7 @@ void provoke_error(const Device& device) {
 
 std::string message_of(const gl::GetProc& get_proc) {
     try {
-        const Device device(get_proc);
+        const Device device(get_proc, DebugOutput::on);
     } catch (const gl::GlError& error) {
         return error.what();
     }
@@ -104,6 +105,12 @@ TEST_SUITE("gl device") {
         CHECK_THROWS_WITH_AS(require_limits(limits),
                              "the driver offers 8 storage blocks a program; Candela needs 12", gl::GlError);
         limits = device.limits();
+        limits.drawing_storage_blocks = 0;
+        CHECK_THROWS_WITH_AS(
+            require_limits(limits),
+            "the driver offers 0 storage blocks of a vertex or geometry shader; Candela needs 1",
+            gl::GlError);
+        limits = device.limits();
         limits.texture_units = 4;
         CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 10",
                              gl::GlError);
@@ -149,7 +156,7 @@ TEST_SUITE("gl device") {
         device.gl().DebugMessageCallback(&HostLog::receive, &host);
         device.gl().Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
         {
-            Device guest(context->get_proc());
+            Device guest(context->get_proc(), DebugOutput::on);
             CHECK(device.gl().IsEnabled(GL_DEBUG_OUTPUT_SYNCHRONOUS) == GL_TRUE);
             provoke_error(guest);
             CHECK(host.messages == 1);
@@ -171,9 +178,9 @@ TEST_SUITE("gl device") {
         gl.Enable(GL_DEBUG_OUTPUT);
         gl.Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
 
-        std::optional<Device> first(std::in_place, context->get_proc());
-        std::optional<Device> second(std::in_place, context->get_proc());
-        std::optional<Device> third(std::in_place, context->get_proc());
+        std::optional<Device> first(std::in_place, context->get_proc(), DebugOutput::on);
+        std::optional<Device> second(std::in_place, context->get_proc(), DebugOutput::on);
+        std::optional<Device> third(std::in_place, context->get_proc(), DebugOutput::on);
         second.reset();
         provoke_error(*third);
         CHECK(holds_error(first->take_messages()));

@@ -102,6 +102,30 @@ TEST_SUITE("gl objects") {
         CHECK(device.live() == ObjectCounts{});
     }
 
+    TEST_CASE_FIXTURE(GlFixture, "a texture that is too large for the memory is refused by name") {
+        const std::uint32_t side = device.limits().texture_size;
+        const TextureDesc huge{.size = {side, side},
+                               .format = Format::rgba32f,
+                               .shape = TextureShape::array,
+                               .layers = device.limits().texture_layers};
+        CHECK(throws<GlError>([&] { static_cast<void>(Texture(device, "huge", huge)); },
+                              "texture \"huge\" of"));
+        CHECK(throws<GlError>([&] { static_cast<void>(Texture(device, "huge", huge)); }, "no memory"));
+        static_cast<void>(device.take_messages());  // the driver may report its refusal
+        CHECK(device.live() == ObjectCounts{});
+    }
+
+    TEST_CASE_FIXTURE(GlFixture,
+                      "a pending error of the host is neither cleared nor taken for lack of memory") {
+        device.gl().Enable(GL_RENDERER);  // no capability
+        CHECK_NOTHROW(Buffer(device, "buffer", 64));
+        CHECK_NOTHROW(Texture(device, "texture", TextureDesc{.size = {4, 4}}));
+        CHECK(throws<GlError>([&] { static_cast<void>(Buffer(device, "huge", std::uint64_t{1} << 50U)); },
+                              "no memory"));
+        CHECK(device.gl().GetError() == GL_INVALID_ENUM);
+        static_cast<void>(device.take_messages());
+    }
+
     TEST_CASE_FIXTURE(GlFixture, "textures of every format return what was uploaded") {
         for (const Format format :
              {Format::rgba8, Format::srgb8_alpha8, Format::rgba16f, Format::rgba32f, Format::rg32f,

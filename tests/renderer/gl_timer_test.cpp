@@ -68,7 +68,7 @@ TEST_SUITE("gl timer") {
             if (wanted == "glGetQueryObjectui64v") return reinterpret_cast<void (*)()>(wait);
             return proc(name);
         };
-        Device slow_device(slow);
+        Device slow_device(slow, DebugOutput::on);
         Timer timer(slow_device);
         time_frames(slow_device, timer, 0, 50);
         CHECK(timer.collect().empty());

@@ -1,8 +1,9 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,60 +19,352 @@ namespace {
 
 constexpr glm::uvec2 size{32, 24};
 
-/// All GL state that rendering might change.
-struct HostView {
-    std::vector<GLfloat> values;
-    bool operator==(const HostView&) const = default;
+// Functions of OpenGL 4.5 that a host may use and the library does not.
+#define HOST_FUNCTIONS(X)                             \
+    X(BeginQuery, BEGINQUERY)                         \
+    X(BeginTransformFeedback, BEGINTRANSFORMFEEDBACK) \
+    X(BindProgramPipeline, BINDPROGRAMPIPELINE)       \
+    X(BindRenderbuffer, BINDRENDERBUFFER)             \
+    X(BlendColor, BLENDCOLOR)                         \
+    X(BlendEquationi, BLENDEQUATIONI)                 \
+    X(ClampColor, CLAMPCOLOR)                         \
+    X(ClearStencil, CLEARSTENCIL)                     \
+    X(CreateProgramPipelines, CREATEPROGRAMPIPELINES) \
+    X(CreateRenderbuffers, CREATERENDERBUFFERS)       \
+    X(EndQuery, ENDQUERY)                             \
+    X(EndTransformFeedback, ENDTRANSFORMFEEDBACK)     \
+    X(GetQueryiv, GETQUERYIV)                         \
+    X(Hint, HINT)                                     \
+    X(LineWidth, LINEWIDTH)                           \
+    X(LogicOp, LOGICOP)                               \
+    X(MinSampleShading, MINSAMPLESHADING)             \
+    X(PatchParameterfv, PATCHPARAMETERFV)             \
+    X(PatchParameteri, PATCHPARAMETERI)               \
+    X(PointParameterf, POINTPARAMETERF)               \
+    X(PointSize, POINTSIZE)                           \
+    X(SampleCoverage, SAMPLECOVERAGE)                 \
+    X(ScissorIndexed, SCISSORINDEXED)                 \
+    X(StencilMask, STENCILMASK)                       \
+    X(StencilOpSeparate, STENCILOPSEPARATE)           \
+    X(TransformFeedbackVaryings, TRANSFORMFEEDBACKVARYINGS)
+
+struct HostFunctions {
+#define HOST_FUNCTION(name, capitals) PFNGL##capitals##PROC name = nullptr;
+    HOST_FUNCTIONS(HOST_FUNCTION)
+#undef HOST_FUNCTION
 };
 
-HostView host_view(const gl::Functions& gl) {
-    HostView view;
-    const auto add_values = [&](int what, std::size_t count) {
-        std::array<GLfloat, 4> values{};
-        gl.GetFloatv(static_cast<GLenum>(what), values.data());
-        view.values.insert(view.values.end(), values.begin(),
-                           values.begin() + static_cast<std::ptrdiff_t>(count));
-    };
-    for (const int what :
-         {GL_DRAW_FRAMEBUFFER_BINDING, GL_READ_FRAMEBUFFER_BINDING, GL_CURRENT_PROGRAM,
-          GL_VERTEX_ARRAY_BINDING, GL_ACTIVE_TEXTURE, GL_DEPTH_FUNC, GL_FRONT_FACE, GL_CULL_FACE_MODE,
-          GL_CLIP_ORIGIN, GL_CLIP_DEPTH_MODE, GL_DEPTH_WRITEMASK, GL_DEPTH_CLEAR_VALUE, GL_STENCIL_FUNC,
-          GL_BLEND_SRC_RGB, GL_UNPACK_ALIGNMENT, GL_UNPACK_ROW_LENGTH, GL_PACK_ALIGNMENT, GL_LINE_WIDTH,
-          GL_POLYGON_OFFSET_FACTOR}) {
-        add_values(what, 1);
-    }
-    add_values(GL_DEPTH_RANGE, 2);
-    for (const int what : {GL_VIEWPORT, GL_SCISSOR_BOX, GL_COLOR_WRITEMASK, GL_COLOR_CLEAR_VALUE}) {
-        add_values(what, 4);
-    }
-    std::array<GLint, 2> polygon_mode{};  // some drivers still return front and back separately
-    gl.GetIntegerv(GL_POLYGON_MODE, polygon_mode.data());
-    view.values.push_back(static_cast<GLfloat>(polygon_mode[0]));
-    for (const int what :
-         {GL_BLEND, GL_COLOR_LOGIC_OP, GL_CULL_FACE, GL_DEPTH_CLAMP, GL_DEPTH_TEST, GL_FRAMEBUFFER_SRGB,
-          GL_MULTISAMPLE, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART, GL_RASTERIZER_DISCARD, GL_SAMPLE_MASK,
-          GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_TEXTURE_CUBE_MAP_SEAMLESS}) {
-        view.values.push_back(gl.IsEnabled(static_cast<GLenum>(what)) == GL_TRUE ? 1.0F : 0.0F);
-    }
-    return view;
+HostFunctions load_host_functions(const gl::GetProc& proc) {
+    HostFunctions functions;
+#define LOAD_FUNCTION(name, capitals) \
+    functions.name = reinterpret_cast<PFNGL##capitals##PROC>(proc("gl" #name));
+    HOST_FUNCTIONS(LOAD_FUNCTION)
+#undef LOAD_FUNCTION
+    return functions;
 }
 
 /// A host with its own objects.
-struct Host {
+class Host {
+ public:
+    Host(gl::Device& device, const gl::GetProc& proc)
+        : gl(device.gl()),
+          more(load_host_functions(proc)),
+          vertex_array(device, "host's"),
+          buffer(device, "host's", 4096),
+          flat(device, "host's", {.size = {4, 4}}),
+          layers(device, "host's", {.size = {4, 4}, .shape = TextureShape::array, .layers = 3}),
+          cubes(device, "host's", {.size = {4, 4}, .shape = TextureShape::cube_array, .layers = 6}),
+          sampler(device, "host's", {.min_filter = GL_NEAREST, .wrap_u = GL_REPEAT, .compare = GL_NEVER}),
+          framebuffer(device, "host's") {
+        framebuffer.attach_colour(0, flat.name());
+    }
+
+    /// A program that writes one float per vertex into a transform-feedback buffer.
+    [[nodiscard]] GLuint make_program() const {
+        const char* const text =
+            "#version 450 core\nout float x; void main() { x = 1.0; gl_Position = vec4(0.0); }";
+        const GLuint shader = gl.CreateShader(GL_VERTEX_SHADER);
+        gl.ShaderSource(shader, 1, &text, nullptr);
+        gl.CompileShader(shader);
+        const GLuint program = gl.CreateProgram();
+        gl.AttachShader(program, shader);
+        const char* const varying = "x";
+        more.TransformFeedbackVaryings(program, 1, &varying, GL_INTERLEAVED_ATTRIBS);
+        gl.LinkProgram(program);
+        gl.DeleteShader(shader);
+        return program;
+    }
+
     const gl::Functions& gl;
-    GLuint vertex_array;
-    GLuint buffer;
+    HostFunctions more;
+    gl::VertexArray vertex_array;
+    gl::Buffer buffer;
+    gl::Texture flat;
+    gl::Texture layers;
+    gl::Texture cubes;
+    gl::Sampler sampler;
+    gl::Framebuffer framebuffer;
 };
 
+constexpr std::array query_targets{GL_SAMPLES_PASSED, GL_ANY_SAMPLES_PASSED, GL_PRIMITIVES_GENERATED,
+                                   GL_TIME_ELAPSED, GL_TRANSFORM_FEEDBACK_PRIMITIVES_WRITTEN};
+
+/// All GL state that rendering might change, by a name for messages.
+class HostView {
+ public:
+    explicit HostView(const Host& host) : host_(&host), gl_(&host.gl) {
+        add_values();
+        add_capabilities();
+        add_draw_buffers();
+        add_viewports();
+        add_texture_units();
+        add_images();
+        add_indexed_buffers();
+        for (const int target : query_targets) {
+            GLint current = 0;
+            host_->more.GetQueryiv(static_cast<GLenum>(target), GL_CURRENT_QUERY, &current);
+            add("query", target, 0, {static_cast<double>(current)});
+        }
+    }
+
+    /// Names of what differs.
+    [[nodiscard]] std::string differences(const HostView& other) const {
+        std::string names;
+        for (const auto& [name, value] : values_) {
+            if (other.values_.at(name) != value) names += name + ' ';
+        }
+        return names;
+    }
+
+ private:
+    void add(const char* group, int what, GLuint index, std::vector<double> value) {
+        values_[std::string(group) + ' ' + std::to_string(what) + '[' + std::to_string(index) + ']'] =
+            std::move(value);
+    }
+    [[nodiscard]] GLint get(int what) const {
+        GLint value = 0;
+        gl_->GetIntegerv(static_cast<GLenum>(what), &value);
+        return value;
+    }
+    [[nodiscard]] GLuint count(int what) const { return static_cast<GLuint>(get(what)); }
+    void add_at(const char* group, std::initializer_list<int> all, GLuint index) {
+        for (const int what : all) {
+            GLint64 value = 0;
+            gl_->GetInteger64i_v(static_cast<GLenum>(what), index, &value);
+            add(group, what, index, {static_cast<double>(value)});
+        }
+    }
+
+    void add_values() {
+        for (const int what : {GL_ACTIVE_TEXTURE,
+                               GL_ARRAY_BUFFER_BINDING,
+                               GL_ATOMIC_COUNTER_BUFFER_BINDING,
+                               GL_CLAMP_READ_COLOR,
+                               GL_CLIP_DEPTH_MODE,
+                               GL_CLIP_ORIGIN,
+                               GL_COPY_READ_BUFFER_BINDING,
+                               GL_COPY_WRITE_BUFFER_BINDING,
+                               GL_CULL_FACE_MODE,
+                               GL_CURRENT_PROGRAM,
+                               GL_DEBUG_GROUP_STACK_DEPTH,
+                               GL_DEPTH_FUNC,
+                               GL_DEPTH_WRITEMASK,
+                               GL_DISPATCH_INDIRECT_BUFFER_BINDING,
+                               GL_DRAW_BUFFER0,
+                               GL_DRAW_BUFFER1,
+                               GL_DRAW_FRAMEBUFFER_BINDING,
+                               GL_DRAW_INDIRECT_BUFFER_BINDING,
+                               GL_FRAGMENT_SHADER_DERIVATIVE_HINT,
+                               GL_FRONT_FACE,
+                               GL_LINE_SMOOTH_HINT,
+                               GL_LOGIC_OP_MODE,
+                               GL_PATCH_VERTICES,
+                               GL_PIXEL_PACK_BUFFER_BINDING,
+                               GL_PIXEL_UNPACK_BUFFER_BINDING,
+                               GL_POLYGON_MODE,
+                               GL_POLYGON_SMOOTH_HINT,
+                               GL_PRIMITIVE_RESTART_INDEX,
+                               GL_PROGRAM_PIPELINE_BINDING,
+                               GL_PROVOKING_VERTEX,
+                               GL_READ_BUFFER,
+                               GL_READ_FRAMEBUFFER_BINDING,
+                               GL_RENDERBUFFER_BINDING,
+                               GL_SAMPLE_COVERAGE_INVERT,
+                               GL_SHADER_STORAGE_BUFFER_BINDING,
+                               GL_STENCIL_BACK_FAIL,
+                               GL_STENCIL_BACK_FUNC,
+                               GL_STENCIL_BACK_PASS_DEPTH_PASS,
+                               GL_STENCIL_BACK_REF,
+                               GL_STENCIL_BACK_VALUE_MASK,
+                               GL_STENCIL_BACK_WRITEMASK,
+                               GL_STENCIL_CLEAR_VALUE,
+                               GL_STENCIL_FAIL,
+                               GL_STENCIL_FUNC,
+                               GL_STENCIL_PASS_DEPTH_PASS,
+                               GL_STENCIL_REF,
+                               GL_STENCIL_VALUE_MASK,
+                               GL_STENCIL_WRITEMASK,
+                               GL_TEXTURE_COMPRESSION_HINT,
+                               GL_TRANSFORM_FEEDBACK_ACTIVE,
+                               GL_TRANSFORM_FEEDBACK_BINDING,
+                               GL_TRANSFORM_FEEDBACK_BUFFER_BINDING,
+                               GL_TRANSFORM_FEEDBACK_PAUSED,
+                               GL_UNIFORM_BUFFER_BINDING,
+                               GL_VERTEX_ARRAY_BINDING,
+                               GL_PACK_ALIGNMENT,
+                               GL_PACK_IMAGE_HEIGHT,
+                               GL_PACK_LSB_FIRST,
+                               GL_PACK_ROW_LENGTH,
+                               GL_PACK_SKIP_IMAGES,
+                               GL_PACK_SKIP_PIXELS,
+                               GL_PACK_SKIP_ROWS,
+                               GL_PACK_SWAP_BYTES,
+                               GL_UNPACK_ALIGNMENT,
+                               GL_UNPACK_IMAGE_HEIGHT,
+                               GL_UNPACK_LSB_FIRST,
+                               GL_UNPACK_ROW_LENGTH,
+                               GL_UNPACK_SKIP_IMAGES,
+                               GL_UNPACK_SKIP_PIXELS,
+                               GL_UNPACK_SKIP_ROWS,
+                               GL_UNPACK_SWAP_BYTES}) {
+            std::array<GLint, 2> value{};  // some drivers return two polygon modes
+            gl_->GetIntegerv(static_cast<GLenum>(what), value.data());
+            add("value", what, 0, {static_cast<double>(value[0])});
+        }
+        for (const int what : {GL_BLEND_COLOR, GL_COLOR_CLEAR_VALUE, GL_DEPTH_CLEAR_VALUE, GL_LINE_WIDTH,
+                               GL_MIN_SAMPLE_SHADING_VALUE, GL_PATCH_DEFAULT_INNER_LEVEL,
+                               GL_PATCH_DEFAULT_OUTER_LEVEL, GL_POINT_FADE_THRESHOLD_SIZE, GL_POINT_SIZE,
+                               GL_POLYGON_OFFSET_FACTOR, GL_POLYGON_OFFSET_UNITS, GL_SAMPLE_COVERAGE_VALUE}) {
+            std::array<GLfloat, 4> value{};
+            gl_->GetFloatv(static_cast<GLenum>(what), value.data());
+            add("floats", what, 0, {value.begin(), value.end()});
+        }
+        add_at("value", {GL_SAMPLE_MASK_VALUE}, 0);
+    }
+
+    void add_capabilities() {
+        for (const int what : {GL_BLEND,
+                               GL_COLOR_LOGIC_OP,
+                               GL_CULL_FACE,
+                               GL_DEBUG_OUTPUT,
+                               GL_DEBUG_OUTPUT_SYNCHRONOUS,
+                               GL_DEPTH_CLAMP,
+                               GL_DEPTH_TEST,
+                               GL_DITHER,
+                               GL_FRAMEBUFFER_SRGB,
+                               GL_LINE_SMOOTH,
+                               GL_MULTISAMPLE,
+                               GL_POLYGON_OFFSET_FILL,
+                               GL_POLYGON_OFFSET_LINE,
+                               GL_POLYGON_OFFSET_POINT,
+                               GL_POLYGON_SMOOTH,
+                               GL_PRIMITIVE_RESTART,
+                               GL_PRIMITIVE_RESTART_FIXED_INDEX,
+                               GL_PROGRAM_POINT_SIZE,
+                               GL_RASTERIZER_DISCARD,
+                               GL_SAMPLE_ALPHA_TO_COVERAGE,
+                               GL_SAMPLE_ALPHA_TO_ONE,
+                               GL_SAMPLE_COVERAGE,
+                               GL_SAMPLE_MASK,
+                               GL_SAMPLE_SHADING,
+                               GL_SCISSOR_TEST,
+                               GL_STENCIL_TEST,
+                               GL_TEXTURE_CUBE_MAP_SEAMLESS}) {
+            add("capability", what, 0, {gl_->IsEnabled(static_cast<GLenum>(what)) == GL_TRUE ? 1.0 : 0.0});
+        }
+        for (GLuint i = 0; i < count(GL_MAX_CLIP_DISTANCES); ++i) {
+            add("clip distance", 0, i, {gl_->IsEnabled(GL_CLIP_DISTANCE0 + i) == GL_TRUE ? 1.0 : 0.0});
+        }
+    }
+
+    void add_draw_buffers() {
+        for (GLuint i = 0; i < count(GL_MAX_DRAW_BUFFERS); ++i) {
+            add_at("draw buffer",
+                   {GL_BLEND_EQUATION_RGB, GL_BLEND_EQUATION_ALPHA, GL_BLEND_SRC_RGB, GL_BLEND_DST_RGB,
+                    GL_BLEND_SRC_ALPHA, GL_BLEND_DST_ALPHA},
+                   i);
+            std::array<GLboolean, 4> mask{};
+            gl_->GetBooleani_v(GL_COLOR_WRITEMASK, i, mask.data());
+            add("draw buffer", GL_COLOR_WRITEMASK, i, {mask.begin(), mask.end()});
+            add("draw buffer", GL_BLEND, i, {gl_->IsEnabledi(GL_BLEND, i) == GL_TRUE ? 1.0 : 0.0});
+        }
+    }
+
+    void add_viewports() {
+        for (GLuint i = 0; i < count(GL_MAX_VIEWPORTS); ++i) {
+            std::array<GLfloat, 4> viewport{};
+            std::array<GLdouble, 2> depths{};
+            std::array<GLint, 4> scissor{};
+            gl_->GetFloati_v(GL_VIEWPORT, i, viewport.data());
+            gl_->GetDoublei_v(GL_DEPTH_RANGE, i, depths.data());
+            gl_->GetIntegeri_v(GL_SCISSOR_BOX, i, scissor.data());
+            add("viewport", GL_VIEWPORT, i, {viewport.begin(), viewport.end()});
+            add("viewport", GL_DEPTH_RANGE, i, {depths.begin(), depths.end()});
+            add("viewport", GL_SCISSOR_BOX, i, {scissor.begin(), scissor.end()});
+            add("viewport", GL_SCISSOR_TEST, i, {gl_->IsEnabledi(GL_SCISSOR_TEST, i) == GL_TRUE ? 1.0 : 0.0});
+        }
+    }
+
+    void add_texture_units() {
+        const auto active = static_cast<GLenum>(get(GL_ACTIVE_TEXTURE));
+        for (GLuint i = 0; i < count(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS); ++i) {
+            gl_->ActiveTexture(GL_TEXTURE0 + i);
+            for (const int what :
+                 {GL_TEXTURE_BINDING_1D, GL_TEXTURE_BINDING_1D_ARRAY, GL_TEXTURE_BINDING_2D,
+                  GL_TEXTURE_BINDING_2D_ARRAY, GL_TEXTURE_BINDING_2D_MULTISAMPLE,
+                  GL_TEXTURE_BINDING_2D_MULTISAMPLE_ARRAY, GL_TEXTURE_BINDING_3D, GL_TEXTURE_BINDING_BUFFER,
+                  GL_TEXTURE_BINDING_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY,
+                  GL_TEXTURE_BINDING_RECTANGLE, GL_SAMPLER_BINDING}) {
+                add("texture unit", what, i, {static_cast<double>(get(what))});
+            }
+        }
+        gl_->ActiveTexture(active);
+    }
+
+    void add_images() {
+        for (GLuint i = 0; i < count(GL_MAX_IMAGE_UNITS); ++i) {
+            add_at("image unit",
+                   {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LEVEL, GL_IMAGE_BINDING_LAYERED,
+                    GL_IMAGE_BINDING_LAYER, GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT},
+                   i);
+        }
+    }
+
+    void add_indexed_buffers() {
+        for (GLuint i = 0; i < count(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS); ++i) {
+            add_at("storage buffer",
+                   {GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                    GL_SHADER_STORAGE_BUFFER_SIZE},
+                   i);
+        }
+        for (GLuint i = 0; i < count(GL_MAX_UNIFORM_BUFFER_BINDINGS); ++i) {
+            add_at("uniform buffer",
+                   {GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE}, i);
+        }
+        for (GLuint i = 0; i < count(GL_MAX_TRANSFORM_FEEDBACK_BUFFERS); ++i) {
+            add_at("transform feedback",
+                   {GL_TRANSFORM_FEEDBACK_BUFFER_BINDING, GL_TRANSFORM_FEEDBACK_BUFFER_START,
+                    GL_TRANSFORM_FEEDBACK_BUFFER_SIZE},
+                   i);
+        }
+    }
+
+    const Host* host_;
+    const gl::Functions* gl_;
+    std::map<std::string, std::vector<double>> values_;
+};
+
+/// Something that a host may have set.
 struct Oddity {
     std::string name;
     std::function<void(const Host&)> set;
 };
 
-const std::vector<Oddity>& oddities() {
+const std::vector<Oddity>& depth_and_raster_oddities() {
     static const std::vector<Oddity> all = {
-        {"nothing", [](const Host&) {}},
         {"depth range", [](const Host& host) { host.gl.DepthRangef(0.6F, 0.2F); }},
+        {"depth range of one viewport", [](const Host& host) { host.gl.DepthRangeIndexed(0, 1.0, 0.9); }},
+        {"depth ranges of other viewports", [](const Host& host) { host.gl.DepthRangeIndexed(3, 0.1, 0.2); }},
         {"depth mask", [](const Host& host) { host.gl.DepthMask(GL_FALSE); }},
         {"depth test",
          [](const Host& host) {
@@ -81,11 +374,28 @@ const std::vector<Oddity>& oddities() {
         {"depth clamp", [](const Host& host) { host.gl.Enable(GL_DEPTH_CLAMP); }},
         {"clip control",
          [](const Host& host) { host.gl.ClipControl(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE); }},
+        {"clip distances",
+         [](const Host& host) {
+             for (GLuint i = 0; i < 8; ++i) host.gl.Enable(GL_CLIP_DISTANCE0 + i);
+         }},
         {"polygon mode", [](const Host& host) { host.gl.PolygonMode(GL_FRONT_AND_BACK, GL_LINE); }},
         {"polygon offset",
          [](const Host& host) {
              host.gl.Enable(GL_POLYGON_OFFSET_FILL);
              host.gl.PolygonOffset(50.0F, 5000.0F);
+         }},
+        {"smooth polygons and lines",
+         [](const Host& host) {
+             host.gl.Enable(GL_POLYGON_SMOOTH);
+             host.gl.Enable(GL_LINE_SMOOTH);
+             host.more.Hint(GL_POLYGON_SMOOTH_HINT, GL_NICEST);
+         }},
+        {"lines and points",
+         [](const Host& host) {
+             host.more.LineWidth(1.0F);
+             host.more.PointSize(9.0F);
+             host.more.PointParameterf(GL_POINT_FADE_THRESHOLD_SIZE, 3.0F);
+             host.gl.Enable(GL_PROGRAM_POINT_SIZE);
          }},
         {"culling",
          [](const Host& host) {
@@ -93,27 +403,12 @@ const std::vector<Oddity>& oddities() {
              host.gl.CullFace(GL_FRONT_AND_BACK);
              host.gl.FrontFace(GL_CW);
          }},
-        {"blending",
+        {"provoking vertex", [](const Host& host) { host.gl.ProvokingVertex(GL_FIRST_VERTEX_CONVENTION); }},
+        {"patches",
          [](const Host& host) {
-             host.gl.Enable(GL_BLEND);
-             host.gl.BlendFunc(GL_ZERO, GL_ONE);
-         }},
-        {"colour mask", [](const Host& host) { host.gl.ColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE); }},
-        {"scissor",
-         [](const Host& host) {
-             host.gl.Enable(GL_SCISSOR_TEST);
-             host.gl.Scissor(1, 1, 2, 2);
-         }},
-        {"stencil",
-         [](const Host& host) {
-             host.gl.Enable(GL_STENCIL_TEST);
-             host.gl.StencilFunc(GL_NEVER, 1, 1);
-         }},
-        {"logic op", [](const Host& host) { host.gl.Enable(GL_COLOR_LOGIC_OP); }},
-        {"sample mask",
-         [](const Host& host) {
-             host.gl.Enable(GL_SAMPLE_MASK);
-             host.gl.SampleMaski(0, 0);
+             const std::array levels{7.0F, 6.0F, 5.0F, 4.0F};
+             host.more.PatchParameteri(GL_PATCH_VERTICES, 5);
+             host.more.PatchParameterfv(GL_PATCH_DEFAULT_OUTER_LEVEL, levels.data());
          }},
         {"discard", [](const Host& host) { host.gl.Enable(GL_RASTERIZER_DISCARD); }},
         {"primitive restart",
@@ -121,9 +416,89 @@ const std::vector<Oddity>& oddities() {
              host.gl.Enable(GL_PRIMITIVE_RESTART);
              host.gl.PrimitiveRestartIndex(2);
          }},
+        {"primitive restart at the largest index",
+         [](const Host& host) { host.gl.Enable(GL_PRIMITIVE_RESTART_FIXED_INDEX); }},
+        {"viewport", [](const Host& host) { host.gl.Viewport(3, 4, 5, 6); }},
+        {"viewports",
+         [](const Host& host) {
+             const std::array rectangle{1.5F, 2.5F, 3.5F, 4.5F};
+             for (const GLuint i : {0U, 2U, 15U}) host.gl.ViewportIndexedfv(i, rectangle.data());
+         }},
+        {"scissor",
+         [](const Host& host) {
+             host.gl.Enable(GL_SCISSOR_TEST);
+             host.gl.Scissor(1, 1, 2, 2);
+         }},
+        {"scissor of single viewports", [](const Host& host) {
+             for (const GLuint i : {0U, 5U}) {
+                 host.gl.Enablei(GL_SCISSOR_TEST, i);
+                 host.more.ScissorIndexed(i, 1, 2, 3, 4);
+             }
+         }}};
+    return all;
+}
+
+const std::vector<Oddity>& pixel_oddities() {
+    static const std::vector<Oddity> all = {
+        {"blending",
+         [](const Host& host) {
+             host.gl.Enable(GL_BLEND);
+             host.gl.BlendFunc(GL_ZERO, GL_ONE);
+             host.more.BlendColor(0.1F, 0.2F, 0.3F, 0.4F);
+         }},
+        {"blending of single draw buffers",
+         [](const Host& host) {
+             host.gl.Disablei(GL_BLEND, 0);
+             for (const GLuint i : {1U, 2U, 7U}) {
+                 host.gl.Enablei(GL_BLEND, i);
+                 host.gl.BlendFuncSeparatei(i, GL_ZERO, GL_SRC_ALPHA, GL_DST_COLOR, GL_ZERO);
+                 host.more.BlendEquationi(i, i == 1 ? GL_MIN : GL_FUNC_REVERSE_SUBTRACT);
+             }
+         }},
+        {"colour mask", [](const Host& host) { host.gl.ColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE); }},
+        {"colour masks of single draw buffers",
+         [](const Host& host) {
+             host.gl.ColorMaski(0, GL_TRUE, GL_FALSE, GL_TRUE, GL_TRUE);
+             host.gl.ColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+             host.gl.ColorMaski(7, GL_FALSE, GL_TRUE, GL_TRUE, GL_TRUE);
+         }},
+        {"stencil",
+         [](const Host& host) {
+             host.gl.Enable(GL_STENCIL_TEST);
+             host.gl.StencilFunc(GL_NEVER, 1, 1);
+             host.more.StencilOpSeparate(GL_BACK, GL_INCR, GL_DECR, GL_INVERT);
+             host.more.StencilMask(0x0F);
+             host.more.ClearStencil(3);
+         }},
+        {"logic op",
+         [](const Host& host) {
+             host.gl.Enable(GL_COLOR_LOGIC_OP);
+             host.more.LogicOp(GL_XOR);
+         }},
+        {"dithering", [](const Host& host) { host.gl.Disable(GL_DITHER); }},
+        {"multisampling", [](const Host& host) { host.gl.Disable(GL_MULTISAMPLE); }},
+        {"sample mask",
+         [](const Host& host) {
+             host.gl.Enable(GL_SAMPLE_MASK);
+             host.gl.SampleMaski(0, 0);
+         }},
+        {"sample coverage",
+         [](const Host& host) {
+             host.gl.Enable(GL_SAMPLE_COVERAGE);
+             host.more.SampleCoverage(0.0F, GL_FALSE);
+         }},
+        {"alpha to coverage",
+         [](const Host& host) {
+             host.gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+             host.gl.Enable(GL_SAMPLE_ALPHA_TO_ONE);
+         }},
+        {"sample shading",
+         [](const Host& host) {
+             host.gl.Enable(GL_SAMPLE_SHADING);
+             host.more.MinSampleShading(1.0F);
+         }},
         {"sRGB", [](const Host& host) { host.gl.Enable(GL_FRAMEBUFFER_SRGB); }},
         {"seamless cubes", [](const Host& host) { host.gl.Enable(GL_TEXTURE_CUBE_MAP_SEAMLESS); }},
-        {"viewport", [](const Host& host) { host.gl.Viewport(3, 4, 5, 6); }},
         {"clear values",
          [](const Host& host) {
              host.gl.ClearColor(1, 2, 3, 4);
@@ -131,13 +506,117 @@ const std::vector<Oddity>& oddities() {
          }},
         {"unpacking",
          [](const Host& host) {
-             host.gl.PixelStorei(GL_UNPACK_ROW_LENGTH, 100);
+             for (const int what : {GL_UNPACK_ROW_LENGTH, GL_UNPACK_IMAGE_HEIGHT}) {
+                 host.gl.PixelStorei(static_cast<GLenum>(what), 100);
+             }
+             for (const int what :
+                  {GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_IMAGES, GL_UNPACK_SWAP_BYTES}) {
+                 host.gl.PixelStorei(static_cast<GLenum>(what), 1);
+             }
              host.gl.PixelStorei(GL_UNPACK_ALIGNMENT, 8);
          }},
-        {"unpack buffer", [](const Host& host) { host.gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, host.buffer); }},
-        {"bindings", [](const Host& host) {
-             host.gl.BindVertexArray(host.vertex_array);
+        {"packing",
+         [](const Host& host) {
+             host.gl.PixelStorei(GL_PACK_ROW_LENGTH, 100);
+             host.gl.PixelStorei(GL_PACK_SKIP_PIXELS, 3);
+             host.more.ClampColor(GL_CLAMP_READ_COLOR, GL_TRUE);
+         }},
+        {"hints", [](const Host& host) {
+             host.more.Hint(GL_FRAGMENT_SHADER_DERIVATIVE_HINT, GL_FASTEST);
+             host.more.Hint(GL_TEXTURE_COMPRESSION_HINT, GL_NICEST);
+         }}};
+    return all;
+}
+
+const std::vector<Oddity>& binding_oddities() {
+    static const std::vector<Oddity> all = {
+        {"vertex array and active texture unit",
+         [](const Host& host) {
+             host.gl.BindVertexArray(host.vertex_array.name());
              host.gl.ActiveTexture(GL_TEXTURE3);
+         }},
+        {"buffers",
+         [](const Host& host) {
+             for (const int target :
+                  {GL_ARRAY_BUFFER, GL_ATOMIC_COUNTER_BUFFER, GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER,
+                   GL_DISPATCH_INDIRECT_BUFFER, GL_DRAW_INDIRECT_BUFFER, GL_PIXEL_PACK_BUFFER,
+                   GL_PIXEL_UNPACK_BUFFER, GL_SHADER_STORAGE_BUFFER, GL_TEXTURE_BUFFER, GL_UNIFORM_BUFFER}) {
+                 host.gl.BindBuffer(static_cast<GLenum>(target), host.buffer.name());
+             }
+         }},
+        {"indexed buffers",
+         [](const Host& host) {
+             for (GLuint i = 0; i < 16; ++i) {
+                 host.gl.BindBufferBase(GL_UNIFORM_BUFFER, i, host.buffer.name());
+                 host.gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, i, host.buffer.name(), 256, 64 + 4 * i);
+             }
+             host.gl.BindBufferRange(GL_UNIFORM_BUFFER, 1, host.buffer.name(), 1024, 16);
+             host.gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, host.buffer.name());
+             host.gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, 0);
+             host.gl.BindBuffer(GL_UNIFORM_BUFFER, 0);
+         }},
+        {"textures",
+         [](const Host& host) {
+             for (GLuint unit = 0; unit < 16; ++unit) {
+                 host.gl.ActiveTexture(GL_TEXTURE0 + unit);
+                 host.gl.BindTexture(GL_TEXTURE_2D, host.flat.name());
+                 host.gl.BindTexture(GL_TEXTURE_2D_ARRAY, host.layers.name());
+                 if (unit % 2 == 0) host.gl.BindTexture(GL_TEXTURE_CUBE_MAP_ARRAY, host.cubes.name());
+             }
+         }},
+        {"samplers",
+         [](const Host& host) {
+             for (GLuint unit = 0; unit < 16; ++unit) host.gl.BindSampler(unit, host.sampler.name());
+         }},
+        {"images",
+         [](const Host& host) {
+             for (GLuint unit = 0; unit < 8; ++unit) {
+                 host.gl.BindImageTexture(unit, host.layers.name(), 0, GL_FALSE, 2, GL_WRITE_ONLY, GL_RGBA8);
+             }
+         }},
+        {"framebuffers",
+         [](const Host& host) {
+             GLuint renderbuffer = 0;
+             host.more.CreateRenderbuffers(1, &renderbuffer);
+             host.more.BindRenderbuffer(GL_RENDERBUFFER, renderbuffer);
+             host.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, host.framebuffer.name());
+             host.gl.BindFramebuffer(GL_READ_FRAMEBUFFER, host.framebuffer.name());
+         }},
+        {"program", [](const Host& host) { host.gl.UseProgram(host.make_program()); }},
+        {"program pipeline",
+         [](const Host& host) {
+             GLuint pipeline = 0;
+             host.more.CreateProgramPipelines(1, &pipeline);
+             host.more.BindProgramPipeline(pipeline);
+         }},
+        {"transform feedback",
+         [](const Host& host) {
+             host.gl.BindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, host.buffer.name(), 64, 128);
+             host.gl.UseProgram(host.make_program());
+             host.more.BeginTransformFeedback(GL_POINTS);
+         }},
+        {"paused transform feedback",
+         [](const Host& host) {
+             host.gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, host.buffer.name());
+             host.gl.UseProgram(host.make_program());
+             host.more.BeginTransformFeedback(GL_POINTS);
+             host.gl.PauseTransformFeedback();
+         }},
+        {"queries",
+         [](const Host& host) {
+             for (const int target : query_targets) {
+                 GLuint query = 0;
+                 if (target == GL_ANY_SAMPLES_PASSED) continue;  // shares its counter with SAMPLES_PASSED
+                 host.gl.CreateQueries(static_cast<GLenum>(target), 1, &query);
+                 host.more.BeginQuery(static_cast<GLenum>(target), query);
+             }
+         }},
+        {"debug groups", [](const Host& host) {
+             GLint most = 0;
+             host.gl.GetIntegerv(GL_MAX_DEBUG_GROUP_STACK_DEPTH, &most);
+             for (GLint i = 1; i < most; ++i) {
+                 host.gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, "host's");
+             }
          }}};
     return all;
 }
@@ -160,36 +639,125 @@ Configuration small_configuration(ShadingPath path) {
     return configuration;
 }
 
+/// A picture to tone-map.
+std::vector<glm::vec3> gradient() {
+    std::vector<glm::vec3> pixels;
+    for (std::uint32_t i = 0; i < size.x * size.y; ++i)
+        pixels.emplace_back(static_cast<float>(i), 1.0F, 0.5F);
+    return pixels;
+}
+
+/// Renders the scene with two paths and tone-maps a picture after the host has done this, in its own context.
+/// Returns the pictures. Checks that the host's state stays, and that there is no error.
+std::vector<Picture> pictures_after(const Oddity& oddity, const Scene& scene) {
+    const auto context = make_current_context();
+    TestedRenderer renderer(context->get_proc());
+    const Host host(device_of(renderer), context->get_proc());
+    const RenderTarget target(device_of(renderer), size);
+    oddity.set(host);
+    std::vector<Picture> pictures;
+    const auto take = [&](const auto& draw) {
+        const HostView before(host);
+        draw();
+        CHECK(HostView(host).differences(before) == "");
+        pictures.push_back(target.read());
+        renderer.invalidate();
+    };
+    for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
+        REQUIRE(renderer.configure(small_configuration(path)).empty());
+        take([&] { renderer.render(scene.world, scene.camera, target.target()); });
+    }
+    take([&] { renderer.tone_map(gradient(), target.target()); });
+    for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {
+        CAPTURE(message.text);
+        CHECK_FALSE(message.is_error());
+    }
+    CHECK(host.gl.GetError() == GL_NO_ERROR);
+    return pictures;
+}
+
+void check_harmless(const std::vector<Oddity>& oddities) {
+    const Scene scene = textured_scene();
+    const std::vector<Picture> usual = pictures_after({"nothing", [](const Host&) {}}, scene);
+    CHECK(mean(usual[0]) > 0.01);
+    CHECK(usual[2].pixels == gradient());  // the tone curve is off
+    for (const Oddity& oddity : oddities) {
+        CAPTURE(oddity.name);
+        CHECK(pictures_after(oddity, scene) == usual);
+    }
+}
+
 }  // namespace
 
 TEST_SUITE("host state") {
-    TEST_CASE("the host's GL state neither changes the picture nor is changed") {
+    TEST_CASE("the host's depth and rasterisation state neither changes the picture nor is changed") {
+        check_harmless(depth_and_raster_oddities());
+    }
+
+    TEST_CASE("the host's pixel state neither changes the picture nor is changed") {
+        check_harmless(pixel_oddities());
+    }
+
+    TEST_CASE("the host's bindings neither change the picture nor are changed") {
+        check_harmless(binding_oddities());
+    }
+
+    TEST_CASE("transform feedback of the host goes on after a frame and contains nothing of it") {
+        const auto context = make_current_context();
+        TestedRenderer renderer(context->get_proc());
+        REQUIRE(renderer.configure(small_configuration(ShadingPath::forward)).empty());
+        Host host(device_of(renderer), context->get_proc());
+        const RenderTarget target(device_of(renderer), size);
         const Scene scene = textured_scene();
-        std::map<ShadingPath, Picture> usual;
-        for (const Oddity& oddity : oddities()) {
-            CAPTURE(oddity.name);
-            const auto context = make_current_context();
+        constexpr float untouched = -1.0F;
+        host.buffer.upload(std::vector(1024, untouched));
+        host.gl.BindVertexArray(host.vertex_array.name());
+        host.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, host.framebuffer.name());
+        host.gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, host.buffer.name());
+        host.gl.UseProgram(host.make_program());
+        host.more.BeginTransformFeedback(GL_POINTS);
+        host.gl.DrawArrays(GL_POINTS, 0, 2);
+        renderer.render(scene.world, scene.camera, target.target());
+        host.gl.DrawArrays(GL_POINTS, 0, 3);
+        host.more.EndTransformFeedback();
+        std::vector expected(1024, untouched);
+        std::fill_n(expected.begin(), 5, 1.0F);
+        CHECK(host.buffer.download<float>() == expected);
+        CHECK(host.gl.GetError() == GL_NO_ERROR);
+    }
+
+    TEST_CASE("a program that the host has deleted while it was current is gone, without an error") {
+        const auto context = make_current_context();
+        TestedRenderer renderer(context->get_proc());
+        const Host host(device_of(renderer), context->get_proc());
+        const RenderTarget target(device_of(renderer), size);
+        const Scene scene = textured_scene();
+        const GLuint program = host.make_program();
+        host.gl.UseProgram(program);
+        host.gl.DeleteProgram(program);
+        renderer.render(scene.world, scene.camera, target.target());
+        GLint current = -1;
+        host.gl.GetIntegerv(GL_CURRENT_PROGRAM, &current);
+        CHECK(current == 0);
+        CHECK(host.gl.GetError() == GL_NO_ERROR);
+    }
+
+    TEST_CASE("a pending error of the host is still there after a renderer was made, used and destroyed") {
+        const auto context = make_current_context();
+        const gl::Functions gl = gl::load_functions(context->get_proc());
+        const Scene scene = textured_scene();
+        gl.Enable(GL_RENDERER);  // no capability
+        {
             TestedRenderer renderer(context->get_proc());
-            const gl::VertexArray array(device_of(renderer), "host's");
-            const gl::Buffer buffer(device_of(renderer), "host's", 4096);
             const RenderTarget target(device_of(renderer), size);
-            const gl::Functions& gl = device_of(renderer).gl();
-            oddity.set({gl, array.name(), buffer.name()});
-            for (const ShadingPath path : {ShadingPath::forward, ShadingPath::deferred}) {
-                CAPTURE(to_string(path));
+            for (const ShadingPath path : all_shading_paths) {
                 REQUIRE(renderer.configure(small_configuration(path)).empty());
-                const HostView before = host_view(gl);
                 renderer.render(scene.world, scene.camera, target.target());
-                CHECK(host_view(gl) == before);
-                const Picture picture = target.read();
-                CHECK(picture == usual.try_emplace(path, picture).first->second);
-                renderer.invalidate();
             }
-            CHECK(mean(usual[ShadingPath::forward]) > 0.01);
-            for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {
-                CAPTURE(message.text);
-                CHECK_FALSE(message.is_error());
-            }
+            static_cast<void>(renderer.report());
+            static_cast<void>(renderer.take_frames(true));
         }
+        CHECK(gl.GetError() == GL_INVALID_ENUM);
+        CHECK(gl.GetError() == GL_NO_ERROR);
     }
 }

@@ -4,12 +4,15 @@
 
 #include <candela/configuration.hpp>
 #include <candela/ecs/world.hpp>
+#include <candela/error.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
+#include <candela/renderer_options.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/sky_picture.hpp>

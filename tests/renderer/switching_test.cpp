@@ -99,7 +99,7 @@ TEST_SUITE("switching") {
     TEST_CASE_FIXTURE(GlFixture, "switching between any two paths creates no objects after the first round") {
         const Scene scene = scene_with_lights();
         // Never verified, because passes that run again create their objects again.
-        Renderer renderer(counting(context->get_proc()));
+        Renderer renderer(counting(context->get_proc()), {.debug_output = true});
         const RenderTarget target(device, size);
         const auto draw = [&](ShadingPath path) {
             REQUIRE(renderer.configure(by_path(path)).empty());

@@ -83,7 +83,7 @@ class TraceRays : public GlFixture {
     /// The hits of the compute tracer in the world, as uploaded by the renderer's own passes.
     std::vector<GpuHit> trace(const World& world, const std::vector<TestRay>& rays) {
         const Shaders shaders;
-        Gpu gpu(context->get_proc(), shaders.library());
+        Gpu gpu(context->get_proc(), shaders.library(), {.debug_output = true});
         gl::GraphBackend backend(gpu.device());
         GraphRuntime runtime(backend);
         const gl::Program& program = gpu.program({"trace_rays.comp"});

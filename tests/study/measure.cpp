@@ -308,7 +308,9 @@ int measure(const MeasureStudy& study) {
     const Reference reference = read_reference_of(study.scene, study.reference);
     const sandbox::Scene scene = sandbox::load_scene(study.scene);
     Truth truth = truth_of(reference);
-    const FrameContents contents = contents_of(scene.world);
+    Log log({});
+    SceneCheck check(log, false);
+    const FrameContents contents = contents_of(scene.world, check).of_frame;
     truth.emission = contents.emitters || contents.sky;
     const auto context = HeadlessContext::create(study.context);
     context->make_current();

@@ -1,14 +1,13 @@
 #pragma once
 
-#include <stdexcept>
-
 #include <candela/api.hpp>
+#include <candela/error.hpp>
 
 namespace candela::gl {
 
 /// Something that the driver lacks or refuses. The message names the object and the error.
-struct CANDELA_API GlError : std::runtime_error {
-    using std::runtime_error::runtime_error;
+struct CANDELA_API GlError : Error {
+    using Error::Error;
 };
 
 /// A shader that cannot be found, assembled, compiled or linked. Lines of the message that refer to a known

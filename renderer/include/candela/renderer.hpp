@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,6 +17,7 @@
 #include <candela/extension.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/gl_loader.hpp>
+#include <candela/renderer_options.hpp>
 #include <candela/report.hpp>
 #include <candela/view.hpp>
 
@@ -35,10 +35,9 @@ enum class GraphFormat : std::uint8_t { text, dot, json };
 class CANDELA_API Renderer {
  public:
     /// `get_proc` returns the addresses of GL functions, as glfwGetProcAddress does; it is called only here.
-    /// The shaders are embedded in the library; `shader_directory`, if given, is read in their place. Throws
-    /// gl::GlError if the context offers less than OpenGL 4.5 or lacks a function, and gl::ProgramError if a
-    /// shader does not compile.
-    explicit Renderer(const gl::GetProc& get_proc, const std::filesystem::path& shader_directory = {});
+    /// Throws gl::GlError if no context is current, if it offers less than OpenGL 4.5, lacks a function or
+    /// has a limit that is too low, and gl::ProgramError if a shader does not compile.
+    explicit Renderer(const gl::GetProc& get_proc, const RendererOptions& options = {});
     Renderer(Renderer&& other) noexcept;
     Renderer& operator=(Renderer&& other) noexcept;
     ~Renderer();
@@ -51,13 +50,33 @@ class CANDELA_API Renderer {
 
     /// Renders one frame: `world` in each of `views`, of which there must be at least one. VPLs, shadow maps
     /// and uploads are made once for all views. Refinement averages frames by view; views are identified by
-    /// their position in `views`. Only passes whose inputs have changed since the last frame run. Restores
-    /// the host's GL state as described at gl::HostState.
+    /// their position in `views`. Only passes whose inputs have changed since the last frame run.
     ///
-    /// Throws EntityError if there is no such camera, SceneError if an entity's parents form a cycle or were
-    /// destroyed, and gl::GlError if there are no views, if the size of a target is 0 or above the driver's
-    /// limit, if a driver limit is exceeded, or if the driver runs out of memory. Passes on what an extension
-    /// throws. After an exception, the next call runs the passes that did not finish.
+    /// All state of OpenGL 4.5 is the same afterwards, and none of the host's changes the picture, with these
+    /// exceptions. Conditional rendering must not be active. A query of the host that is active also counts
+    /// what is drawn here. A program that the host has deleted while it was current is gone, and the
+    /// subroutine uniforms of a current program are reset. The clamp of the polygon offset (OpenGL 4.6) is
+    /// reset. Transform feedback is paused meanwhile. Errors that the host has not yet asked for stay.
+    ///
+    /// What cannot be rendered is left out, as if it were not in the world, with a warning that names the
+    /// entity and the fault (see RendererOptions):
+    ///
+    /// - a mesh that is null, that has a primitive without material, an index out of range, a number of
+    ///   indices that is no multiple of 3, or a vertex that is not finite or beyond 10⁹ metres, or whose
+    ///   material has a negative or infinite colour or emission, or an image with another number of texels
+    ///   than its size says;
+    /// - a light with a negative or infinite value, its range excepted, or a cone without width;
+    /// - an Environment with a negative or infinite value or another number of texels than its size says;
+    /// - all components of an entity whose world matrix is not finite or scales by more than 10⁹.
+    ///
+    /// To find this, each mesh and each picture is read once, when it is seen for the first time.
+    ///
+    /// Throws EntityError if there is no such camera, SceneError if the camera or its world matrix is not
+    /// finite or cannot show anything, or if an entity's parents form a cycle or were destroyed, and
+    /// gl::GlError if there are no views, if a target does not exist, is incomplete, or has a size of 0 or
+    /// above the driver's limit, if a driver limit is exceeded, or if the driver runs out of memory; then
+    /// GL_OUT_OF_MEMORY is also pending for the host's glGetError. Passes on what an extension throws. After
+    /// an exception, the next call runs the passes that did not finish.
     void render(const World& world, std::span<const RenderView> views);
     /// The same with one view. `jitter`: see RenderView::jitter.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
@@ -85,7 +104,7 @@ class CANDELA_API Renderer {
 
     /// Tone-maps a picture of linear radiance that was computed elsewhere, for example an average of frames,
     /// into `target`. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
-    /// Throws gl::GlError if it holds another number of pixels.
+    /// Throws gl::GlError if it holds another number of pixels, and where `render` does because of a target.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
     /// The same for a 2D texture of linear radiance on the GPU, by its GL name. It is scaled to the target.
     void tone_map(std::uint32_t texture, const Target& target);

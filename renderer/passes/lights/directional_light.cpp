@@ -11,10 +11,10 @@
 namespace candela {
 namespace {
 
-void gather_directional_lights(const World& world, const SceneMetrics& metrics,
+void gather_directional_lights(const World& world, SceneCheck& check, const SceneMetrics& metrics,
                                std::vector<LightTable::Entry>& entries) {
     gather_lights<DirectionalLight>(
-        world, entries, [&](Entity entity, const DirectionalLight& light, const glm::mat4& matrix) {
+        world, check, entries, [&](Entity entity, const DirectionalLight& light, const glm::mat4& matrix) {
             return directional_entry(
                 entity, {direction_of(matrix), light.colour * light.illuminance, light.casts_shadow},
                 metrics);

@@ -11,6 +11,7 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "renderer/passes/lights/lights.hpp"
+#include "renderer/scene_check.hpp"
 
 namespace candela {
 
@@ -34,8 +35,9 @@ struct ShadowShape {
 struct LightKind {
     /// Declares the read of the kind's component.
     void (*read)(Pass& pass);
-    /// Appends the lights of this kind that are in the world.
-    void (*gather)(const World& world, const SceneMetrics& metrics, std::vector<LightTable::Entry>& entries);
+    /// Appends the lights of this kind that are in the world and that `check` accepts.
+    void (*gather)(const World& world, SceneCheck& check, const SceneMetrics& metrics,
+                   std::vector<LightTable::Entry>& entries);
     /// Contains everything that the light may reach.
     LightBounds (*bounds)(const gpu::Light& light);
     ShadowShape (*shadow)(const gpu::Light& light, const SceneMetrics& metrics);
@@ -64,11 +66,16 @@ struct ParallelLight {
 [[nodiscard]] LightTable::Entry directional_entry(Entity entity, const ParallelLight& light,
                                                   const SceneMetrics& metrics);
 
-/// Appends an entry for each light component of type C: `make(entity, light, world_matrix)`.
+/// Appends an entry for each light component of type C that `check` accepts: `make(entity, light,
+/// world_matrix)`.
 template <class C, class Make>
-void gather_lights(const World& world, std::vector<LightTable::Entry>& entries, Make make) {
+void gather_lights(const World& world, SceneCheck& check, std::vector<LightTable::Entry>& entries,
+                   Make make) {
     for (const auto& [entity, light] : world.view<C>()) {
-        entries.push_back(make(entity, light, world_matrix(world, entity)));
+        const glm::mat4 matrix = world_matrix(world, entity);
+        if (check.accepts(world, entity, light) && check.accepts_at(world, entity, matrix)) {
+            entries.push_back(make(entity, light, matrix));
+        }
     }
 }
 

@@ -16,10 +16,10 @@ bool emits(glm::vec3 intensity) {
     return intensity.r > 0.0F || intensity.g > 0.0F || intensity.b > 0.0F;
 }
 
-LightTable gather(const World& world, const SceneMetrics& metrics) {
+LightTable gather(const World& world, SceneCheck& check, const SceneMetrics& metrics) {
     LightTable table;
     for (const LightKind* const kind : light_kinds) {
-        kind->gather(world, metrics, table.entries);
+        kind->gather(world, check, metrics, table.entries);
     }
     return table;
 }
@@ -54,7 +54,7 @@ Basis basis_around(glm::vec3 n) {
     return {{1.0F + s * n.x * n.x * a, s * b, -s * n.x}, {b, s + n.y * n.y * a, -n.y}};
 }
 
-ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+ValueHandle<LightTable> add_lights(FrameGraph& graph, SceneCheck& check, ValueHandle<SceneMetrics> metrics,
                                    const std::optional<Sky>& sky) {
     return graph.add("lights", [&](Pass& pass) {
         for (const LightKind* const kind : light_kinds) {
@@ -67,8 +67,8 @@ ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> 
             pass.read(sky->environment);
         }
         const auto lights = pass.write(graph.value<LightTable>("lights"));
-        pass.run([=](Execution& run) {
-            LightTable table = gather(run.world(), run.value(metrics));
+        pass.run([=, &check](Execution& run) {
+            LightTable table = gather(run.world(), check, run.value(metrics));
             if (sky) {
                 append_suns(table, run.value(sky->split), run.value(sky->environment), run.value(metrics));
             }

@@ -8,6 +8,7 @@
 #include "renderer/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/sky/sky.hpp"
+#include "renderer/scene_check.hpp"
 
 namespace candela {
 
@@ -33,9 +34,11 @@ struct SceneLights {
 };
 
 /// Adds node `lights` (CPU): gathers the light components: point lights, then spot lights, then directional
-/// lights, then the suns of the sky. Lights that emit nothing are left out. Depends on the light components,
+/// lights, then the suns of the sky. Lights that emit nothing, or that `check` does not accept, are left out.
+/// Depends on the light components,
 /// Transform, the sky and the scene's metrics.
-[[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+[[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, SceneCheck& check,
+                                                 ValueHandle<SceneMetrics> metrics,
                                                  const std::optional<Sky>& sky);
 
 /// Two unit vectors that form an orthonormal basis with the unit vector n, as in shaders/maths.glsl: Duff et

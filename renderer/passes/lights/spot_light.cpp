@@ -38,9 +38,9 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
             .casts_shadow = light.casts_shadow};
 }
 
-void gather_spot_lights(const World& world, const SceneMetrics& /*metrics*/,
+void gather_spot_lights(const World& world, SceneCheck& check, const SceneMetrics& /*metrics*/,
                         std::vector<LightTable::Entry>& entries) {
-    gather_lights<SpotLight>(world, entries, spot_entry);
+    gather_lights<SpotLight>(world, check, entries, spot_entry);
 }
 
 /// For narrow cones (less than 45 degrees), the bounding sphere of the cone with its spherical cap: it is

@@ -19,17 +19,21 @@ struct Gathered {
     ValueHandle<ScenePlacement> placement;
 };
 
-Gathered add_scene_gather(FrameGraph& graph) {
+Gathered add_scene_gather(FrameGraph& graph, SceneCheck& check) {
     return graph.add("scene-gather", [&](Pass& pass) {
         pass.read<MeshInstance>();
         pass.read<Transform>();
         const Gathered out{pass.write(graph.value<SceneGeometry>("scene geometry")),
                            pass.write(graph.value<ScenePlacement>("scene placement"))};
-        pass.run([=](Execution& run) {
+        pass.run([=, &check](Execution& run) {
             SceneGeometry geometry;
             ScenePlacement placement;
             for (const auto& [entity, instance] : run.world().view<MeshInstance>()) {
                 const glm::mat4 world = world_matrix(run.world(), entity);
+                if (!check.accepts(run.world(), entity, instance) ||
+                    !check.accepts_at(run.world(), entity, world)) {
+                    continue;
+                }
                 geometry.items.push_back({instance.mesh, glm::determinant(glm::mat3(world)) < 0.0F});
                 placement.world.push_back(world);
             }
@@ -210,7 +214,7 @@ std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) cons
 }
 
 SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
-    const Gathered gathered = add_scene_gather(graph);
+    const Gathered gathered = add_scene_gather(graph, gpu.scene_check());
     SceneData scene = graph.add("scene-upload", [&](Pass& pass) {
         pass.read(gathered.geometry);
         const SceneData out{.placement = gathered.placement,

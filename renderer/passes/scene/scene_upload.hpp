@@ -13,7 +13,8 @@
 
 namespace candela {
 
-/// The meshes of the world: one item per MeshInstance, in the order of the world's view.
+/// The meshes of the world: one item per MeshInstance that SceneCheck accepts, in the order of the world's
+/// view.
 struct SceneGeometry {
     struct Item {
         std::shared_ptr<const Mesh> mesh;
@@ -87,8 +88,8 @@ struct SceneData {
     BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
 };
 
-/// Adds nodes `scene-gather` (CPU: items and their world matrices, from MeshInstance and Transform),
-/// `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes) and
+/// Adds nodes `scene-gather` (CPU: items that SceneCheck accepts and their world matrices, from MeshInstance
+/// and Transform), `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes) and
 /// `instance-upload` (CPU, then upload: world matrices, when something moves).
 [[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
 

@@ -4,15 +4,21 @@
 
 namespace candela {
 
-Sky add_sky(FrameGraph& graph, std::uint32_t count) {
+Environment accepted_environment(const World& world, SceneCheck& check) {
+    return environment_of(world, [&](Entity entity, const Environment& environment) {
+        return check.accepts(world, entity, environment);
+    });
+}
+
+Sky add_sky(FrameGraph& graph, SceneCheck& check, std::uint32_t count) {
     Sky sky = graph.add("sky", [&](Pass& pass) {
         pass.read<Environment>();
         const Sky out{
             .environment = pass.write(graph.value<Environment>("environment")),
             .picture = pass.write(graph.value<std::shared_ptr<const SkyPicture>>("environment picture")),
             .split = {}};
-        pass.run([=](Execution& run) {
-            const Environment environment = environment_of(run.world());
+        pass.run([=, &check](Execution& run) {
+            const Environment environment = accepted_environment(run.world(), check);
             run.set(out.picture, environment.picture);
             run.set(out.environment, environment);
         });

@@ -5,6 +5,7 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
 #include "renderer/passes/sky/sky_patches.hpp"
+#include "renderer/scene_check.hpp"
 
 namespace candela {
 
@@ -15,8 +16,11 @@ struct Sky {
     ValueHandle<SplitSky> split;                             ///< of the picture
 };
 
+/// The environment that counts, of those that `check` accepts.
+[[nodiscard]] Environment accepted_environment(const World& world, SceneCheck& check);
+
 /// Adds nodes `sky` (CPU): reads the Environment, and `sky-split` (CPU: split_sky into about `count` patches,
 /// when the picture changes).
-[[nodiscard]] Sky add_sky(FrameGraph& graph, std::uint32_t count);
+[[nodiscard]] Sky add_sky(FrameGraph& graph, SceneCheck& check, std::uint32_t count);
 
 }  // namespace candela

@@ -1,5 +1,6 @@
 #include "renderer/passes/view/view.hpp"
 
+#include <fmt/format.h>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -7,16 +8,12 @@
 
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "engine/scene/check.hpp"
 #include "renderer/passes/r2_sequence.hpp"
 #include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {
-
-bool is_orthographic(const Camera& camera) {
-    return camera.projection == Camera::Projection::orthographic ||
-           (camera.projection == Camera::Projection::custom && camera.matrix[3][3] != 0.0F);
-}
 
 /// How a projection maps view space to x and y of normalised device coordinates: scale · xy / depth + shift,
 /// without the division if it is orthographic.
@@ -103,7 +100,19 @@ CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, c
 }
 
 CameraView requested_view(const World& world, const ViewRequest& request) {
-    return make_view(world.get<Camera>(request.camera), world_matrix(world, request.camera), request);
+    const auto& camera = world.get<Camera>(request.camera);
+    const glm::mat4 matrix = world_matrix(world, request.camera);
+    Fault fault = fault_of(camera);
+    if (!fault) {
+        fault = fault_of(matrix);
+    }
+    if (!fault && fault_of(rigid(matrix))) {
+        fault = "the world matrix has no direction";
+    }
+    if (fault) {
+        throw SceneError(fmt::format("{}, Camera: {}", describe(world, request.camera), *fault));
+    }
+    return make_view(camera, matrix, request);
 }
 
 void read_request(Pass& pass, ValueHandle<ViewRequest> request) {

@@ -27,7 +27,7 @@ struct ViewRequest {
                                    const ViewRequest& request);
 
 /// The view that the host asks for. Throws EntityError if `request.camera` is not alive or has no Camera, and
-/// SceneError if its parents form a cycle or were destroyed.
+/// SceneError if its parents form a cycle or were destroyed, or if the camera or its matrix has a fault.
 [[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
 /// Declares the reads of a pass that calls requested_view.
 void read_request(Pass& pass, ValueHandle<ViewRequest> request);

@@ -3,11 +3,11 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <candela/api.hpp>
+#include <candela/error.hpp>
 
 namespace candela {
 
@@ -31,9 +31,9 @@ struct Entity {
 
 /// Thrown for use of an entity that is not alive, or of a component that it does not have. The message names
 /// the entity and the component.
-class CANDELA_API EntityError : public std::runtime_error {
+class CANDELA_API EntityError : public Error {
  public:
-    using std::runtime_error::runtime_error;
+    using Error::Error;
 
     [[nodiscard]] static EntityError not_alive(Entity entity, std::string_view component);
     [[nodiscard]] static EntityError lacks(Entity entity, std::string_view component);

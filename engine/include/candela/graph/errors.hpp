@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 
 #include <candela/api.hpp>
+#include <candela/error.hpp>
 
 namespace candela {
 
@@ -30,9 +30,9 @@ struct CompileError {
 
 /// Thrown for misuse of a GraphRuntime or an Execution, for a failed verification, and by CompileResult::take
 /// if the graph did not compile.
-class CANDELA_API GraphError : public std::runtime_error {
+class CANDELA_API GraphError : public Error {
  public:
-    using std::runtime_error::runtime_error;
+    using Error::Error;
 };
 
 }  // namespace candela

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -162,8 +163,10 @@ struct Environment {
     bool operator==(const Environment&) const = default;
 };
 
-/// The first environment in the world's view whose radiance is not zero; radiance 0 if there is none.
-[[nodiscard]] CANDELA_API Environment environment_of(const World& world);
+/// The first environment in the world's view whose radiance is not zero and that `accepts`, if given,
+/// accepts; radiance 0 if there is none.
+[[nodiscard]] CANDELA_API Environment
+environment_of(const World& world, const std::function<bool(Entity, const Environment&)>& accepts = {});
 
 /// The direction that a point of the sky's picture shows, without rotation: a unit vector. `at` is in [0,
 /// 1]², (0, 0) the top left corner.
@@ -185,5 +188,11 @@ struct Camera {
     glm::mat4 matrix{1.0F};
     bool operator==(const Camera&) const = default;
 };
+
+/// Whether the camera's projection is orthographic, by its kind or by its matrix.
+[[nodiscard]] inline bool is_orthographic(const Camera& camera) {
+    return camera.projection == Camera::Projection::orthographic ||
+           (camera.projection == Camera::Projection::custom && camera.matrix[3][3] != 0.0F);
+}
 
 }  // namespace candela

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <stdexcept>
-
 #include <candela/api.hpp>
+#include <candela/error.hpp>
 
 namespace candela {
 
 /// An error in a scene or in the file it comes from. `what()` is one line that names the object and the
 /// problem.
-class CANDELA_API SceneError : public std::runtime_error {
+class CANDELA_API SceneError : public Error {
  public:
-    using std::runtime_error::runtime_error;
+    using Error::Error;
 };
 
 }  // namespace candela

@@ -2,18 +2,18 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include <candela/api.hpp>
+#include <candela/error.hpp>
 #include <candela/gl_loader.hpp>
 
 namespace candela {
 
 /// No context could be made. The message is one line that lists every attempt and why it failed.
-struct CANDELA_API ContextError : std::runtime_error {
-    using std::runtime_error::runtime_error;
+struct CANDELA_API ContextError : Error {
+    using Error::Error;
 };
 
 /// The API that makes a headless context.

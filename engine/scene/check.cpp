@@ -1,0 +1,268 @@
+#include "engine/scene/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <numbers>
+#include <span>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace candela {
+namespace {
+
+/// Of coordinates and scales. Squares of areas, as in the length of a cross product, must not overflow.
+constexpr float most = 1e9F;
+
+bool is_too_large(glm::vec3 vector) {
+    return std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)}) > most;
+}
+
+/// How large a value may be.
+enum class Limit : std::uint8_t { finite, infinite };
+
+bool is_finite(std::span<const float> values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
+template <class Vector>
+bool is_finite(const Vector& vector) {
+    return is_finite(std::span(&vector[0], static_cast<std::size_t>(Vector::length())));
+}
+
+bool is_amount(float value, Limit limit = Limit::finite) {
+    return value >= 0.0F && (limit == Limit::infinite || std::isfinite(value));
+}
+
+bool is_amount(glm::vec3 colour) {
+    return is_amount(colour.r) && is_amount(colour.g) && is_amount(colour.b);
+}
+
+Fault negative_or_infinite(std::string_view what) {
+    return fmt::format("{} is negative or not finite", what);
+}
+
+Fault fault_of_light(glm::vec3 colour, std::string_view strength_name, float strength) {
+    if (!is_amount(colour)) {
+        return negative_or_infinite("the colour");
+    }
+    if (!is_amount(strength)) {
+        return negative_or_infinite(fmt::format("the {}", strength_name));
+    }
+    if (!is_amount(colour * strength)) {
+        return fmt::format("the product of colour and {} is not finite", strength_name);
+    }
+    return {};
+}
+
+Fault fault_of_range(float range) {
+    if (!is_amount(range, Limit::infinite)) {
+        return "the range is negative or not a number";
+    }
+    return {};
+}
+
+/// `count` texels of an image of this size.
+Fault fault_of_size(std::uint32_t width, std::uint32_t height, std::size_t count) {
+    if (width == 0 || height == 0 || count != std::size_t{width} * height) {
+        return fmt::format("{} texels for {} × {}", count, width, height);
+    }
+    return {};
+}
+
+Fault fault_of(const std::shared_ptr<const Image>& image) {
+    return image ? fault_of_size(image->width, image->height, image->texels.size()) : Fault{};
+}
+
+Fault fault_of(const Material& material) {
+    if (!is_amount(glm::vec3(material.base_colour)) || !is_amount(material.base_colour.a)) {
+        return negative_or_infinite("the base colour");
+    }
+    if (!is_amount(material.emissive)) {
+        return negative_or_infinite("the emission");
+    }
+    if (!is_amount(material.alpha_cutoff, Limit::infinite)) {
+        return "the alpha cutoff is negative or not a number";
+    }
+    if (const Fault fault = fault_of(material.base_colour_texture)) {
+        return "the base colour texture has " + *fault;
+    }
+    if (const Fault fault = fault_of(material.emissive_texture)) {
+        return "the emissive texture has " + *fault;
+    }
+    return {};
+}
+
+Fault fault_of(const Vertex& vertex, Strictness strictness) {
+    if (!is_finite(vertex.position)) {
+        return "its position is not finite";
+    }
+    if (is_too_large(vertex.position)) {
+        return fmt::format("its position is farther than {:g} metres from the origin", most);
+    }
+    if (!is_finite(vertex.normal)) {
+        return "its normal is not finite";
+    }
+    if (!is_finite(vertex.uv)) {
+        return "its texture coordinates are not finite";
+    }
+    constexpr float tolerance = 0.01F;  // more than the rounding of normals that are stored in bytes
+    if (strictness == Strictness::strict && std::abs(glm::length(vertex.normal) - 1.0F) > tolerance) {
+        return fmt::format("its normal is {} long", glm::length(vertex.normal));
+    }
+    return {};
+}
+
+Fault fault_of(const Primitive& primitive, Strictness strictness) {
+    if (!primitive.material) {
+        return "it has no material";
+    }
+    if (const Fault fault = fault_of(*primitive.material)) {
+        return fmt::format("material \"{}\": {}", primitive.material->name, *fault);
+    }
+    if (primitive.indices.size() % 3 != 0) {
+        return fmt::format("its {} indices make no whole number of triangles", primitive.indices.size());
+    }
+    const auto largest = std::ranges::max_element(primitive.indices);
+    if (largest != primitive.indices.end() && *largest >= primitive.vertices.size()) {
+        return fmt::format("index {}, but there are {} vertices", *largest, primitive.vertices.size());
+    }
+    for (std::size_t i = 0; i < primitive.vertices.size(); ++i) {
+        if (const Fault fault = fault_of(primitive.vertices[i], strictness)) {
+            return fmt::format("vertex {}: {}", i, *fault);
+        }
+    }
+    return {};
+}
+
+Fault fault_of_lens(const Camera& camera) {
+    constexpr float pi = std::numbers::pi_v<float>;
+    const glm::mat4& m = camera.matrix;
+    switch (camera.projection) {
+        case Camera::Projection::orthographic:
+            if (!(camera.half_height > 0.0F && std::isfinite(camera.half_height))) {
+                return fmt::format("the half height of {} is not positive and finite", camera.half_height);
+            }
+            break;
+        case Camera::Projection::custom: {
+            const bool perspective = m[3][3] == 0.0F && m[2][3] < 0.0F;
+            const bool orthographic = m[3][3] != 0.0F && m[2][3] == 0.0F;
+            const bool skewed = m[0][1] != 0.0F || m[1][0] != 0.0F || m[0][3] != 0.0F || m[1][3] != 0.0F;
+            if (!is_finite(std::span(&m[0][0], 16)) || m[0][0] == 0.0F || m[1][1] == 0.0F || skewed ||
+                !(perspective || orthographic)) {
+                return "the matrix is not a projection without skew";
+            }
+            break;
+        }
+        case Camera::Projection::perspective:
+            if (!(camera.vertical_fov > 0.0F && camera.vertical_fov < pi)) {
+                return fmt::format("the vertical field of view of {} is not between 0 and pi",
+                                   camera.vertical_fov);
+            }
+            break;
+    }
+    return {};
+}
+
+Fault fault_of_planes(const Camera& camera) {
+    if (is_orthographic(camera)) {
+        if (!is_amount(camera.near_plane)) {
+            return fmt::format("the near plane at {} is behind the camera or not finite", camera.near_plane);
+        }
+        if (!std::isfinite(camera.far_plane)) {
+            return fmt::format("the far plane at {} is not finite", camera.far_plane);
+        }
+    } else if (!(camera.near_plane > 0.0F && std::isfinite(camera.near_plane))) {
+        return fmt::format("the near plane at {} is not in front of the camera", camera.near_plane);
+    }
+    if (!(camera.far_plane > camera.near_plane)) {
+        return fmt::format("the far plane at {} is not beyond the near plane at {}", camera.far_plane,
+                           camera.near_plane);
+    }
+    return {};
+}
+
+}  // namespace
+
+Fault fault_of(const Mesh& mesh, Strictness strictness) {
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        if (const Fault fault = fault_of(mesh.primitives[i], strictness)) {
+            return fmt::format("primitive {} of mesh \"{}\": {}", i, mesh.name, *fault);
+        }
+    }
+    return {};
+}
+
+Fault fault_of(const SkyPicture& picture) {
+    if (const Fault fault = fault_of_size(picture.width, picture.height, picture.texels.size())) {
+        return "the picture has " + *fault;
+    }
+    const auto wrong =
+        std::ranges::find_if_not(picture.texels, [](glm::vec3 texel) { return is_amount(texel); });
+    if (wrong != picture.texels.end()) {
+        const auto i = static_cast<std::size_t>(wrong - picture.texels.begin());
+        return fmt::format(
+            "the picture holds a radiance that is negative or not finite, in column {} of row {}",
+            i % picture.width, i / picture.width);
+    }
+    return {};
+}
+
+Fault fault_of(const PointLight& light) {
+    const Fault fault = fault_of_light(light.colour, "intensity", light.intensity);
+    return fault ? fault : fault_of_range(light.range);
+}
+
+Fault fault_of(const SpotLight& light) {
+    if (const Fault fault = fault_of_light(light.colour, "intensity", light.intensity)) {
+        return fault;
+    }
+    if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {
+        return negative_or_infinite("a cone");
+    }
+    if (std::cos(light.outer_cone) >= 1.0F) {
+        return fmt::format("the outer cone of {} is too narrow", light.outer_cone);
+    }
+    return fault_of_range(light.range);
+}
+
+Fault fault_of(const DirectionalLight& light) {
+    return fault_of_light(light.colour, "illuminance", light.illuminance);
+}
+
+Fault fault_of(const Environment& environment) {
+    if (!is_amount(environment.radiance)) {
+        return negative_or_infinite("the radiance");
+    }
+    if (!std::isfinite(environment.rotation)) {
+        return "the rotation is not finite";
+    }
+    return {};
+}
+
+Fault fault_of(const Camera& camera) {
+    const Fault fault = fault_of_lens(camera);
+    return fault ? fault : fault_of_planes(camera);
+}
+
+Fault fault_of(const glm::mat4& world) {
+    for (int column = 0; column < 4; ++column) {
+        if (!is_finite(world[column])) {
+            return "the world matrix is not finite";
+        }
+        if (column < 3 && is_too_large(world[column])) {
+            return fmt::format("the world matrix scales by more than {:g}", most);
+        }
+    }
+    return {};
+}
+
+std::string describe(const World& world, Entity entity) {
+    const Name* name = world.find<Name>(entity);
+    return name ? fmt::format("entity \"{}\"", name->value) : fmt::format("entity {}", entity.index);
+}
+
+}  // namespace candela

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <glm/mat4x4.hpp>
+
+#include <candela/ecs/world.hpp>
+#include <candela/scene/components.hpp>
+
+namespace candela {
+
+/// Why something cannot be rendered, for example "the colour is negative or not finite". None: nothing is
+/// wrong.
+using Fault = std::optional<std::string>;
+
+enum class Strictness : std::uint8_t {
+    usual,  ///< faults that would spoil the picture or crash
+    strict  ///< also normals that are not of unit length, to within 1 %
+};
+
+/// Reads all vertices and indices; the materials must not change as long as the mesh exists.
+[[nodiscard]] Fault fault_of(const Mesh& mesh, Strictness strictness);
+/// Reads all texels.
+[[nodiscard]] Fault fault_of(const SkyPicture& picture);
+
+[[nodiscard]] Fault fault_of(const PointLight& light);
+[[nodiscard]] Fault fault_of(const SpotLight& light);
+[[nodiscard]] Fault fault_of(const DirectionalLight& light);
+/// Without its picture.
+[[nodiscard]] Fault fault_of(const Environment& environment);
+[[nodiscard]] Fault fault_of(const Camera& camera);
+/// Of a local-to-world matrix.
+[[nodiscard]] Fault fault_of(const glm::mat4& world);
+
+/// The entity as messages call it: by its Name, or by its index if it has none.
+[[nodiscard]] std::string describe(const World& world, Entity entity);
+
+}  // namespace candela

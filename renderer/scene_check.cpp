@@ -1,0 +1,57 @@
+#include "renderer/scene_check.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <string>
+
+#include <candela/scene/scene_error.hpp>
+
+namespace candela {
+
+template <class T, class Find>
+const Fault& SceneCheck::remembered(const std::shared_ptr<const T>& of, Find find) {
+    forget_destroyed();
+    Finding& finding = findings_[of.get()];
+    if (finding.of.expired()) {
+        finding = {of, find(*of)};
+    }
+    return finding.fault;
+}
+
+const Fault& SceneCheck::fault_in(const MeshInstance& instance) {
+    static const Fault no_mesh = "there is no mesh";
+    if (!instance.mesh) {
+        return no_mesh;
+    }
+    return remembered(instance.mesh, [this](const Mesh& mesh) { return fault_of(mesh, strictness_); });
+}
+
+Fault SceneCheck::fault_in(const Environment& environment) {
+    const Fault fault = fault_of(environment);
+    if (fault || !environment.picture) {
+        return fault;
+    }
+    return remembered(environment.picture, [](const SkyPicture& picture) { return fault_of(picture); });
+}
+
+void SceneCheck::forget_destroyed() {
+    if (findings_.size() < forget_at_) {
+        return;
+    }
+    std::erase_if(findings_, [](const auto& entry) { return entry.second.of.expired(); });
+    forget_at_ = 2 * findings_.size() + 64;
+}
+
+bool SceneCheck::judge(const World& world, Entity entity, std::string_view part, const Fault& fault) {
+    if (!fault) {
+        return true;
+    }
+    const std::string whose = describe(world, entity) + (part.empty() ? "" : fmt::format(", {}", part));
+    if (strictness_ == Strictness::strict) {
+        throw SceneError(fmt::format("{}: {}", whose, *fault));
+    }
+    log_->warn(fmt::format("{}: left out, because {}", whose, *fault));
+    return false;
+}
+
+}  // namespace candela

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <unordered_map>
+
+#include <glm/mat4x4.hpp>
+
+#include <candela/ecs/world.hpp>
+#include <candela/scene/components.hpp>
+#include "engine/scene/check.hpp"
+#include "renderer/log.hpp"
+
+namespace candela {
+
+/// Decides which parts of a world are rendered. What has a fault is left out with a warning, or, if checked,
+/// is a SceneError; both name the entity and the fault. Meshes and pictures are immutable, so that each is
+/// checked only when it is seen for the first time.
+class SceneCheck {
+ public:
+    /// `log` must outlive the object.
+    SceneCheck(Log& log, bool checked)
+        : log_(&log), strictness_(checked ? Strictness::strict : Strictness::usual) {}
+
+    /// Whether a component of the entity is rendered: a MeshInstance, an Environment or a light.
+    template <Component C>
+    [[nodiscard]] bool accepts(const World& world, Entity entity, const C& component) {
+        return judge(world, entity, component_name<C>(), fault_in(component));
+    }
+    /// Whether anything of the entity is rendered, with this local-to-world matrix.
+    [[nodiscard]] bool accepts_at(const World& world, Entity entity, const glm::mat4& matrix) {
+        return judge(world, entity, {}, fault_of(matrix));
+    }
+
+ private:
+    /// What was found in a mesh or picture; void if that no longer exists.
+    struct Finding {
+        std::weak_ptr<const void> of;
+        Fault fault;
+    };
+
+    template <class Light>
+    [[nodiscard]] static Fault fault_in(const Light& light) {
+        return fault_of(light);
+    }
+    [[nodiscard]] const Fault& fault_in(const MeshInstance& instance);
+    [[nodiscard]] Fault fault_in(const Environment& environment);
+    /// The fault of a mesh or picture, found by `find` if it is not known.
+    template <class T, class Find>
+    [[nodiscard]] const Fault& remembered(const std::shared_ptr<const T>& of, Find find);
+    void forget_destroyed();
+    /// An empty `part` is the whole entity.
+    [[nodiscard]] bool judge(const World& world, Entity entity, std::string_view part, const Fault& fault);
+
+    Log* log_;
+    Strictness strictness_;
+    std::unordered_map<const void*, Finding> findings_;
+    std::size_t forget_at_ = 64;  // number of findings at which those of destroyed meshes are removed
+};
+
+}  // namespace candela
