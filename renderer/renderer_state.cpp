@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include <candela/graph/compile.hpp>

@@ -189,12 +189,12 @@ Fault fault_of(const SkyPicture& picture) {
 }
 
 Fault fault_of(const PointLight& light) {
-    const Fault fault = fault_of_light(light.colour, "intensity", light.intensity);
+    Fault fault = fault_of_light(light.colour, "intensity", light.intensity);
     return fault ? fault : fault_of_range(light.range);
 }
 
 Fault fault_of(const SpotLight& light) {
-    if (const Fault fault = fault_of_light(light.colour, "intensity", light.intensity)) {
+    if (Fault fault = fault_of_light(light.colour, "intensity", light.intensity)) {
         return fault;
     }
     if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {
@@ -221,8 +221,8 @@ Fault fault_of(const Environment& environment) {
 }
 
 Fault fault_of(const Camera& camera) {
-    const Fault fault = camera.projection == Camera::Projection::perspective ? fault_of_perspective(camera)
-                                                                             : fault_of_orthographic(camera);
+    Fault fault = camera.projection == Camera::Projection::perspective ? fault_of_perspective(camera)
+                                                                       : fault_of_orthographic(camera);
     if (!fault && !(camera.far_plane > camera.near_plane)) {
         return fmt::format("the far plane at {} is not beyond the near plane at {}", camera.far_plane,
                            camera.near_plane);
