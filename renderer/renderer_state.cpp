@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include <candela/graph/compile.hpp>
@@ -104,7 +103,7 @@ Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& optio
     : gpu_(get_proc, shader_library(options.shader_directory), options),
       backend_(gpu_.device()),
       runtime_(backend_) {
-    switch_to(configuration_, shape_);
+    switch_to(configuration_, shape_, {});
 }
 
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
@@ -112,13 +111,14 @@ std::vector<std::string> Renderer::State::configure(const Configuration& configu
     if (!errors.empty() || configuration == configuration_) {
         return errors;
     }
-    return try_to(configuration);
+    return try_to(configuration, extensions_);
 }
 
-/// Switches to a configuration, or returns why that is not possible.
-std::vector<std::string> Renderer::State::try_to(const Configuration& configuration) {
+/// Switches to a configuration and extensions, or returns why that is not possible.
+std::vector<std::string> Renderer::State::try_to(const Configuration& configuration,
+                                                 std::vector<Extension> extensions) {
     try {
-        switch_to(configuration, shape_);
+        switch_to(configuration, shape_, std::move(extensions));
     } catch (const std::exception& error) {
         return {error.what()};
     }
@@ -126,29 +126,27 @@ std::vector<std::string> Renderer::State::try_to(const Configuration& configurat
 }
 
 std::vector<std::string> Renderer::State::extend(Extension extension) {
-    std::vector<Extension> before = extensions_;
-    const auto same = std::ranges::find(extensions_, extension.name, &Extension::name);
-    if (same != extensions_.end()) {
+    std::vector<Extension> extensions = extensions_;
+    const auto same = std::ranges::find(extensions, extension.name, &Extension::name);
+    if (same != extensions.end()) {
         *same = std::move(extension);
     } else {
-        extensions_.push_back(std::move(extension));
+        extensions.push_back(std::move(extension));
     }
-    std::vector<std::string> errors = try_to(configuration_);
-    if (!errors.empty()) {
-        extensions_ = std::move(before);
-    }
-    return errors;
+    return try_to(configuration_, std::move(extensions));
 }
 
 void Renderer::State::remove_extension(std::string_view name) {
-    if (std::erase_if(extensions_, [&](const Extension& extension) { return extension.name == name; }) > 0) {
-        switch_to(configuration_, shape_);
+    std::vector<Extension> extensions = extensions_;
+    if (std::erase_if(extensions, [&](const Extension& extension) { return extension.name == name; }) > 0) {
+        switch_to(configuration_, shape_, std::move(extensions));
     }
 }
 
-void Renderer::State::switch_to(const Configuration& configuration, const FrameShape& shape) {
+void Renderer::State::switch_to(const Configuration& configuration, const FrameShape& shape,
+                                std::vector<Extension> extensions) {
     FrameGraph graph;
-    FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions_);
+    FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions);
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = std::move(frame);
     if (shape != shape_ || !same_radiance(configuration, configuration_)) {
@@ -156,6 +154,7 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     }
     configuration_ = configuration;
     shape_ = shape;
+    extensions_ = std::move(extensions);
     last_passes_.clear();
 }
 
@@ -214,7 +213,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     }
     shape.quality = quality_now(world, std::move(requests));
     if (shape != shape_) {
-        switch_to(configuration_, shape);
+        switch_to(configuration_, shape, extensions_);
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
         set_view(frame_.views[i], views[i]);

@@ -47,8 +47,10 @@ class CANDELA_PRIVATE Renderer::State {
         Quality quality;
     };
 
-    void switch_to(const Configuration& configuration, const FrameShape& shape);
-    [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration);
+    void switch_to(const Configuration& configuration, const FrameShape& shape,
+                   std::vector<Extension> extensions);
+    [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration,
+                                                  std::vector<Extension> extensions);
     // These throw gl::GlError: if a target cannot be drawn into, or a texture is none.
     void require_possible(const Target& target) const;
     void require_possible(std::span<const RenderView> views) const;

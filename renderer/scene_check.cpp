@@ -27,7 +27,7 @@ const Fault& SceneCheck::fault_in(const MeshInstance& instance) {
 }
 
 Fault SceneCheck::fault_in(const Environment& environment) {
-    const Fault fault = fault_of(environment);
+    Fault fault = fault_of(environment);
     if (fault || !environment.picture) {
         return fault;
     }

@@ -212,12 +212,12 @@ Fault fault_of(const SkyPicture& picture) {
 }
 
 Fault fault_of(const PointLight& light) {
-    const Fault fault = fault_of_light(light.colour, "intensity", light.intensity);
+    Fault fault = fault_of_light(light.colour, "intensity", light.intensity);
     return fault ? fault : fault_of_range(light.range);
 }
 
 Fault fault_of(const SpotLight& light) {
-    if (const Fault fault = fault_of_light(light.colour, "intensity", light.intensity)) {
+    if (Fault fault = fault_of_light(light.colour, "intensity", light.intensity)) {
         return fault;
     }
     if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {

@@ -81,7 +81,7 @@ struct FrameShape {
 
 /// Declares all passes of a frame with a valid configuration. VPLs and all that is independent of the camera
 /// are shared by the views; the names of the passes and resources of view 2, 3, ... end in that number. `gpu`
-/// and the functions of the extensions must outlive the graph. Throws gl::ProgramError if a shader does not
+/// must outlive the graph. Throws gl::ProgramError if a shader does not
 /// compile, and passes on what an extension throws.
 [[nodiscard]] FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                                        const FrameShape& shape, std::span<const Extension> extensions);

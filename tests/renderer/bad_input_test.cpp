@@ -381,6 +381,7 @@ TEST_SUITE("bad input") {
     TEST_CASE_FIXTURE(BadInput, "a camera with a fault is a SceneError that names it, until it is repaired") {
         constexpr float pi = std::numbers::pi_v<float>;
         constexpr auto orthographic = Camera::Projection::orthographic;
+        constexpr auto custom = Camera::Projection::custom;
         struct CameraCase {
             Camera camera;
             Transform pose;
@@ -405,6 +406,9 @@ TEST_SUITE("bad input") {
              {},
              "the near plane at -1 is behind the camera"},
             {{.projection = orthographic}, {}, "the far plane at inf is not finite"},
+            {{.projection = custom, .matrix = glm::mat4(0.0F)}, {}, "the matrix is not a projection"},
+            {{.projection = custom, .matrix = glm::mat4(not_a_number)}, {}, "the matrix is not a projection"},
+            {{.projection = custom, .matrix = glm::mat4(1.0F)}, {}, "the far plane at inf is not finite"},
             {{}, {.translation = {not_a_number, 0, 0}}, "the world matrix is not finite"},
             {{}, {.scale = glm::vec3(0.0F)}, "the world matrix has no direction"}};
         Watched renderer(device, context->get_proc(), false);

@@ -89,7 +89,8 @@ class CANDELA_API Renderer {
     /// each other in the order of these calls. An extension with the name of another one takes its place.
     /// Returns the errors, one per string, with the names of the passes; if there are any, nothing changes.
     [[nodiscard]] std::vector<std::string> extend(Extension extension);
-    /// Removes an extension; does nothing if there is none with the name.
+    /// Removes an extension; does nothing if there is none with the name. Throws GraphError, and changes
+    /// nothing, if another extension cannot do without it.
     void remove_extension(std::string_view name);
 
     /// Makes the next frame compute everything again. Not needed for another world, wherever it is: worlds
