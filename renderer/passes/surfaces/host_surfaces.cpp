@@ -1,5 +1,6 @@
 #include "renderer/passes/surfaces/host_surfaces.hpp"
 
+#include <array>
 #include <glm/matrix.hpp>
 
 #include <candela/graph/execute.hpp>
@@ -33,7 +34,7 @@ Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& 
             program.set("empty_depth", host.empty_depth);
             program.set("normal_encoding", static_cast<std::uint32_t>(host.normal_encoding));
             program.set("world_from_normal", host.world_from_normal);
-            for (const GLuint unit : {UNIT_ALBEDO, UNIT_NORMAL, UNIT_DEPTH}) {
+            for (const GLuint unit : std::array<GLuint, 3>{UNIT_ALBEDO, UNIT_NORMAL, UNIT_DEPTH}) {
                 gpu.nearest().bind(unit);
             }
             begin_surfaces(gpu);
