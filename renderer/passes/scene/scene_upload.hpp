@@ -16,6 +16,7 @@ namespace candela {
 /// The meshes of the world: one item per MeshInstance, in the order of the world's view.
 struct SceneGeometry {
     struct Item {
+        Entity entity;
         std::shared_ptr<const Mesh> mesh;
         bool mirrored = false;  ///< the world matrix reverses the winding of its triangles
         bool operator==(const Item&) const = default;
@@ -41,10 +42,11 @@ struct SceneLayout {
     /// One primitive of one item. It has one draw command and one record in the instance buffer.
     struct Drawable {
         std::uint32_t item;
-        const Primitive* primitive;  ///< kept alive by `geometry`
-        std::uint32_t material;      ///< index into `materials`
-        Box bounds;                  ///< bounding box of the primitive, local space
-        float albedo = 0.0F;         ///< strongest channel of its mean albedo
+        const Primitive* primitive;     ///< kept alive by `geometry`
+        std::uint32_t material;         ///< index into `materials`
+        Box bounds;                     ///< bounding box of the primitive, local space
+        float albedo = 0.0F;            ///< strongest channel of its mean albedo
+        std::uint32_t mesh_number = 0;  ///< equal for drawables that share their vertices and indices
     };
     /// Consecutive draws that share all render state. Each blended draw has its own group, so that they can
     /// be sorted.
@@ -63,9 +65,9 @@ struct SceneLayout {
     std::vector<Drawable> drawables;      ///< in drawing order: opaque, then masked, then blended
     std::vector<gpu::DrawCommand> draws;  ///< by drawable
     std::vector<Group> groups;            ///< in drawing order
-    std::vector<std::shared_ptr<const Material>> materials;
-    std::uint32_t opaque_count = 0;  ///< number of opaque drawables
-    std::uint32_t solid_count = 0;   ///< number of opaque and masked drawables: they stop light
+    std::vector<std::shared_ptr<const Material>> materials;  ///< null where an index is not in use
+    std::uint32_t opaque_count = 0;                          ///< number of opaque drawables
+    std::uint32_t solid_count = 0;  ///< number of opaque and masked drawables: they stop light
 
     /// The groups of one alpha mode.
     [[nodiscard]] std::span<const Group> groups_of(AlphaMode alpha) const;
@@ -88,8 +90,8 @@ struct SceneData {
 };
 
 /// Adds nodes `scene-gather` (CPU: items and their world matrices, from MeshInstance and Transform),
-/// `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes) and
-/// `instance-upload` (CPU, then upload: world matrices, when something moves).
+/// `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes; only those that the
+/// scene had not before) and `instance-upload` (CPU, then upload: world matrices, when something moves).
 [[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
 
 }  // namespace candela

@@ -63,8 +63,8 @@ SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& 
         ground.item_of.push_back(layout.drawables[origin.drawable].item);
     }
     for (const auto& material : layout.materials) {
-        ground.double_sided.push_back(material->double_sided);
-        ground.emits.push_back(emits(*material));
+        ground.double_sided.push_back(material && material->double_sided);
+        ground.emits.push_back(material && emits(*material));
     }
     return ground;
 }
