@@ -50,17 +50,16 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
 }
 
 SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
-    ScenePlacement placement;
-    for (const glm::mat3& shape : shapes) {
-        placement.world.emplace_back(shape);
-    }
-    const WorldTriangles triangles = place_triangles(layout, placement);
-    std::vector<std::uint32_t> order(triangles.triangles.size());
-    std::iota(order.begin(), order.end(), 0U);
     SurfelGround ground;
-    ground.triangles = trace_triangles(layout, triangles, order);
-    for (const Origin& origin : triangles.origins) {
-        ground.item_of.push_back(layout.drawables[origin.drawable].item);
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        const std::vector<Triangle> placed =
+            place_triangles(layout, drawable, glm::mat4(shapes[drawable.item]));
+        std::vector<std::uint32_t> order(placed.size());
+        std::iota(order.begin(), order.end(), 0U);
+        const auto first_id = static_cast<std::uint32_t>(ground.triangles.size());
+        const auto triangles = trace_triangles(layout, drawable, placed, order, first_id);
+        ground.triangles.insert(ground.triangles.end(), triangles.begin(), triangles.end());
+        ground.item_of.insert(ground.item_of.end(), triangles.size(), drawable.item);
     }
     for (const auto& material : layout.materials) {
         ground.double_sided.push_back(material && material->double_sided);
