@@ -11,48 +11,12 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/scene/components.hpp>
-#include "renderer/gl/functions.hpp"
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
+#include "tests/uploads.hpp"
 
 namespace candela::study {
 namespace {
-
-/// Bytes that the renderer has uploaded to buffers and textures. Counted by functions in place of the
-/// driver's.
-struct Uploads {
-    std::uint64_t bytes = 0;
-    PFNGLNAMEDBUFFERSUBDATAPROC to_buffer = nullptr;
-    PFNGLTEXTURESUBIMAGE2DPROC to_texture = nullptr;
-};
-Uploads uploads;
-
-void count_buffer(GLuint buffer, GLintptr offset, GLsizeiptr size, const void* data) {
-    uploads.bytes += static_cast<std::uint64_t>(size);
-    uploads.to_buffer(buffer, offset, size, data);
-}
-
-void count_texture(GLuint texture, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
-                              GLenum layout, GLenum type, const void* data) {
-    // Scenes have textures of 4 bytes per texel.
-    uploads.bytes += 4 * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    uploads.to_texture(texture, level, x, y, width, height, layout, type, data);
-}
-
-gl::GetProc counting(const gl::GetProc& get_proc) {
-    return [get_proc](const char* name) -> void (*)() {
-        const auto found = get_proc(name);
-        if (std::string_view(name) == "glNamedBufferSubData") {
-            uploads.to_buffer = reinterpret_cast<PFNGLNAMEDBUFFERSUBDATAPROC>(found);
-            return reinterpret_cast<void (*)()>(&count_buffer);
-        }
-        if (std::string_view(name) == "glTextureSubImage2D") {
-            uploads.to_texture = reinterpret_cast<PFNGLTEXTURESUBIMAGE2DPROC>(found);
-            return reinterpret_cast<void (*)()>(&count_texture);
-        }
-        return found;
-    };
-}
 
 std::shared_ptr<const Material> painted(glm::vec3 albedo, std::uint32_t texture_size = 0) {
     Material material;
@@ -137,9 +101,9 @@ EditCost measure_edit(Bench& bench, const EditStudy& edit, int rounds) {
     for (int round = 0; round < 2 * rounds; ++round) {
         bench.frame({});
         edit.apply(round);
-        uploads.bytes = 0;
+        static_cast<void>(Uploads::take());
         bench.frame({});
-        cost.bytes = uploads.bytes;
+        cost.bytes = Uploads::take();
         double sum = 0.0;
         for (const PassRecord& pass : bench.renderer().last_passes()) {
             if (pass.ran && is_of_scene(pass.name)) {
@@ -244,7 +208,7 @@ void study_crowd(const gl::GetProc& get_proc, int rounds) {
 int edits(const EditsStudy& study) {
     const auto context = HeadlessContext::create(ContextKind::egl);
     context->make_current();
-    const gl::GetProc get_proc = counting(context->get_proc());
+    const gl::GetProc get_proc = Uploads::counting(context->get_proc());
     fmt::print("CPU time of the scene's passes after an edit, medians of {} rounds\n", 2 * study.rounds);
     study_textures(get_proc, study.rounds);
     study_crowd(get_proc, study.rounds);
