@@ -28,10 +28,12 @@ struct TestRay {
     float pad0 = 0.0F;
 };
 
-/// A hit on the GPU: distance, and the triangle in world space; infinity for none.
+/// A hit on the GPU: distance, and the triangle in world space, with the colour of its first vertex as in
+/// gpu::TraceTriangle; infinity for none.
 struct GpuHit {
     float t = std::numeric_limits<float>::infinity();
     Triangle triangle{};
+    std::uint32_t colour = 0;
 };
 
 std::string trace_rays_source() {
@@ -117,7 +119,7 @@ class Tracer {
                 continue;
             }
             const gpu::TraceTriangle& t = triangles_.at(index);
-            hits.push_back({hit.x, {t.a, t.a + t.edge_ab, t.a + t.edge_ac}});
+            hits.push_back({hit.x, {t.a, t.a + t.edge_ab, t.a + t.edge_ac}, t.colour_a});
         }
         return hits;
     }
@@ -250,6 +252,44 @@ TEST_SUITE("compute tracer") {
                     if (edit % 2 == 0) world.set(any(), anywhere());
             }
             check(tracer, world, rays, -1.0);
+        }
+    }
+
+    TEST_CASE_FIXTURE(TraceRays,
+                      "of surfaces in one place the same one is hit, whatever came and went before") {
+        // Each of another colour.
+        const auto sheet = [](std::uint32_t number) {
+            Mesh mesh = *soup(50, 1, 0.5F);
+            for (Vertex& vertex : mesh.primitives.front().vertices) {
+                vertex.colour = {number << 10U, 0, 0, 65535};
+            }
+            return std::make_shared<const Mesh>(std::move(mesh));
+        };
+        std::mt19937 random(test_seed(13));
+        World world;
+        std::vector<Entity> sheets;
+        const auto rays = random_rays(50, {0, 0, 0}, 1.0F);
+        for (std::uint32_t edit = 0; edit < 30; ++edit) {
+            CAPTURE(edit);
+            if (sheets.size() < 2 || random() % 2 == 0) {
+                sheets.push_back(add(world, MeshInstance{sheet(edit)}));
+            } else if (random() % 2 == 0) {
+                // Moves the last component of the pool into the gap.
+                world.destroy(sheets.front());
+                sheets.erase(sheets.begin());
+            } else {
+                world.set(sheets[random() % sheets.size()], MeshInstance{sheet(edit)});
+            }
+            Tracer fresh(context->get_proc());
+            const auto hits = tracer.trace(world, rays);
+            const auto wanted = fresh.trace(world, rays);
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                CHECK(hits[i].t == wanted[i].t);
+                CHECK(hits[i].colour == wanted[i].colour);
+                count += std::isfinite(hits[i].t) ? 1 : 0;
+            }
+            CHECK(count > 0);
         }
     }
 }
