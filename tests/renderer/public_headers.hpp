@@ -11,5 +11,6 @@
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/hierarchy.hpp>

@@ -11,6 +11,7 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 #include "tests/uploads.hpp"
@@ -185,6 +186,18 @@ void study_crowd(const gl::GetProc& get_proc, int rounds) {
         }
     };
     print_costs(bench, {{"another small one comes or goes", toggle}}, rounds);
+
+    const auto cloth = sphere(71, painted({0.2F, 0.2F, 0.5F}));
+    const Entity waving = place(world, cloth, {0.0F, 1.0F, -2.0F}, 0.4F);
+    const auto deform = [&](int round) {
+        DeformedMesh::Vertices vertices{cloth->primitives.front().vertices};
+        for (Vertex& vertex : vertices.front()) {
+            vertex.position.y += 0.1F * std::sin(5.0F * vertex.position.x + static_cast<float>(round));
+        }
+        world.set(waving, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(std::move(vertices))});
+    };
+    print_costs(bench, {{"one of 10,082 triangles is deformed", deform}}, rounds);
+    world.destroy(waving);
 
     fmt::print("with 1,000 small ones:\n");
     const auto toggle_all = [&](int round) {

@@ -55,7 +55,7 @@ void place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& u
 }
 
 void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
-                    UploadedHierarchy& uploaded, const SceneLayout& layout) {
+                    UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed) {
     std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
     const std::vector<PlacedBvh> placed_bvhs = uploaded.scene.placed_objects();
     upload_ranges(gpu, run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes),
@@ -69,9 +69,11 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
                   [&](std::size_t i, std::vector<gpu::TraceTriangle>& triangles) {
                       const ObjectHierarchy& object = objects[i];
                       const SceneLayout::Drawable& drawable = layout.drawables[i];
-                      const std::vector<gpu::TraceTriangle> traced = trace_triangles(
-                          layout, drawable, place_triangles(layout, drawable, object.source.world),
-                          object.bvh.order, object.first_id);
+                      const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
+                      const std::vector<gpu::TraceTriangle> traced =
+                          trace_triangles(layout, drawable, vertices,
+                                          place_triangles(layout, drawable, vertices, object.source.world),
+                                          object.bvh.order, object.first_id);
                       triangles.insert(triangles.end(), traced.begin(), traced.end());
                   });
 }
@@ -109,9 +111,10 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
             const SceneLayout& layout = run.value(layout_handle);
             const std::shared_ptr<UploadedHierarchy> uploaded =
                 run.has_result() ? *run.previous(kept) : std::make_shared<UploadedHierarchy>();
-            uploaded->scene.update(layout, run.value(placement_handle), run.changed(layout_handle));
+            const ScenePlacement& placement = run.value(placement_handle);
+            uploaded->scene.update(layout, placement, run.changed(layout_handle));
             place(run, buffers, *uploaded);
-            upload_objects(gpu, run, buffers, *uploaded, layout);
+            upload_objects(gpu, run, buffers, *uploaded, layout, placement.deformed);
             upload_top(gpu, run, buffers, uploaded->scene);
             run.set(metrics, uploaded->scene.metrics(layout));
             run.set(kept, uploaded);

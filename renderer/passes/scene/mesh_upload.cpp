@@ -5,17 +5,6 @@
 namespace candela {
 namespace {
 
-Box bounds_of(const Primitive& primitive) {
-    if (primitive.vertices.empty()) {
-        return {glm::vec3(0.0F), glm::vec3(0.0F)};
-    }
-    Box bounds;
-    for (const Vertex& vertex : primitive.vertices) {
-        bounds.grow(vertex.position);
-    }
-    return bounds;
-}
-
 glm::vec3 mean_colour_of(const Primitive& primitive) {
     glm::dvec3 sum(0.0);
     for (const Vertex& vertex : primitive.vertices) {
@@ -24,51 +13,88 @@ glm::vec3 mean_colour_of(const Primitive& primitive) {
     return glm::vec3(sum / (65535.0 * static_cast<double>(primitive.vertices.size())));
 }
 
-/// Keeps one kind of elements of the primitives, such as their vertices, in a buffer.
-template <class T>
-void keep(const Gpu& gpu, Execution& run, BufferHandle<T> buffer,
-          const std::vector<UploadedPrimitive*>& primitives, BufferRange UploadedPrimitive::*range,
-          const std::vector<T> Primitive::*content, std::uint32_t& end) {
-    std::vector<BufferRange*> ranges;
-    for (UploadedPrimitive* each : primitives) {
-        ranges.push_back(&(each->*range));
+}  // namespace
+
+Box box_around(std::span<const Vertex> vertices) {
+    if (vertices.empty()) {
+        return {glm::vec3(0.0F), glm::vec3(0.0F)};
     }
-    place_ranges(run, buffer, ranges, end);
-    upload_ranges(gpu, run, buffer, ranges, [&](std::size_t i, std::vector<T>& elements) {
-        const std::vector<T>& added = primitives[i]->primitive->*content;
+    Box box;
+    for (const Vertex& vertex : vertices) {
+        box.grow(vertex.position);
+    }
+    return box;
+}
+
+void MeshTable::begin() {
+    primitives_.begin();
+    deformed_.clear();
+}
+
+const UploadedPrimitive& MeshTable::add(const std::shared_ptr<const Mesh>& mesh, const Primitive& primitive) {
+    return primitives_[primitives_.use(&primitive, [&] {
+        return UploadedPrimitive{.mesh = mesh,
+                                 .primitive = &primitive,
+                                 .bounds = box_around(primitive.vertices),
+                                 .mean_colour = mean_colour_of(primitive),
+                                 .vertices = {.count = static_cast<std::uint32_t>(primitive.vertices.size())},
+                                 .indices = {.count = static_cast<std::uint32_t>(primitive.indices.size())}};
+    })];
+}
+
+void MeshTable::add_deformed(const SceneLayout::Drawable& drawable) {
+    const auto count = static_cast<std::uint32_t>(drawable.primitive->vertices.size());
+    deformed_.push_back({.drawable = drawable, .vertices = nullptr, .range = {.count = count}});
+}
+
+void MeshTable::upload(const Gpu& gpu, Execution& run, BufferHandle<Vertex> vertices,
+                       BufferHandle<std::uint32_t> indices, const Deformations& deformations) {
+    primitives_.drop_unused();
+    std::vector<BufferRange*> vertex_ranges;
+    std::vector<BufferRange*> index_ranges;
+    std::vector<std::span<const Vertex>> contents;
+    for (UploadedPrimitive* each : primitives_.used()) {
+        vertex_ranges.push_back(&each->vertices);
+        index_ranges.push_back(&each->indices);
+        contents.emplace_back(each->primitive->vertices);
+    }
+    for (Deformed& each : deformed_) {
+        const auto& now = deformations.at(each.drawable.item).vertices;
+        each.range.uploaded &= each.vertices == now;
+        each.vertices = now;
+        vertex_ranges.push_back(&each.range);
+        contents.push_back(vertices_of(each.drawable, deformations));
+    }
+
+    place_ranges(run, vertices, vertex_ranges, vertices_end_);
+    upload_ranges(gpu, run, vertices, vertex_ranges, [&](std::size_t i, std::vector<Vertex>& elements) {
+        elements.insert(elements.end(), contents[i].begin(), contents[i].end());
+    });
+    place_ranges(run, indices, index_ranges, indices_end_);
+    upload_ranges(gpu, run, indices, index_ranges, [&](std::size_t i, std::vector<std::uint32_t>& elements) {
+        const std::vector<std::uint32_t>& added = primitives_.used()[i]->primitive->indices;
         elements.insert(elements.end(), added.begin(), added.end());
     });
 }
 
-}  // namespace
-
-std::uint32_t MeshTable::add(const std::shared_ptr<const Mesh>& mesh, const Primitive& primitive) {
-    return primitives_.use(&primitive, [&] {
-        return UploadedPrimitive{.mesh = mesh,
-                                 .primitive = &primitive,
-                                 .bounds = bounds_of(primitive),
-                                 .mean_colour = mean_colour_of(primitive),
-                                 .vertices = {.count = static_cast<std::uint32_t>(primitive.vertices.size())},
-                                 .indices = {.count = static_cast<std::uint32_t>(primitive.indices.size())}};
-    });
-}
-
-void MeshTable::upload(const Gpu& gpu, Execution& run, BufferHandle<Vertex> vertices,
-                       BufferHandle<std::uint32_t> indices) {
-    primitives_.drop_unused();
-    keep(gpu, run, vertices, primitives_.used(), &UploadedPrimitive::vertices, &Primitive::vertices,
-         vertices_end_);
-    keep(gpu, run, indices, primitives_.used(), &UploadedPrimitive::indices, &Primitive::indices,
-         indices_end_);
-}
-
-gpu::DrawCommand MeshTable::draw(std::uint32_t number, std::uint32_t instance) const {
-    const UploadedPrimitive& primitive = primitives_[number];
-    return {.index_count = primitive.indices.count,
-            .instance_count = 1,
-            .first_index = primitive.indices.first,
-            .base_vertex = static_cast<std::int32_t>(primitive.vertices.first),
-            .base_instance = instance};
+std::vector<gpu::DrawCommand> MeshTable::draws(std::span<const SceneLayout::Drawable> drawables) {
+    std::vector<gpu::DrawCommand> draws;
+    auto deformed = deformed_.begin();
+    for (const SceneLayout::Drawable& drawable : drawables) {
+        const UploadedPrimitive& primitive = *primitives_.find(drawable.primitive);
+        std::uint32_t first_vertex = primitive.vertices.first;
+        if (deformed != deformed_.end() && deformed->drawable.item == drawable.item &&
+            deformed->drawable.primitive == drawable.primitive) {
+            first_vertex = deformed->range.first;
+            ++deformed;
+        }
+        draws.push_back({.index_count = primitive.indices.count,
+                         .instance_count = 1,
+                         .first_index = primitive.indices.first,
+                         .base_vertex = static_cast<std::int32_t>(first_vertex),
+                         .base_instance = static_cast<std::uint32_t>(draws.size())});
+    }
+    return draws;
 }
 
 }  // namespace candela

@@ -31,8 +31,13 @@ struct IdentityHash {
 ObjectHierarchy::Source source_of(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
                                   const ScenePlacement& placement) {
     const SceneGeometry::Item& item = layout.geometry.items[drawable.item];
-    return {item.entity, drawable.primitive, drawable.material, item.mirrored,
-            placement.world[drawable.item]};
+    const auto deformed = placement.deformed.find(drawable.item);
+    return {.entity = item.entity,
+            .primitive = drawable.primitive,
+            .material = drawable.material,
+            .mirrored = item.mirrored,
+            .world = placement.world[drawable.item],
+            .vertices = deformed == placement.deformed.end() ? nullptr : deformed->second.vertices};
 }
 
 double area_of(std::span<const Triangle> triangles) {
@@ -180,7 +185,8 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
             continue;
         }
         object.source = source;
-        const std::vector<Triangle> triangles = place_triangles(layout, drawable, source.world);
+        const std::vector<Triangle> triangles =
+            place_triangles(layout, drawable, vertices_of(drawable, placement.deformed), source.world);
         other_topology |= fit(object, triangles);
         object.area = area_of(triangles);
         object.triangles.count = static_cast<std::uint32_t>(triangles.size());

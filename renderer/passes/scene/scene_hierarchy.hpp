@@ -45,6 +45,7 @@ struct ObjectHierarchy {
         std::uint32_t material = 0;
         bool mirrored = false;
         glm::mat4 world{1.0F};
+        std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
         bool operator==(const Source&) const = default;
     };
     std::shared_ptr<const Mesh> mesh;  ///< keeps the primitive alive

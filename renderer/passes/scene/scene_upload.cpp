@@ -1,5 +1,6 @@
 #include "renderer/passes/scene/scene_upload.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <glm/matrix.hpp>
 #include <memory>
@@ -18,22 +19,63 @@ namespace {
 struct Gathered {
     ValueHandle<SceneGeometry> geometry;
     ValueHandle<ScenePlacement> placement;
+    ValueHandle<Deformations> deformed;
 };
+
+const Deformation* find(const Deformations& deformed, std::uint32_t item) {
+    const auto found = deformed.find(item);
+    return found == deformed.end() ? nullptr : &found->second;
+}
+
+void check_fits(const DeformedMesh::Vertices& vertices, const Mesh& mesh, Entity entity) {
+    const bool fits = std::ranges::equal(
+        vertices, mesh.primitives, {}, [](const auto& list) { return list.size(); },
+        [](const Primitive& primitive) { return primitive.vertices.size(); });
+    if (!fits) {
+        throw SceneError(
+            fmt::format("entity {}: its deformed mesh and mesh \"{}\" differ in their numbers of vertices",
+                        entity.index, mesh.name));
+    }
+}
+
+/// The item's deformation; `last` is its last one, or null.
+Deformation deformation_of(const DeformedMesh& deformed, const Deformation* last) {
+    if (last != nullptr && last->vertices == deformed.vertices) {
+        return *last;
+    }
+    Deformation deformation{deformed.vertices, {}};
+    for (const std::vector<Vertex>& vertices : *deformed.vertices) {
+        deformation.bounds.push_back(box_around(vertices));
+    }
+    return deformation;
+}
 
 Gathered add_scene_gather(FrameGraph& graph) {
     return graph.add("scene-gather", [&](Pass& pass) {
         pass.read<MeshInstance>();
+        pass.read<DeformedMesh>();
         pass.read<Transform>();
         const Gathered out{pass.write(graph.value<SceneGeometry>("scene geometry")),
-                           pass.write(graph.value<ScenePlacement>("scene placement"))};
+                           pass.update(graph.value<ScenePlacement>("scene placement")),
+                           pass.write(graph.value<Deformations>("deformations"))};
         pass.run([=](Execution& run) {
+            const ScenePlacement* const last = run.previous(out.placement);
             SceneGeometry geometry;
             ScenePlacement placement;
             for (const auto& [entity, instance] : run.world().view<MeshInstance>()) {
+                const auto item = static_cast<std::uint32_t>(geometry.items.size());
                 const glm::mat4 world = world_matrix(run.world(), entity);
-                geometry.items.push_back({entity, instance.mesh, glm::determinant(glm::mat3(world)) < 0.0F});
+                const auto* const deformed = run.world().find<DeformedMesh>(entity);
+                if (deformed != nullptr) {
+                    check_fits(*deformed->vertices, *instance.mesh, entity);
+                    const Deformation* const before = last == nullptr ? nullptr : find(last->deformed, item);
+                    placement.deformed.emplace(item, deformation_of(*deformed, before));
+                }
+                geometry.items.push_back(
+                    {entity, instance.mesh, glm::determinant(glm::mat3(world)) < 0.0F, deformed != nullptr});
                 placement.world.push_back(world);
             }
+            run.set(out.deformed, placement.deformed);
             run.set(out.geometry, std::move(geometry));
             run.set(out.placement, std::move(placement));
         });
@@ -63,13 +105,13 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
     std::vector<SceneLayout::Drawable> drawables;
     for (std::uint32_t item = 0; item < geometry.items.size(); ++item) {
         const std::shared_ptr<const Mesh>& mesh = geometry.items[item].mesh;
-        for (const Primitive& primitive : mesh->primitives) {
+        for (std::uint32_t i = 0; i < mesh->primitives.size(); ++i) {
+            const Primitive& primitive = mesh->primitives[i];
             const std::uint32_t material = store.materials.index_of(primitive.material);
-            const std::uint32_t mesh_number = store.meshes.add(mesh, primitive);
-            const UploadedPrimitive& uploaded = store.meshes[mesh_number];
+            const UploadedPrimitive& uploaded = store.meshes.add(mesh, primitive);
             const glm::vec3 albedo = store.materials.mean_albedo(material) * uploaded.mean_colour;
-            drawables.push_back({item, &primitive, material, uploaded.bounds,
-                                 std::max({albedo.r, albedo.g, albedo.b}), mesh_number});
+            drawables.push_back(
+                {item, &primitive, material, uploaded.bounds, std::max({albedo.r, albedo.g, albedo.b}), i});
         }
     }
     const auto key = [&](std::uint32_t i) {
@@ -114,9 +156,6 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
                                  .double_sided = material.double_sided,
                                  .mirrored = geometry.items[drawable.item].mirrored,
                                  .emits = emits(material)};
-        if (group.alpha == AlphaMode::blend) {
-            group.centre = (drawable.bounds.lower + drawable.bounds.upper) * 0.5F;
-        }
         if (!groups.empty() && can_share(groups.back(), group)) {
             ++groups.back().draw_count;
         } else {
@@ -127,7 +166,7 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
 }
 
 SceneLayout upload_scene(const Gpu& gpu, Execution& run, const SceneData& out, const SceneGeometry& geometry,
-                         SceneStore& store) {
+                         const Deformations& deformed, SceneStore& store) {
     store.materials.begin();
     store.meshes.begin();
     SceneLayout layout;
@@ -136,12 +175,15 @@ SceneLayout upload_scene(const Gpu& gpu, Execution& run, const SceneData& out, c
     layout.groups = group_draws(geometry, layout.drawables, store.materials);
     layout.opaque_count = count_until(layout.drawables, AlphaMode::opaque);
     layout.solid_count = count_until(layout.drawables, AlphaMode::mask);
-    store.materials.upload(run, out.materials, out.texels);
-    store.meshes.upload(gpu, run, out.vertices, out.indices);
-    layout.materials = store.materials.materials();
-    for (std::uint32_t i = 0; i < layout.drawables.size(); ++i) {
-        layout.draws.push_back(store.meshes.draw(layout.drawables[i].mesh_number, i));
+    for (const SceneLayout::Drawable& drawable : layout.drawables) {
+        if (geometry.items[drawable.item].deformed) {
+            store.meshes.add_deformed(drawable);
+        }
     }
+    store.materials.upload(run, out.materials, out.texels);
+    store.meshes.upload(gpu, run, out.vertices, out.indices, deformed);
+    layout.materials = store.materials.materials();
+    layout.draws = store.meshes.draws(layout.drawables);
 
     std::vector<std::uint32_t> instance_ids(layout.draws.size());
     std::iota(instance_ids.begin(), instance_ids.end(), 0U);
@@ -173,6 +215,16 @@ BufferHandle<T> update_upload(FrameGraph& graph, Pass& pass, std::string_view na
 
 }  // namespace
 
+std::span<const Vertex> vertices_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
+    const Deformation* const found = find(deformed, drawable.item);
+    return found == nullptr ? drawable.primitive->vertices : (*found->vertices)[drawable.index_in_mesh];
+}
+
+const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
+    const Deformation* const found = find(deformed, drawable.item);
+    return found == nullptr ? drawable.bounds : found->bounds[drawable.index_in_mesh];
+}
+
 std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {
     const auto first = std::ranges::lower_bound(groups, alpha, {}, &Group::alpha);
     const auto last = std::ranges::upper_bound(groups, alpha, {}, &Group::alpha);
@@ -184,6 +236,7 @@ SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
     SceneData scene = graph.add("scene-upload", [&](Pass& pass) {
         pass.remembers();  // where things lie in the buffers depends on what was there before
         pass.read(gathered.geometry);
+        pass.read(gathered.deformed);
         // Shared, because the store is changed in place.
         const auto kept = pass.update(graph.value<std::shared_ptr<SceneStore>>("scene store"));
         const SceneData out{.placement = gathered.placement,
@@ -198,7 +251,13 @@ SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
         pass.run([=, &gpu](Execution& run) {
             const std::shared_ptr<SceneStore> store =
                 run.has_result() ? *run.previous(kept) : std::make_shared<SceneStore>(gpu);
-            run.set(out.layout, upload_scene(gpu, run, out, run.value(gathered.geometry), *store));
+            const Deformations& deformed = run.value(gathered.deformed);
+            if (run.changed(gathered.geometry)) {
+                run.set(out.layout,
+                        upload_scene(gpu, run, out, run.value(gathered.geometry), deformed, *store));
+            } else {
+                store->meshes.upload(gpu, run, out.vertices, out.indices, deformed);
+            }
             run.set(kept, store);
         });
         return out;

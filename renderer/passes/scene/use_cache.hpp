@@ -40,6 +40,12 @@ class UseCache {
         std::erase_if(entries_, [this](const auto& entry) { return entry.second.round != round_; });
     }
 
+    /// The object's thing; null if it has none.
+    [[nodiscard]] const Thing* find(const Object* object) const {
+        const auto found = entries_.find(object);
+        return found == entries_.end() ? nullptr : &found->second.thing;
+    }
+
     /// The things in use, by number.
     [[nodiscard]] const std::vector<Thing*>& used() const { return used_; }
     [[nodiscard]] Thing& operator[](std::uint32_t number) const { return *used_[number]; }

@@ -31,27 +31,27 @@ glm::uvec3 corners(const SceneLayout& layout, const SceneLayout::Drawable& drawa
 
 }  // namespace
 
+Triangle place_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                        std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world) {
+    const glm::uvec3 corner = corners(layout, drawable, i);
+    return {transformed(world, vertices[corner.x].position), transformed(world, vertices[corner.y].position),
+            transformed(world, vertices[corner.z].position)};
+}
+
 std::vector<Triangle> place_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                                      const glm::mat4& world) {
-    const auto& vertices = drawable.primitive->vertices;
+                                      std::span<const Vertex> vertices, const glm::mat4& world) {
     const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
     std::vector<Triangle> triangles;
     triangles.reserve(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const glm::uvec3 corner = corners(layout, drawable, i);
-        triangles.push_back({transformed(world, vertices[corner.x].position),
-                             transformed(world, vertices[corner.y].position),
-                             transformed(world, vertices[corner.z].position)});
+        triangles.push_back(place_triangle(layout, drawable, vertices, i, world));
     }
     return triangles;
 }
 
-std::vector<gpu::TraceTriangle> trace_triangles(const SceneLayout& layout,
-                                                const SceneLayout::Drawable& drawable,
-                                                std::span<const Triangle> triangles,
-                                                std::span<const std::uint32_t> order,
-                                                std::uint32_t first_id) {
-    const auto& vertices = drawable.primitive->vertices;
+std::vector<gpu::TraceTriangle> trace_triangles(
+    const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::span<const Vertex> vertices,
+    std::span<const Triangle> triangles, std::span<const std::uint32_t> order, std::uint32_t first_id) {
     const bool is_masked = drawable.primitive->material->alpha_mode == AlphaMode::mask;
     std::vector<gpu::TraceTriangle> traced;
     traced.reserve(order.size());
