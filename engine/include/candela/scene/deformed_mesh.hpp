@@ -11,7 +11,8 @@ namespace candela {
 /// indices and materials stay those of the mesh. To deform the mesh further, set the component again, with
 /// other vertices; the mesh itself should stay the same, because surfels stay on its triangles then.
 struct DeformedMesh {
-    /// A list per primitive of the mesh, with as many vertices as the primitive has.
+    /// A list per primitive of the mesh, with as many vertices as the primitive has. Renderer::render throws
+    /// SceneError otherwise.
     using Vertices = std::vector<std::vector<Vertex>>;
     std::shared_ptr<const Vertices> vertices;  ///< never null; must not be changed
     bool operator==(const DeformedMesh&) const = default;
