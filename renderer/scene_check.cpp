@@ -26,6 +26,25 @@ const Fault& SceneCheck::fault_in(const MeshInstance& instance) {
     return remembered(instance.mesh, [this](const Mesh& mesh) { return fault_of(mesh, strictness_); });
 }
 
+Fault SceneCheck::fault_in(const DeformedMesh& deformed, const Mesh& mesh) {
+    Fault fault = fault_of_fit(deformed, mesh);
+    if (fault) {
+        return fault;
+    }
+    return remembered(deformed.vertices, [this](const DeformedMesh::Vertices& vertices) {
+        return fault_of(vertices, strictness_);
+    });
+}
+
+bool SceneCheck::accepts(const World& world, Entity entity, const MeshInstance& instance) {
+    if (!judge(world, entity, component_name<MeshInstance>(), fault_in(instance))) {
+        return false;
+    }
+    const auto* const deformed = world.find<DeformedMesh>(entity);
+    return deformed == nullptr ||
+           judge(world, entity, component_name<DeformedMesh>(), fault_in(*deformed, *instance.mesh));
+}
+
 Fault SceneCheck::fault_in(const Environment& environment) {
     Fault fault = fault_of(environment);
     if (fault || !environment.picture) {

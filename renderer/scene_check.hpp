@@ -23,18 +23,20 @@ class SceneCheck {
     SceneCheck(Log& log, bool checked)
         : log_(&log), strictness_(checked ? Strictness::strict : Strictness::usual) {}
 
-    /// Whether a component of the entity is rendered: a MeshInstance, an Environment or a light.
+    /// Whether a component of the entity is rendered: an Environment or a light.
     template <Component C>
     [[nodiscard]] bool accepts(const World& world, Entity entity, const C& component) {
         return judge(world, entity, component_name<C>(), fault_in(component));
     }
+    /// A MeshInstance is rendered only if the entity's DeformedMesh, if any, has no fault either.
+    [[nodiscard]] bool accepts(const World& world, Entity entity, const MeshInstance& instance);
     /// Whether anything of the entity is rendered, with this local-to-world matrix.
     [[nodiscard]] bool accepts_at(const World& world, Entity entity, const glm::mat4& matrix) {
         return judge(world, entity, {}, fault_of(matrix));
     }
 
  private:
-    /// What was found in a mesh or picture; void if that no longer exists.
+    /// What was found in a mesh, vertices or a picture; void if that no longer exists.
     struct Finding {
         std::weak_ptr<const void> of;
         Fault fault;
@@ -45,8 +47,9 @@ class SceneCheck {
         return fault_of(light);
     }
     [[nodiscard]] const Fault& fault_in(const MeshInstance& instance);
+    [[nodiscard]] Fault fault_in(const DeformedMesh& deformed, const Mesh& mesh);
     [[nodiscard]] Fault fault_in(const Environment& environment);
-    /// The fault of a mesh or picture, found by `find` if it is not known.
+    /// The fault of a mesh, vertices or a picture, found by `find` if it is not known.
     template <class T, class Find>
     [[nodiscard]] const Fault& remembered(const std::shared_ptr<const T>& of, Find find);
     void forget_destroyed();

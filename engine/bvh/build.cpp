@@ -7,19 +7,25 @@
 
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
+#include "engine/bvh/two_level.hpp"
 
 namespace candela {
 namespace {
 
 constexpr std::uint32_t bin_count = 16;
-constexpr std::uint32_t max_leaf_size = 4;
 
-// A triangle as the builder sees it. `centroid` is the centre of its box, with coordinates that are not
-// finite replaced by 0.
+// Bounds of a hierarchy.
+struct Limits {
+    std::uint32_t depth;
+    std::uint32_t leaf_size;
+};
+
+// A triangle, or a box, as the builder sees it. `centroid` is the centre of its box, with coordinates that
+// are not finite replaced by 0.
 struct Reference {
     Box box;
     glm::vec3 centroid;
-    std::uint32_t triangle;
+    std::uint32_t index;
 };
 
 // A node still to be built from references [first, first + count).
@@ -71,8 +77,7 @@ struct Split {
     float cost = std::numeric_limits<float>::infinity();
 };
 
-Reference make_reference(const Triangle& triangle, std::uint32_t index) {
-    const Box box = bounds(triangle);
+Reference make_reference(const Box& box, std::uint32_t index) {
     glm::vec3 centroid = 0.5F * box.lower + 0.5F * box.upper;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
         if (!std::isfinite(centroid[axis])) {
@@ -121,8 +126,8 @@ Split cheapest_split(std::span<const Reference> references, const Box& centroids
 }
 
 // Number of levels of median splits that divide n triangles into leaves.
-std::uint32_t median_levels(std::uint32_t n) {
-    return static_cast<std::uint32_t>(std::bit_width((n - 1) / max_leaf_size));
+std::uint32_t median_levels(std::uint32_t n, std::uint32_t leaf_size) {
+    return static_cast<std::uint32_t>(std::bit_width((n - 1) / leaf_size));
 }
 
 std::uint32_t split_at_median(std::span<Reference> references, const Box& centroids) {
@@ -130,7 +135,7 @@ std::uint32_t split_at_median(std::span<Reference> references, const Box& centro
     const glm::length_t longer = extent.y > extent.x ? 1 : 0;
     const glm::length_t axis = extent.z > extent[longer] ? 2 : longer;
     const auto before = [axis](const Reference& a, const Reference& b) {
-        return std::pair(a.centroid[axis], a.triangle) < std::pair(b.centroid[axis], b.triangle);
+        return std::pair(a.centroid[axis], a.index) < std::pair(b.centroid[axis], b.index);
     };
     const auto median = references.begin() + static_cast<std::ptrdiff_t>(references.size() / 2);
     std::nth_element(references.begin(), median, references.end(), before);
@@ -146,7 +151,8 @@ std::uint32_t split_at(const Split& split, std::span<Reference> references, cons
 
 // Reorders the references of a node so that the left child's come first, and returns their number; 0 means
 // that the node is a leaf.
-std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint32_t depth) {
+std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint32_t depth,
+                     const Limits& limits) {
     const auto n = static_cast<std::uint32_t>(references.size());
     if (n == 1) {
         return 0;
@@ -157,10 +163,10 @@ std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint3
     }
 
     // Below every node there must be enough levels left for median splits down to the leaves, so that no
-    // input exceeds bvh_max_depth.
-    const bool free_choice = depth + median_levels(n) < bvh_max_depth;
+    // input exceeds the largest depth.
+    const bool free_choice = depth + median_levels(n, limits.leaf_size) < limits.depth;
     const Split split = free_choice ? cheapest_split(references, centroids) : Split{};
-    if (n <= max_leaf_size) {
+    if (n <= limits.leaf_size) {
         // Entering an inner node costs as much as one triangle test.
         const float area = half_area(box.lower, box.upper);
         const bool pays = area + split.cost < area * static_cast<float>(n);
@@ -170,22 +176,13 @@ std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint3
     return found ? split_at(split, references, centroids) : split_at_median(references, centroids);
 }
 
-}  // namespace
-
-Bvh build_bvh(std::span<const Triangle> triangles) {
-    if (triangles.empty()) {
+Bvh build(std::vector<Reference> references, const Limits& limits) {
+    if (references.empty()) {
         return {};
     }
-    const auto n = static_cast<std::uint32_t>(triangles.size());
-    std::vector<Reference> references;
-    references.reserve(n);
-    for (std::uint32_t i = 0; i < n; ++i) {
-        references.push_back(make_reference(triangles[i], i));
-    }
-
     Bvh bvh;
     bvh.nodes.resize(1);
-    std::vector<Task> tasks{{0, 0, n, 0}};
+    std::vector<Task> tasks{{0, 0, static_cast<std::uint32_t>(references.size()), 0}};
     while (!tasks.empty()) {
         const auto [node, first, count, depth] = tasks.back();
         tasks.pop_back();
@@ -195,9 +192,10 @@ Bvh build_bvh(std::span<const Triangle> triangles) {
             box.grow(reference.box);
         }
 
-        const std::uint32_t left = divide(range, box, depth);
+        const std::uint32_t left = divide(range, box, depth, limits);
         if (left == 0) {
             bvh.nodes[node] = {box.lower, first, box.upper, count};
+            bvh.depth = std::max(bvh.depth, depth);
             continue;
         }
         const auto child = static_cast<std::uint32_t>(bvh.nodes.size());
@@ -207,11 +205,31 @@ Bvh build_bvh(std::span<const Triangle> triangles) {
         tasks.push_back({child, first, left, depth + 1});
     }
 
-    bvh.order.reserve(n);
+    bvh.order.reserve(references.size());
     for (const Reference& reference : references) {
-        bvh.order.push_back(reference.triangle);
+        bvh.order.push_back(reference.index);
     }
     return bvh;
+}
+
+}  // namespace
+
+Bvh build_bvh(std::span<const Triangle> triangles, std::uint32_t max_depth) {
+    std::vector<Reference> references;
+    references.reserve(triangles.size());
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+        references.push_back(make_reference(bounds(triangles[i]), i));
+    }
+    return build(std::move(references), {.depth = max_depth, .leaf_size = 4});
+}
+
+Bvh build_box_bvh(std::span<const Box> boxes, std::uint32_t max_depth) {
+    std::vector<Reference> references;
+    references.reserve(boxes.size());
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        references.push_back(make_reference(boxes[i], i));
+    }
+    return build(std::move(references), {.depth = max_depth, .leaf_size = 1});
 }
 
 }  // namespace candela

@@ -35,6 +35,7 @@ inline constexpr std::uint32_t bvh_max_depth = 48;
 struct Bvh {
     std::vector<BvhNode> nodes;  ///< nodes[0] is the root; at most 2n - 1; children come after their parents
     std::vector<std::uint32_t> order;  ///< a permutation of the triangles' indices, leaf by leaf
+    std::uint32_t depth = 0;           ///< edges from the root to the deepest leaf
 };
 
 /// Points origin + t·direction with t in (t_min, t_max), t_min >= 0; `direction` need not be unit length.
@@ -55,10 +56,10 @@ struct Hit {
 };
 
 /// Builds by binned surface-area heuristic (Wald, "On fast Construction of SAH-based Bounding Volume
-/// Hierarchies", 2007), falling back to median splits where that would exceed `bvh_max_depth`. Leaves hold at
+/// Hierarchies", 2007), falling back to median splits where that would exceed `max_depth`. Leaves hold at
 /// most 4 triangles. O(n log n), deterministic. A vertex that is not finite affects only the boxes that
-/// contain its triangle. There must be fewer than 2^31 triangles.
-[[nodiscard]] Bvh build_bvh(std::span<const Triangle> triangles);
+/// contain its triangle. There must be fewer than 2^31 triangles, and at most 2^(max_depth + 2).
+[[nodiscard]] Bvh build_bvh(std::span<const Triangle> triangles, std::uint32_t max_depth = bvh_max_depth);
 
 /// Fits the boxes to moved triangles and keeps the topology. `triangles` must have the same size as for
 /// build_bvh. O(n).

@@ -2,16 +2,21 @@
 
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
+#include "engine/bvh/two_level.hpp"
 
 namespace candela {
 
-void refit(Bvh& bvh, std::span<const Triangle> triangles) {
+namespace {
+
+/// `bounds_of(i)`: the box around what entry i of the order stands for.
+template <class BoundsOf>
+void fit(Bvh& bvh, BoundsOf bounds_of) {
     // Children come after their parents, so going backwards updates the children first.
     for (auto at = bvh.nodes.rbegin(); at != bvh.nodes.rend(); ++at) {
         BvhNode& node = *at;
         Box box;
         for (std::uint32_t i = 0; i < node.count; ++i) {
-            box.grow(bounds(triangles[bvh.order[node.first + i]]));
+            box.grow(bounds_of(bvh.order[node.first + i]));
         }
         if (node.count == 0) {
             const BvhNode& left = bvh.nodes[node.first];
@@ -21,6 +26,16 @@ void refit(Bvh& bvh, std::span<const Triangle> triangles) {
         node.lower = box.lower;
         node.upper = box.upper;
     }
+}
+
+}  // namespace
+
+void refit(Bvh& bvh, std::span<const Triangle> triangles) {
+    fit(bvh, [&](std::uint32_t i) { return bounds(triangles[i]); });
+}
+
+void refit_box_bvh(Bvh& bvh, std::span<const Box> boxes) {
+    fit(bvh, [&](std::uint32_t i) { return boxes[i]; });
 }
 
 float sah_cost(const Bvh& bvh) {

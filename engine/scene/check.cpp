@@ -116,6 +116,15 @@ Fault fault_of(const Vertex& vertex, Strictness strictness) {
     return {};
 }
 
+Fault fault_of(const std::vector<Vertex>& vertices, Strictness strictness) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (const Fault fault = fault_of(vertices[i], strictness)) {
+            return fmt::format("vertex {}: {}", i, *fault);
+        }
+    }
+    return {};
+}
+
 Fault fault_of(const Primitive& primitive, Strictness strictness) {
     if (!primitive.material) {
         return "it has no material";
@@ -130,12 +139,7 @@ Fault fault_of(const Primitive& primitive, Strictness strictness) {
     if (largest != primitive.indices.end() && *largest >= primitive.vertices.size()) {
         return fmt::format("index {}, but there are {} vertices", *largest, primitive.vertices.size());
     }
-    for (std::size_t i = 0; i < primitive.vertices.size(); ++i) {
-        if (const Fault fault = fault_of(primitive.vertices[i], strictness)) {
-            return fmt::format("vertex {}: {}", i, *fault);
-        }
-    }
-    return {};
+    return fault_of(primitive.vertices, strictness);
 }
 
 Fault fault_of_lens(const Camera& camera) {
@@ -191,6 +195,33 @@ Fault fault_of(const Mesh& mesh, Strictness strictness) {
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         if (const Fault fault = fault_of(mesh.primitives[i], strictness)) {
             return fmt::format("primitive {} of mesh \"{}\": {}", i, mesh.name, *fault);
+        }
+    }
+    return {};
+}
+
+Fault fault_of(const DeformedMesh::Vertices& vertices, Strictness strictness) {
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (const Fault fault = fault_of(vertices[i], strictness)) {
+            return fmt::format("primitive {}: {}", i, *fault);
+        }
+    }
+    return {};
+}
+
+Fault fault_of_fit(const DeformedMesh& deformed, const Mesh& mesh) {
+    if (!deformed.vertices) {
+        return "there are no vertices";
+    }
+    if (deformed.vertices->size() != mesh.primitives.size()) {
+        return fmt::format("{} lists of vertices, but mesh \"{}\" has {} primitives",
+                           deformed.vertices->size(), mesh.name, mesh.primitives.size());
+    }
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        const std::size_t count = (*deformed.vertices)[i].size();
+        if (count != mesh.primitives[i].vertices.size()) {
+            return fmt::format("{} vertices, but primitive {} of mesh \"{}\" has {}", count, i, mesh.name,
+                               mesh.primitives[i].vertices.size());
         }
     }
     return {};

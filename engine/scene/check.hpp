@@ -8,6 +8,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 
 namespace candela {
 
@@ -22,6 +23,10 @@ enum class Strictness : std::uint8_t {
 
 /// Reads all vertices and indices; the materials must not change as long as the mesh exists.
 [[nodiscard]] Fault fault_of(const Mesh& mesh, Strictness strictness);
+/// Reads all vertices.
+[[nodiscard]] Fault fault_of(const DeformedMesh::Vertices& vertices, Strictness strictness);
+/// Whether there are as many vertices as `mesh` has.
+[[nodiscard]] Fault fault_of_fit(const DeformedMesh& deformed, const Mesh& mesh);
 /// Reads all texels.
 [[nodiscard]] Fault fault_of(const SkyPicture& picture);
 

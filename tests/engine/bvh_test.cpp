@@ -1,4 +1,4 @@
-#include "engine/bvh/bvh.hpp"
+#include "engine/bvh/two_level.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,8 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 #include <glm/geometric.hpp>
+
+#include "tests/seed.hpp"
 
 namespace {
 
@@ -143,22 +145,30 @@ Shape check_layout(const Bvh& bvh, std::size_t n) {
           static_cast<std::ptrdiff_t>(bvh.nodes.size()));
     CHECK(std::count(order_uses.begin(), order_uses.end(), 1U) == static_cast<std::ptrdiff_t>(n));
     CHECK(shape.depth <= bvh_max_depth);
+    CHECK(shape.depth == bvh.depth);
     CHECK(shape.largest_leaf <= 4);
     return shape;
+}
+
+// Number of the node's triangles or children that are not in its box.
+std::size_t count_escaped(const Bvh& bvh, const BvhNode& node, std::span<const Triangle> triangles) {
+    std::size_t escaped = 0;
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+        escaped += contains(node, triangles[bvh.order[node.first + i]]) ? 0 : 1;
+    }
+    if (node.count > 0) {
+        return escaped;
+    }
+    for (const std::uint32_t child : {node.first, node.first + 1}) {
+        escaped += contains(node, bvh.nodes[child].lower, bvh.nodes[child].upper) ? 0 : 1;
+    }
+    return escaped;
 }
 
 void check_boxes(const Bvh& bvh, std::span<const Triangle> triangles) {
     std::size_t escaped = 0;
     for (const BvhNode& node : bvh.nodes) {
-        for (std::uint32_t i = 0; i < node.count; ++i) {
-            escaped += contains(node, triangles[bvh.order[node.first + i]]) ? 0 : 1;
-        }
-        if (node.count > 0) {
-            continue;
-        }
-        for (const std::uint32_t child : {node.first, node.first + 1}) {
-            escaped += contains(node, bvh.nodes[child].lower, bvh.nodes[child].upper) ? 0 : 1;
-        }
+        escaped += count_escaped(bvh, node, triangles);
     }
     CHECK(escaped == 0);
 }
@@ -400,6 +410,171 @@ TEST_CASE("bvh: the cost of a split follows from the surface areas of its boxes"
     // each leaf costs its one triangle times 1/21.
     const Triangles triangles{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 10}, {1, 0, 10}, {0, 1, 10}}};
     CHECK(sah_cost(build_bvh(triangles)) == doctest::Approx(1.0 + 2.0 / 21.0));
+}
+
+/// Objects with hierarchies of their own under one top, as the renderer keeps them.
+class Objects {
+ public:
+    void add(Triangles triangles) {
+        objects_.push_back({std::move(triangles), {}});
+        objects_.back().bvh = build_bvh(objects_.back().triangles, object_max_depth);
+        rebuild();
+    }
+    void remove(std::size_t i) {
+        objects_.erase(objects_.begin() + static_cast<std::ptrdiff_t>(i));
+        rebuild();
+    }
+    template <class Change>
+    void move(std::size_t i, Change change) {
+        for (Triangle& t : objects_[i].triangles) {
+            t = {change(t.a), change(t.b), change(t.c)};
+        }
+        refit(objects_[i].bvh, objects_[i].triangles);
+        refit_top(top_, placed_objects());
+    }
+    void rebuild() { top_ = build_top(placed_objects(), most_opened); }
+
+    [[nodiscard]] std::size_t size() const { return objects_.size(); }
+    [[nodiscard]] Triangles triangles() const {
+        Triangles all;
+        for (const Object& object : objects_) {
+            all.insert(all.end(), object.triangles.begin(), object.triangles.end());
+        }
+        return all;
+    }
+
+    /// All as one hierarchy over `triangles`, with the objects' nodes in reverse order and gaps in between.
+    [[nodiscard]] Bvh joint() const {
+        const std::vector<PlacedBvh> objects = placed_objects();
+        Bvh bvh{joint_nodes(top_, objects), {}};
+        std::uint32_t first_index = 0;
+        for (std::size_t i = 0; i < objects_.size(); ++i) {
+            const Bvh& own = objects_[i].bvh;
+            for (std::size_t n = 1; n < own.nodes.size(); ++n) {
+                const std::size_t at = objects[i].first_node + n - 1;
+                bvh.nodes.resize(std::max(bvh.nodes.size(), at + 1));
+                bvh.nodes[at] = placed(objects[i], own.nodes[n]);
+            }
+            for (std::size_t n = 0; n < own.order.size(); ++n) {
+                const std::size_t at = objects[i].first_triangle + n;
+                bvh.order.resize(std::max(bvh.order.size(), at + 1));
+                bvh.order[at] = first_index + own.order[n];
+            }
+            first_index += static_cast<std::uint32_t>(own.order.size());
+        }
+        return bvh;
+    }
+
+    std::uint32_t most_opened = 1024;
+
+ private:
+    struct Object {
+        Triangles triangles;
+        Bvh bvh;
+    };
+
+    [[nodiscard]] std::vector<PlacedBvh> placed_objects() const {
+        std::vector<PlacedBvh> placed(objects_.size());
+        auto node = static_cast<std::uint32_t>(top_.bvh.nodes.size());
+        std::uint32_t triangle = 3;
+        for (std::size_t i = objects_.size(); i-- > 0;) {
+            placed[i] = {&objects_[i].bvh, node, triangle};
+            node += static_cast<std::uint32_t>(objects_[i].bvh.nodes.size()) + 5;
+            triangle += static_cast<std::uint32_t>(objects_[i].bvh.order.size()) + 3;
+        }
+        return placed;
+    }
+
+    std::vector<Object> objects_;
+    TopBvh top_;
+};
+
+// From the root, every triangle is reached once, in boxes that contain it, and no leaf is too deep for the
+// stack. Returns the depth.
+std::uint32_t check_joint(const Bvh& bvh, std::span<const Triangle> triangles) {
+    std::size_t escaped = 0;
+    std::vector<std::uint32_t> found;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> waiting;  // nodes and their depths
+    std::uint32_t deepest = 0;
+    if (!bvh.nodes.empty()) {
+        waiting.emplace_back(0, 0);
+    }
+    while (!waiting.empty()) {
+        const auto [index, depth] = waiting.back();
+        waiting.pop_back();
+        const BvhNode& node = bvh.nodes.at(index);
+        deepest = std::max(deepest, depth);
+        escaped += count_escaped(bvh, node, triangles);
+        for (std::uint32_t i = 0; i < node.count; ++i) {
+            found.push_back(bvh.order.at(node.first + i));
+        }
+        if (node.count == 0) {
+            waiting.emplace_back(node.first, depth + 1);
+            waiting.emplace_back(node.first + 1, depth + 1);
+        }
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::uint32_t> all(triangles.size());
+    std::iota(all.begin(), all.end(), 0U);
+    CHECK(found == all);
+    CHECK(escaped == 0);
+    CHECK(deepest <= bvh_max_depth);
+    return deepest;
+}
+
+TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, additions and removals") {
+    Random random(test_seed(13));
+    for (const std::uint32_t most_opened : {0U, 5U, 1024U}) {
+        CAPTURE(most_opened);
+        Objects objects;
+        objects.most_opened = most_opened;
+        for (int edit = 0; edit < 60; ++edit) {
+            const auto any =
+                static_cast<std::size_t>(random.number(0, 0.999F) * static_cast<float>(objects.size()));
+            const float choice = random.number(0, 1);
+            if (objects.size() == 0 || choice < 0.4F) {
+                // From none to a few hundred triangles, tiny or across the whole scene.
+                const auto n = static_cast<std::size_t>(std::exp2(random.number(-1, 8)));
+                objects.add(soup(n, random.number(0.01F, 1.0F), random));
+            } else if (choice < 0.6F) {
+                objects.remove(any);
+            } else {
+                const glm::vec3 by = random.point(0.5F);
+                const float scale = random.number(-1.5F, 1.5F);
+                objects.move(any, [&](glm::vec3 p) { return scale * glm::vec3(p.y, p.z, p.x) + by; });
+            }
+            const Triangles triangles = objects.triangles();
+            const Bvh joint = objects.joint();
+            check_joint(joint, triangles);
+            CHECK(disagreements(joint, triangles, 100, random) == 0);
+        }
+    }
+}
+
+TEST_CASE("bvh: two levels: of objects in the same place the first one is hit") {
+    Random random(10);
+    const Triangles originals = soup(40, 0.4F, random);
+    Objects objects;
+    for (int copy = 0; copy < 5; ++copy) {
+        objects.add(originals);
+    }
+    const Triangles triangles = objects.triangles();
+    CHECK(disagreements(objects.joint(), triangles, 2000, random) == 0);
+}
+
+TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
+    CHECK(build_bvh(geometric_progression(1), object_max_depth).depth == object_max_depth);
+    Objects objects;
+    for (int i = 0; i < 4; ++i) {
+        objects.add(geometric_progression(1));
+    }
+    check_joint(objects.joint(), objects.triangles());
+    // As deep as possible in both levels: single triangles in the same progression, over the objects.
+    objects.most_opened = 0;
+    for (const Triangle& triangle : geometric_progression(1)) {
+        objects.add({triangle});
+    }
+    CHECK(check_joint(objects.joint(), objects.triangles()) > object_max_depth);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <candela/renderer.hpp>
 #include <candela/renderer_options.hpp>
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <candela/scene/sky_picture.hpp>

@@ -15,6 +15,7 @@
 #include "renderer/gl/graph_backend.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "tests/renderer/scene_builder.hpp"
+#include "tests/seed.hpp"
 
 using namespace candela;
 
@@ -27,10 +28,12 @@ struct TestRay {
     float pad0 = 0.0F;
 };
 
-/// A hit on the GPU: distance, and the triangle in world space; infinity for none.
+/// A hit on the GPU: distance, and the triangle in world space, with the colour of its first vertex as in
+/// gpu::TraceTriangle; infinity for none.
 struct GpuHit {
     float t = std::numeric_limits<float>::infinity();
     Triangle triangle{};
+    std::uint32_t colour = 0;
 };
 
 std::string trace_rays_source() {
@@ -78,37 +81,36 @@ std::vector<TestRay> random_rays(std::size_t count, glm::vec3 centre, float reac
     return rays;
 }
 
-class TraceRays : public GlFixture {
- protected:
-    /// The hits of the compute tracer in the world, as uploaded by the renderer's own passes.
-    std::vector<GpuHit> trace(const World& world, const std::vector<TestRay>& rays) {
-        const Shaders shaders;
-        Gpu gpu(context->get_proc(), shaders.library(), {.debug_output = true});
-        gl::GraphBackend backend(gpu.device());
-        GraphRuntime runtime(backend);
-        const gl::Program& program = gpu.program({"trace_rays.comp"});
-        const gl::Buffer ray_buffer(gpu.device(), "rays", rays);
-        const gl::Buffer hit_buffer(gpu.device(), "hits", rays.size() * sizeof(glm::vec2));
-
+/// Traces rays on the GPU through worlds, each uploaded by the renderer's own passes as a change of the last
+/// one.
+class Tracer {
+ public:
+    explicit Tracer(const gl::GetProc& get_proc)
+        : gpu_(get_proc, shaders_.library(), {.debug_output = true}) {
         FrameGraph graph;
-        const SceneData scene = add_scene_upload(graph, gpu);
-        const Tracing tracing = add_bvh(graph, gpu, scene);
-        std::vector<gpu::TraceTriangle> triangles;
+        const SceneData scene = add_scene_upload(graph, gpu_);
+        const Tracing tracing = add_bvh(graph, gpu_, scene);
         graph.add("trace-rays", [&](Pass& pass) {
             read_tracing(pass, tracing);
             pass.side_effect();
-            pass.run([&](Execution& run) {
-                ray_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_LAST + 1);
-                hit_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_LAST + 2);
-                program.set("ray_count", static_cast<std::uint32_t>(rays.size()));
-                program.use();
-                gpu.gl().DispatchCompute(static_cast<GLuint>(rays.size() + 31) / 32, 1, 1);
-                gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-                triangles = backend.buffer(run.object(tracing.triangles)).download<gpu::TraceTriangle>();
+            pass.run([this, tracing](Execution& run) {
+                program_.set("ray_count", ray_count_);
+                program_.use();
+                gpu_.gl().DispatchCompute(static_cast<GLuint>(ray_count_ + 31) / 32, 1, 1);
+                gpu_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+                triangles_ = backend_.buffer(run.object(tracing.triangles)).download<gpu::TraceTriangle>();
             });
         });
-        runtime.switch_to(compile(std::move(graph)).take());
-        runtime.run(world);
+        runtime_.switch_to(compile(std::move(graph)).take());
+    }
+
+    [[nodiscard]] std::vector<GpuHit> trace(const World& world, const std::vector<TestRay>& rays) {
+        const gl::Buffer ray_buffer(gpu_.device(), "rays", rays);
+        const gl::Buffer hit_buffer(gpu_.device(), "hits", rays.size() * sizeof(glm::vec2));
+        ray_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_LAST + 1);
+        hit_buffer.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_LAST + 2);
+        ray_count_ = static_cast<std::uint32_t>(rays.size());
+        runtime_.run(world);
 
         std::vector<GpuHit> hits;
         for (const glm::vec2 hit : hit_buffer.download<glm::vec2>()) {
@@ -117,17 +119,30 @@ class TraceRays : public GlFixture {
                 hits.emplace_back();
                 continue;
             }
-            const gpu::TraceTriangle& t = triangles.at(index);
-            hits.push_back({hit.x, {t.a, t.a + t.edge_ab, t.a + t.edge_ac}});
+            const gpu::TraceTriangle& t = triangles_.at(index);
+            hits.push_back({hit.x, {t.a, t.a + t.edge_ab, t.a + t.edge_ac}, t.colour_a});
         }
         return hits;
     }
 
-    /// Compares them with the hierarchy on the CPU, built from the world itself.
-    void check(const World& world, const std::vector<TestRay>& rays, double least_hit_share) {
+ private:
+    Shaders shaders_;
+    Gpu gpu_;
+    gl::GraphBackend backend_{gpu_.device()};
+    GraphRuntime runtime_{backend_};
+    const gl::Program& program_{gpu_.program({"trace_rays.comp"})};
+    std::uint32_t ray_count_ = 0;
+    std::vector<gpu::TraceTriangle> triangles_;
+};
+
+class TraceRays : public GlFixture {
+ protected:
+    /// Compares the hits with the hierarchy on the CPU, built from the world itself.
+    static void check(Tracer& tracer, const World& world, const std::vector<TestRay>& rays,
+                      double least_hit_share) {
         const std::vector<Triangle> triangles = world_triangles(world);
         const Bvh bvh = build_bvh(triangles);
-        const std::vector<GpuHit> hits = trace(world, rays);
+        const std::vector<GpuHit> hits = tracer.trace(world, rays);
         std::size_t hit_count = 0;
         std::size_t ties = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -151,26 +166,28 @@ class TraceRays : public GlFixture {
         CHECK(static_cast<double>(hit_count) > least_hit_share * static_cast<double>(rays.size()));
         CHECK(ties * 100 < rays.size());
     }
+
+    Tracer tracer{context->get_proc()};
 };
 
 }  // namespace
 
 TEST_SUITE("compute tracer") {
     TEST_CASE_FIXTURE(TraceRays, "hits in the Cornell box equal those on the CPU") {
-        check(cornell_box().world, random_rays(20'000, {0, 1, 0}, 0.95F), 0.7);
+        check(tracer, cornell_box().world, random_rays(20'000, {0, 1, 0}, 0.95F), 0.7);
     }
 
     TEST_CASE_FIXTURE(TraceRays, "hits among 100,000 triangles equal those on the CPU") {
         World world;
         add(world, Transform{}, MeshInstance{soup(100'000, 3)});
-        check(world, random_rays(10'000, {0, 0, 0}, 1.2F), 0.5);
+        check(tracer, world, random_rays(10'000, {0, 0, 0}, 1.2F), 0.5);
     }
 
     TEST_CASE_FIXTURE(TraceRays, "hits with one triangle, and with none, equal those on the CPU") {
         World world;
-        check(world, random_rays(100, {0, 0, 0}, 1.0F), -1.0);
+        check(tracer, world, random_rays(100, {0, 0, 0}, 1.0F), -1.0);
         add(world, Transform{}, MeshInstance{soup(1, 3)});
-        check(world, random_rays(1000, {0, 0, 0}, 1.0F), -1.0);
+        check(tracer, world, random_rays(1000, {0, 0, 0}, 1.0F), -1.0);
     }
 
     TEST_CASE_FIXTURE(TraceRays, "hits of mirrored and sheared instances equal brute force") {
@@ -179,7 +196,7 @@ TEST_SUITE("compute tracer") {
         add(world, Transform{.rotation = glm::angleAxis(0.7F, glm::vec3(0, 0, 1)), .parent = parent},
             MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
         const auto rays = random_rays(2000, {0, 0, 0}, 0.3F);
-        const auto hits = trace(world, rays);
+        const auto hits = tracer.trace(world, rays);
         const auto triangles = world_triangles(world);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             // Two-sided brute force over the world's own triangles: mirrored ones have another order of
@@ -197,6 +214,83 @@ TEST_SUITE("compute tracer") {
             // Counter-clockwise as seen from the front, which faces inwards.
             const Triangle& t = hits[i].triangle;
             CHECK(glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a) < 0.0F);
+        }
+    }
+
+    TEST_CASE_FIXTURE(TraceRays,
+                      "hits equal those on the CPU after each of many additions, moves and removals") {
+        std::mt19937 random(test_seed(12));
+        const auto number = [&](float lower, float upper) {
+            return std::uniform_real_distribution<float>(lower, upper)(random);
+        };
+        const auto anywhere = [&] {
+            const float x = number(-0.7F, 0.7F), y = number(-0.7F, 0.7F), angle = number(0.0F, 6.0F);
+            return Transform{.translation = {x, y, number(-0.7F, 0.7F)},
+                             .rotation = glm::angleAxis(angle, glm::normalize(glm::vec3(1, x, y))),
+                             .scale = {number(0.1F, 0.8F), 0.4F, 0.3F}};
+        };
+        World world;
+        std::vector<Entity> soups;
+        const auto any = [&] { return soups[random() % soups.size()]; };
+        const auto rays = random_rays(500, {0, 0, 0}, 1.0F);
+        for (std::uint32_t edit = 0; edit < 60; ++edit) {
+            CAPTURE(edit);
+            // Sizes from a leaf to more triangles than all others have together.
+            const std::size_t triangles = std::size_t{1} << (random() % 13);
+            switch (soups.empty() ? 0 : random() % 5) {
+                case 0:
+                case 1:
+                    soups.push_back(add(world, anywhere(), MeshInstance{soup(triangles, edit, 0.3F)}));
+                    break;
+                case 2: {
+                    const auto gone = soups.begin() + static_cast<std::ptrdiff_t>(random() % soups.size());
+                    world.destroy(*gone);
+                    soups.erase(gone);
+                    break;
+                }
+                default:
+                    world.set(any(), anywhere());
+                    if (edit % 2 == 0) world.set(any(), anywhere());
+            }
+            check(tracer, world, rays, -1.0);
+        }
+    }
+
+    TEST_CASE_FIXTURE(TraceRays,
+                      "of surfaces in one place the same one is hit, whatever came and went before") {
+        // Each of another colour.
+        const auto sheet = [](std::uint32_t number) {
+            Mesh mesh = *soup(50, 1, 0.5F);
+            for (Vertex& vertex : mesh.primitives.front().vertices) {
+                vertex.colour = {number << 10U, 0, 0, 65535};
+            }
+            return std::make_shared<const Mesh>(std::move(mesh));
+        };
+        std::mt19937 random(test_seed(13));
+        World world;
+        std::vector<Entity> sheets;
+        const auto rays = random_rays(50, {0, 0, 0}, 1.0F);
+        for (std::uint32_t edit = 0; edit < 30; ++edit) {
+            CAPTURE(edit);
+            if (sheets.size() < 2 || random() % 2 == 0) {
+                sheets.push_back(add(world, MeshInstance{sheet(edit)}));
+            } else if (random() % 2 == 0) {
+                // Moves the last component of the pool into the gap.
+                world.destroy(sheets.front());
+                sheets.erase(sheets.begin());
+            } else {
+                world.set(sheets[random() % sheets.size()], MeshInstance{sheet(edit)});
+            }
+            Tracer fresh(context->get_proc());
+            const auto hits = tracer.trace(world, rays);
+            const auto wanted = fresh.trace(world, rays);
+            std::size_t count = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                CHECK(hits[i].t == wanted[i].t);
+                CHECK(hits[i].colour == wanted[i].colour);
+                count += std::isfinite(hits[i].t) ? 1 : 0;
+            }
+            CHECK(count > 0);
         }
     }
 }

@@ -178,6 +178,13 @@ void add_moves(CLI::App& app, int& status) {
     part.callback([=, &status] { status = moves(*study); });
 }
 
+void add_edits(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("edits", "what a frame costs after meshes came, went or moved");
+    const auto study = std::make_shared<EditsStudy>();
+    part.add_option("--rounds", study->rounds, "of two edits each")->check(CLI::Range(1, 1000));
+    part.callback([=, &status] { status = edits(*study); });
+}
+
 void add_compare(CLI::App& app) {
     CLI::App& part =
         *app.add_subcommand("compare", "error of a picture against its reference, by every measure");
@@ -206,6 +213,7 @@ int run(int count, char** arguments) {
     add_measure(app, status);
     add_animate(app, status);
     add_moves(app, status);
+    add_edits(app, status);
     add_compare(app);
     try {
         app.parse(count, arguments);

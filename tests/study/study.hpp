@@ -102,4 +102,11 @@ struct MovesStudy {
 /// before shading, of the others for VPLs.
 int moves(const MovesStudy& study);
 
+/// The input of `edits`.
+struct EditsStudy {
+    int rounds = 5;  ///< of two edits each
+};
+/// Prints the CPU time and the uploaded bytes of frames in which meshes come, go or move.
+int edits(const EditsStudy& study);
+
 }  // namespace candela::study

@@ -27,7 +27,7 @@ from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
 SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
-PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves"]
+PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits"]
 
 
 def names(text: str) -> list[str]:
@@ -105,6 +105,7 @@ def run_program_part(part: str) -> None:
         "shading": [["shading", cornell]],
         "gather": [["gather", scenes.find(name, SCENES)] for name in GATHER_SCENES],
         "moves": [["moves"]],
+        "edits": [["edits"]],
         "paths": [
             ["paths", cornell, "--vpls", "256"],
             ["paths", hall, "--rounds", "3"],

@@ -1,75 +1,98 @@
 #include "renderer/passes/scene/bvh.hpp"
 
-#include <algorithm>
-#include <glm/geometric.hpp>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/passes/scene/buffer_ranges.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 #include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {
 
-constexpr float rebuild_above = 1.5F;  // times the SAH cost at the last build
+/// The hierarchy, and where its parts lie in the buffers: the nodes of the top come first.
+struct UploadedHierarchy {
+    SceneHierarchy scene;
+    std::uint32_t top_room = 0;   // nodes
+    std::uint32_t nodes_end = 0;  // see place_ranges
+    std::uint32_t triangles_end = 0;
+};
 
-std::vector<const Primitive*> primitives_of(const SceneLayout& layout) {
-    std::vector<const Primitive*> primitives;
-    for (const SceneLayout::Drawable& drawable : layout.solids()) {
-        primitives.push_back(drawable.primitive);
+struct HierarchyBuffers {
+    BufferHandle<gpu::BvhNode> nodes;
+    BufferHandle<gpu::TraceTriangle> triangles;
+};
+
+std::vector<BufferRange*> ranges_of(std::vector<ObjectHierarchy>& objects,
+                                    BufferRange ObjectHierarchy::*range) {
+    std::vector<BufferRange*> ranges;
+    ranges.reserve(objects.size());
+    for (ObjectHierarchy& object : objects) {
+        ranges.push_back(&(object.*range));
     }
-    return primitives;
+    return ranges;
 }
 
-SceneHierarchy build(const SceneLayout& layout, std::span<const Triangle> triangles) {
-    SceneHierarchy hierarchy{build_bvh(triangles), primitives_of(layout), 0.0F};
-    hierarchy.built_cost = sah_cost(hierarchy.bvh);
-    return hierarchy;
+/// Assigns places in the buffers to what has none.
+void place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded) {
+    std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
+    const auto top_size = static_cast<std::uint32_t>(uploaded.scene.top.bvh.nodes.size());
+    if (top_size > uploaded.top_room) {
+        uploaded.top_room = uploaded.nodes_end = top_size + top_size / 4;
+        for (ObjectHierarchy& object : objects) {
+            object.nodes = {.count = object.nodes.count};
+        }
+    }
+    const bool all_moved = place_ranges(
+        run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles), uploaded.triangles_end);
+    for (ObjectHierarchy& object : objects) {
+        object.nodes.uploaded &= !all_moved;  // they contain the places of triangles
+    }
+    place_ranges(run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes), uploaded.nodes_end,
+                 uploaded.top_room);
 }
 
-SceneHierarchy update(const SceneHierarchy* previous, const SceneLayout& layout,
-                      std::span<const Triangle> triangles) {
-    const bool same_topology = previous != nullptr && previous->built_for == primitives_of(layout);
-    if (!same_topology) {
-        return build(layout, triangles);
-    }
-    SceneHierarchy refitted = *previous;
-    refit(refitted.bvh, triangles);
-    const bool degraded = sah_cost(refitted.bvh) > rebuild_above * refitted.built_cost;
-    return degraded ? build(layout, triangles) : refitted;
-}
-
-SceneMetrics measure(const SceneLayout& layout, const WorldTriangles& world) {
-    SceneMetrics metrics;
-    metrics.triangles = world.triangles.size();
-    if (world.triangles.empty()) {
-        return metrics;
-    }
-    metrics.lower = metrics.upper = world.triangles.front().a;
-    double area_sum = 0.0;
-    double reflecting_sum = 0.0;
-    for (std::size_t i = 0; i < world.triangles.size(); ++i) {
-        const Triangle& t = world.triangles[i];
-        metrics.lower = glm::min(metrics.lower, glm::min(t.a, glm::min(t.b, t.c)));
-        metrics.upper = glm::max(metrics.upper, glm::max(t.a, glm::max(t.b, t.c)));
-        const double area = 0.5 * static_cast<double>(glm::length(glm::cross(t.b - t.a, t.c - t.a)));
-        area_sum += area;
-        reflecting_sum += area * static_cast<double>(layout.drawables[world.origins[i].drawable].albedo);
-    }
-    metrics.area = static_cast<float>(area_sum);
-    metrics.mean_albedo = area_sum > 0.0 ? static_cast<float>(reflecting_sum / area_sum) : 0.0F;
-    return metrics;
+void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
+                    UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed) {
+    std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
+    const std::vector<PlacedBvh> placed_bvhs = uploaded.scene.placed_objects();
+    upload_ranges(gpu, run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes),
+                  [&](std::size_t i, std::vector<gpu::BvhNode>& nodes) {
+                      const std::span all(objects[i].bvh.nodes);
+                      for (const BvhNode& node : all.last(objects[i].nodes.count)) {
+                          nodes.push_back(placed(placed_bvhs[i], node));
+                      }
+                  });
+    upload_ranges(gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
+                  [&](std::size_t i, std::vector<gpu::TraceTriangle>& triangles) {
+                      const ObjectHierarchy& object = objects[i];
+                      const SceneLayout::Drawable& drawable = layout.drawables[i];
+                      const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
+                      const std::vector<gpu::TraceTriangle> traced =
+                          trace_triangles(layout, drawable, vertices,
+                                          place_triangles(layout, drawable, vertices, object.source.world),
+                                          object.bvh.order, object.first_id);
+                      triangles.insert(triangles.end(), traced.begin(), traced.end());
+                  });
 }
 
 /// An empty scene gets one leaf with a triangle without area, which no ray hits.
-void upload_hierarchy(const Gpu& gpu, Execution& run, const Tracing& out, const Bvh& bvh,
-                      const std::vector<gpu::TraceTriangle>& triangles) {
-    if (bvh.nodes.empty()) {
-        upload_one(gpu, run, out.nodes, gpu::BvhNode{.lower = {}, .first = 0, .upper = {}, .count = 1});
-        upload_one(gpu, run, out.triangles, gpu::TraceTriangle{});
+void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
+                const SceneHierarchy& scene) {
+    const std::vector<gpu::BvhNode> nodes = joint_nodes(scene.top, scene.placed_objects());
+    if (nodes.empty()) {
+        upload_one(gpu, run, buffers.nodes, gpu::BvhNode{.lower = {}, .first = 0, .upper = {}, .count = 1});
+        upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
         return;
     }
-    upload<gpu::BvhNode>(gpu, run, out.nodes, bvh.nodes);
-    upload<gpu::TraceTriangle>(gpu, run, out.triangles, triangles);
+    upload<gpu::BvhNode>(gpu, run, buffers.nodes, nodes);
+}
+
+template <class T>
+BufferHandle<T> updated_buffer(FrameGraph& graph, Pass& pass, std::string_view name) {
+    return pass.update(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
 }
 
 }  // namespace
@@ -79,24 +102,28 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
         pass.remembers();  // a tree refitted to moved triangles differs from a new one
         pass.read(scene.layout);
         pass.read(scene.placement);
-        const auto hierarchy = pass.update(graph.value<SceneHierarchy>("hierarchy"));
-        const Tracing out{
-            .nodes =
-                pass.write(graph.buffer<gpu::BvhNode>("bvh nodes", 1, Lifetime::persistent), Usage::copy),
-            .triangles = pass.write(graph.buffer<gpu::TraceTriangle>("triangles", 1, Lifetime::persistent),
-                                    Usage::copy),
-            .materials = scene.materials,
-            .texels = scene.texels,
-            .metrics = pass.write(graph.value<SceneMetrics>("scene metrics"))};
+        // Shared, because the hierarchy is changed in place.
+        const auto kept = pass.update(graph.value<std::shared_ptr<UploadedHierarchy>>("hierarchy"));
+        const HierarchyBuffers buffers{updated_buffer<gpu::BvhNode>(graph, pass, "bvh nodes"),
+                                       updated_buffer<gpu::TraceTriangle>(graph, pass, "triangles")};
+        const auto metrics = pass.write(graph.value<SceneMetrics>("scene metrics"));
         pass.run([=, &gpu, layout_handle = scene.layout, placement_handle = scene.placement](Execution& run) {
             const SceneLayout& layout = run.value(layout_handle);
-            const WorldTriangles world = place_triangles(layout, run.value(placement_handle));
-            SceneHierarchy updated = update(run.previous(hierarchy), layout, world.triangles);
-            upload_hierarchy(gpu, run, out, updated.bvh, trace_triangles(layout, world, updated.bvh.order));
-            run.set(out.metrics, measure(layout, world));
-            run.set(hierarchy, std::move(updated));
+            const std::shared_ptr<UploadedHierarchy> uploaded =
+                run.has_result() ? *run.previous(kept) : std::make_shared<UploadedHierarchy>();
+            const ScenePlacement& placement = run.value(placement_handle);
+            uploaded->scene.update(layout, placement, run.changed(layout_handle));
+            place(run, buffers, *uploaded);
+            upload_objects(gpu, run, buffers, *uploaded, layout, placement.deformed);
+            upload_top(gpu, run, buffers, uploaded->scene);
+            run.set(metrics, uploaded->scene.metrics(layout));
+            run.set(kept, uploaded);
         });
-        return out;
+        return Tracing{.nodes = buffers.nodes,
+                       .triangles = buffers.triangles,
+                       .materials = scene.materials,
+                       .texels = scene.texels,
+                       .metrics = metrics};
     });
 }
 

@@ -4,10 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #define STB_IMAGE_RESIZE_IMPLEMENTATION
 #define STB_IMAGE_RESIZE_STATIC
 #include <stb/stb_image_resize.h>
+
+#include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {
@@ -89,71 +92,138 @@ float srgb_decode(std::uint8_t encoded) {
     return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
 }
 
-glm::vec3 mean_albedo_of(const Material& material) {
-    const glm::vec3 factor(material.base_colour);
-    const Image* image = material.base_colour_texture.get();
-    if (image == nullptr || image->texels.empty()) {
-        return factor;
+/// Mean colour of an image, linear; white if it is empty.
+glm::vec3 mean_of(const Image& image) {
+    if (image.texels.empty()) {
+        return glm::vec3(1.0F);
     }
     std::array<double, 256> decoded{};
     for (std::size_t i = 0; i < decoded.size(); ++i) {
         decoded[i] = srgb_decode(static_cast<std::uint8_t>(i));
     }
     glm::dvec3 sum(0.0);
-    for (const glm::u8vec4& texel : image->texels) {
+    for (const glm::u8vec4& texel : image.texels) {
         sum += glm::dvec3(decoded[texel.r], decoded[texel.g], decoded[texel.b]);
     }
-    return factor * glm::vec3(sum / static_cast<double>(image->texels.size()));
+    return glm::vec3(sum / static_cast<double>(image.texels.size()));
+}
+
+UploadedImage upload_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
+    const Image reduced = reduce(*image);
+    UploadedImage uploaded{.image = image,
+                           .texture = upload_texture(gpu, *image),
+                           .width = reduced.width,
+                           .height = reduced.height,
+                           .texels = {},
+                           .range = {.count = static_cast<std::uint32_t>(reduced.texels.size())},
+                           .mean = mean_of(*image)};
+    std::ranges::transform(reduced.texels, std::back_inserter(uploaded.texels), pack);
+    return uploaded;
 }
 
 }  // namespace
 
-std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& material) {
-    const auto [found, is_new] =
-        material_index_.try_emplace(material.get(), static_cast<std::uint32_t>(materials_.size()));
-    if (!is_new) {
-        return found->second;
-    }
-    const MaterialImages images{.base_colour = add_image(material->base_colour_texture),
-                                .emissive = add_image(material->emissive_texture)};
-    const UploadedImage& colour = images_[images.base_colour];
-    const UploadedImage& emissive = images_[images.emissive];
-    materials_.push_back(material);
-    images_of_.push_back(images);
-    mean_albedos_.push_back(mean_albedo_of(*material));
-    records_.push_back({.base_colour = material->base_colour,
-                        .first_texel = colour.first_texel,
-                        .texel_width = colour.width,
-                        .texel_height = colour.height,
-                        .flags = material_flags(*material),
-                        .alpha_cutoff = is_masked(*material) ? material->alpha_cutoff : 0.0F,
-                        .first_emissive_texel = emissive.first_texel,
-                        .emissive_width = emissive.width,
-                        .emissive_height = emissive.height,
-                        .emissive = material->emissive});
-    return found->second;
+void MaterialTable::begin() {
+    materials_.begin();
+    images_.begin();
 }
 
-std::uint32_t MaterialTable::add_image(const std::shared_ptr<const Image>& image) {
-    if (!image) {
-        return 0;
+std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& material) {
+    const std::uint32_t index = materials_[materials_.use(material.get(), [&] {
+        const std::uint32_t taken = take_index();
+        by_index_[taken].material = material;
+        return taken;
+    })];
+    by_index_[index].images = {.base_colour = number_of(material->base_colour_texture),
+                               .emissive = number_of(material->emissive_texture)};
+    return index;
+}
+
+std::uint32_t MaterialTable::take_index() {
+    if (free_.empty()) {
+        by_index_.emplace_back();
+        return static_cast<std::uint32_t>(by_index_.size() - 1);
     }
-    const auto [found, is_new] =
-        image_index_.try_emplace(image.get(), static_cast<std::uint32_t>(images_.size()));
-    if (!is_new) {
-        return found->second;
-    }
-    const Image reduced = reduce(*image);
-    images_.push_back({.texture = upload_texture(*gpu_, *image),
-                       .first_texel = static_cast<std::uint32_t>(texels_.size()),
-                       .width = reduced.width,
-                       .height = reduced.height});
-    std::transform(reduced.texels.begin(), reduced.texels.end(), std::back_inserter(texels_), pack);
-    return found->second;
+    const std::uint32_t index = free_.back();
+    free_.pop_back();
+    return index;
+}
+
+std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image) {
+    return image ? images_.use(image.get(), [&] { return upload_image(*gpu_, image); }) + 1 : 0;
+}
+
+glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
+    const auto& [listed, images] = by_index_[material];
+    const glm::vec3 factor(listed->base_colour);
+    return images.base_colour == 0 ? factor : factor * images_[images.base_colour - 1].mean;
 }
 
 std::shared_ptr<const MaterialTexture> MaterialTable::texture(std::uint32_t image) const {
-    return images_[image].texture;
+    return image == 0 ? nullptr : images_[image - 1].texture;
+}
+
+std::vector<std::shared_ptr<const Material>> MaterialTable::materials() const {
+    std::vector<std::shared_ptr<const Material>> materials;
+    for (const Listed& listed : by_index_) {
+        materials.push_back(listed.material);
+    }
+    return materials;
+}
+
+gpu::Material MaterialTable::record_of(const Listed& listed) const {
+    static const UploadedImage none{};
+    if (!listed.material) {
+        return {};
+    }
+    const auto image = [&](std::uint32_t number) -> const UploadedImage& {
+        return number == 0 ? none : images_[number - 1];
+    };
+    const Material& material = *listed.material;
+    const UploadedImage& colour = image(listed.images.base_colour);
+    const UploadedImage& emissive = image(listed.images.emissive);
+    return {.base_colour = material.base_colour,
+            .first_texel = colour.range.first,
+            .texel_width = colour.width,
+            .texel_height = colour.height,
+            .flags = material_flags(material),
+            .alpha_cutoff = is_masked(material) ? material.alpha_cutoff : 0.0F,
+            .first_emissive_texel = emissive.range.first,
+            .emissive_width = emissive.width,
+            .emissive_height = emissive.height,
+            .emissive = material.emissive};
+}
+
+void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials,
+                           BufferHandle<std::uint32_t> texels) {
+    materials_.drop_unused();
+    images_.drop_unused();
+    std::vector<bool> used(by_index_.size());
+    for (const std::uint32_t* index : materials_.used()) {
+        used[*index] = true;
+    }
+    free_.clear();
+    for (std::uint32_t index = 0; index < by_index_.size(); ++index) {
+        if (!used[index]) {
+            by_index_[index] = {};
+            free_.push_back(index);
+        }
+    }
+
+    std::vector<BufferRange*> ranges;
+    for (UploadedImage* image : images_.used()) {
+        ranges.push_back(&image->range);
+    }
+    place_ranges(run, texels, ranges, texels_end_);
+    upload_ranges(*gpu_, run, texels, ranges, [&](std::size_t i, std::vector<std::uint32_t>& elements) {
+        const std::vector<std::uint32_t>& added = images_.used()[i]->texels;
+        elements.insert(elements.end(), added.begin(), added.end());
+    });
+    std::vector<gpu::Material> records;
+    for (const Listed& listed : by_index_) {
+        records.push_back(record_of(listed));
+    }
+    candela::upload<gpu::Material>(*gpu_, run, materials, records);
 }
 
 }  // namespace candela

@@ -2,62 +2,72 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <candela/scene/components.hpp>
+#include "renderer/passes/scene/buffer_ranges.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/scene/use_cache.hpp"
 
 namespace candela {
 
-/// Numbers of images in a MaterialTable; 0: no image.
+/// Numbers of images in the current scene of a MaterialTable, in the order of their first use; 0: no image.
 struct MaterialImages {
     std::uint32_t base_colour = 0;
     std::uint32_t emissive = 0;
 };
 
-/// The distinct materials of a scene, in the order in which they are added, with their images on the GPU: as
-/// textures for rasterisation, and reduced in one buffer of texels for tracing.
+/// An image on the GPU: as a texture for rasterisation, and reduced in the buffer of texels for tracing.
+struct UploadedImage {
+    std::shared_ptr<const Image> image;
+    std::shared_ptr<const MaterialTexture> texture;
+    std::uint32_t width = 0;  ///< of the reduced image
+    std::uint32_t height = 0;
+    std::vector<std::uint32_t> texels;  ///< of the reduced image: sRGB, 8 bits per channel, red the lowest
+    BufferRange range;                  ///< of these texels
+    glm::vec3 mean{0.0F};               ///< of the image, linear RGB
+};
+
+/// The distinct materials of the scenes, one after the other, with their images on the GPU. What two
+/// successive scenes share is uploaded once, and a material keeps its index as long as each scene uses it.
 class MaterialTable {
  public:
     explicit MaterialTable(Gpu& gpu) : gpu_(&gpu) {}
 
+    /// Starts another scene. After that, list its materials with `index_of`, and `upload` them.
+    void begin();
     /// Index of the material in the table; adds it if it is new.
     [[nodiscard]] std::uint32_t index_of(const std::shared_ptr<const Material>& material);
+    /// Uploads what is new, and forgets what is no longer used.
+    void upload(Execution& run, BufferHandle<gpu::Material> materials, BufferHandle<std::uint32_t> texels);
 
-    /// The numbers of a material's images, equal for materials that share an image; 0: no image.
+    /// The numbers of a material's images, equal for materials that share an image.
     [[nodiscard]] const MaterialImages& images_of(std::uint32_t material) const {
-        return images_of_[material];
+        return by_index_[material].images;
     }
     /// Base colour of a material times the mean of its image; linear RGB.
-    [[nodiscard]] glm::vec3 mean_albedo(std::uint32_t material) const { return mean_albedos_[material]; }
+    [[nodiscard]] glm::vec3 mean_albedo(std::uint32_t material) const;
     /// An image on the GPU, by its number; null for 0.
     [[nodiscard]] std::shared_ptr<const MaterialTexture> texture(std::uint32_t image) const;
 
-    [[nodiscard]] const std::vector<std::shared_ptr<const Material>>& materials() const { return materials_; }
-    [[nodiscard]] std::span<const gpu::Material> records() const { return records_; }
-    /// Texels of all reduced images: sRGB, 8 bits per channel, red in the lowest byte.
-    [[nodiscard]] std::span<const std::uint32_t> texels() const { return texels_; }
+    /// By index; null where an index is not in use.
+    [[nodiscard]] std::vector<std::shared_ptr<const Material>> materials() const;
 
  private:
-    struct UploadedImage {
-        std::shared_ptr<const MaterialTexture> texture;
-        std::uint32_t first_texel = 0;
-        std::uint32_t width = 0;
-        std::uint32_t height = 0;
+    struct Listed {
+        std::shared_ptr<const Material> material;  // null: the index is free
+        MaterialImages images;
     };
-    [[nodiscard]] std::uint32_t add_image(const std::shared_ptr<const Image>& image);
+    [[nodiscard]] std::uint32_t take_index();
+    [[nodiscard]] std::uint32_t number_of(const std::shared_ptr<const Image>& image);
+    [[nodiscard]] gpu::Material record_of(const Listed& listed) const;
 
     Gpu* gpu_;
-    std::vector<std::shared_ptr<const Material>> materials_;
-    std::vector<gpu::Material> records_;
-    std::vector<MaterialImages> images_of_;
-    std::vector<glm::vec3> mean_albedos_;
-    std::vector<UploadedImage> images_{1};  // the first means "no image"
-    std::vector<std::uint32_t> texels_;
-    std::unordered_map<const Material*, std::uint32_t> material_index_;
-    std::unordered_map<const Image*, std::uint32_t> image_index_;
+    std::vector<Listed> by_index_;
+    std::vector<std::uint32_t> free_;              // indices
+    UseCache<Material, std::uint32_t> materials_;  // their indices
+    UseCache<Image, UploadedImage> images_;
+    std::uint32_t texels_end_ = 0;  // see place_ranges
 };
 
 }  // namespace candela

@@ -24,9 +24,10 @@ std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& be
     for (const SceneLayout::Drawable& drawable : layout.solids()) {
         const glm::mat4& from = before.world[drawable.item];
         const glm::mat4& to = now.world[drawable.item];
-        if (from != to) {
-            boxes.push_back(placed(drawable.bounds, from));
-            boxes.push_back(placed(drawable.bounds, to));
+        if (from != to ||
+            vertices_of(drawable, before.deformed).data() != vertices_of(drawable, now.deformed).data()) {
+            boxes.push_back(placed(bounds_of(drawable, before.deformed), from));
+            boxes.push_back(placed(bounds_of(drawable, now.deformed), to));
         }
     }
     return boxes;

@@ -1,14 +1,16 @@
 #include "renderer/passes/scene/scene_upload.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <glm/matrix.hpp>
+#include <memory>
 #include <numeric>
 #include <tuple>
-#include <unordered_map>
 
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "renderer/passes/scene/material_upload.hpp"
+#include "renderer/passes/scene/mesh_upload.hpp"
 #include "renderer/passes/upload.hpp"
 
 namespace candela {
@@ -17,42 +19,60 @@ namespace {
 struct Gathered {
     ValueHandle<SceneGeometry> geometry;
     ValueHandle<ScenePlacement> placement;
+    ValueHandle<Deformations> deformed;
 };
+
+const Deformation* find(const Deformations& deformed, std::uint32_t item) {
+    const auto found = deformed.find(item);
+    return found == deformed.end() ? nullptr : &found->second;
+}
+
+/// The item's deformation; `last` is its last one, or null.
+Deformation deformation_of(const DeformedMesh& deformed, const Deformation* last) {
+    if (last != nullptr && last->vertices == deformed.vertices) {
+        return *last;
+    }
+    Deformation deformation{deformed.vertices, {}};
+    for (const std::vector<Vertex>& vertices : *deformed.vertices) {
+        deformation.bounds.push_back(box_around(vertices));
+    }
+    return deformation;
+}
 
 Gathered add_scene_gather(FrameGraph& graph, SceneCheck& check) {
     return graph.add("scene-gather", [&](Pass& pass) {
         pass.read<MeshInstance>();
+        pass.read<DeformedMesh>();
         pass.read<Transform>();
         const Gathered out{pass.write(graph.value<SceneGeometry>("scene geometry")),
-                           pass.write(graph.value<ScenePlacement>("scene placement"))};
+                           pass.update(graph.value<ScenePlacement>("scene placement")),
+                           pass.write(graph.value<Deformations>("deformations"))};
         pass.run([=, &check](Execution& run) {
+            const ScenePlacement* const last = run.previous(out.placement);
             SceneGeometry geometry;
             ScenePlacement placement;
             for (const auto& [entity, instance] : run.world().view<MeshInstance>()) {
+                const auto item = static_cast<std::uint32_t>(geometry.items.size());
                 const glm::mat4 world = world_matrix(run.world(), entity);
                 if (!check.accepts(run.world(), entity, instance) ||
                     !check.accepts_at(run.world(), entity, world)) {
                     continue;
                 }
-                geometry.items.push_back({instance.mesh, glm::determinant(glm::mat3(world)) < 0.0F});
+                const auto* const deformed = run.world().find<DeformedMesh>(entity);
+                if (deformed != nullptr) {
+                    const Deformation* const before = last == nullptr ? nullptr : find(last->deformed, item);
+                    placement.deformed.emplace(item, deformation_of(*deformed, before));
+                }
+                geometry.items.push_back(
+                    {entity, instance.mesh, glm::determinant(glm::mat3(world)) < 0.0F, deformed != nullptr});
                 placement.world.push_back(world);
             }
+            run.set(out.deformed, placement.deformed);
             run.set(out.geometry, std::move(geometry));
             run.set(out.placement, std::move(placement));
         });
         return out;
     });
-}
-
-Box bounds_of(const Primitive& primitive) {
-    if (primitive.vertices.empty()) {
-        return {glm::vec3(0.0F), glm::vec3(0.0F)};
-    }
-    Box bounds;
-    for (const Vertex& vertex : primitive.vertices) {
-        bounds.grow(vertex.position);
-    }
-    return bounds;
 }
 
 /// Indices 0 .. count - 1, sorted by `key`; equal keys keep their order.
@@ -65,35 +85,31 @@ std::vector<std::uint32_t> stable_order(std::size_t count, Key key) {
     return order;
 }
 
-/// The content of the vertex, index and draw buffers.
-struct PackedMeshes {
-    std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> indices;
-    std::vector<gpu::DrawCommand> draws;
+/// What is on the GPU of the scene's meshes and materials. It stays there while the world keeps it.
+struct SceneStore {
+    explicit SceneStore(Gpu& gpu) : materials(gpu) {}
+    MaterialTable materials;
+    MeshTable meshes;
 };
 
-glm::vec3 mean_colour(const Primitive& primitive) {
-    glm::dvec3 sum(0.0);
-    for (const Vertex& vertex : primitive.vertices) {
-        sum += glm::dvec3(vertex.colour);
-    }
-    return glm::vec3(sum / (65535.0 * static_cast<double>(primitive.vertices.size())));
-}
-
-std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry, MaterialTable& materials) {
+/// The drawables of the scene, which become its materials and meshes.
+std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry, SceneStore& store) {
     std::vector<SceneLayout::Drawable> drawables;
     for (std::uint32_t item = 0; item < geometry.items.size(); ++item) {
-        for (const Primitive& primitive : geometry.items[item].mesh->primitives) {
-            const std::uint32_t material = materials.index_of(primitive.material);
-            const glm::vec3 albedo = materials.mean_albedo(material) * mean_colour(primitive);
+        const std::shared_ptr<const Mesh>& mesh = geometry.items[item].mesh;
+        for (std::uint32_t i = 0; i < mesh->primitives.size(); ++i) {
+            const Primitive& primitive = mesh->primitives[i];
+            const std::uint32_t material = store.materials.index_of(primitive.material);
+            const UploadedPrimitive& uploaded = store.meshes.add(mesh, primitive);
+            const glm::vec3 albedo = store.materials.mean_albedo(material) * uploaded.mean_colour;
             drawables.push_back(
-                {item, &primitive, material, bounds_of(primitive), std::max({albedo.r, albedo.g, albedo.b})});
+                {item, &primitive, material, uploaded.bounds, std::max({albedo.r, albedo.g, albedo.b}), i});
         }
     }
     const auto key = [&](std::uint32_t i) {
         const SceneLayout::Drawable& drawable = drawables[i];
         const Material& material = *drawable.primitive->material;
-        const MaterialImages& images = materials.images_of(drawable.material);
+        const MaterialImages& images = store.materials.images_of(drawable.material);
         return std::tuple(material.alpha_mode, images.base_colour, material.double_sided,
                           geometry.items[drawable.item].mirrored, emits(material), images.emissive);
     };
@@ -102,29 +118,6 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
         ordered.push_back(drawables[i]);
     }
     return ordered;
-}
-
-PackedMeshes pack_meshes(const std::vector<SceneLayout::Drawable>& drawables) {
-    PackedMeshes packed;
-    std::unordered_map<const Primitive*, gpu::DrawCommand> known;
-    for (const SceneLayout::Drawable& drawable : drawables) {
-        const Primitive& primitive = *drawable.primitive;
-        auto [found, is_new] = known.try_emplace(&primitive);
-        if (is_new) {
-            found->second = {.index_count = static_cast<std::uint32_t>(primitive.indices.size()),
-                             .instance_count = 1,
-                             .first_index = static_cast<std::uint32_t>(packed.indices.size()),
-                             .base_vertex = static_cast<std::int32_t>(packed.vertices.size()),
-                             .base_instance = 0};
-            packed.vertices.insert(packed.vertices.end(), primitive.vertices.begin(),
-                                   primitive.vertices.end());
-            packed.indices.insert(packed.indices.end(), primitive.indices.begin(), primitive.indices.end());
-        }
-        gpu::DrawCommand draw = found->second;
-        draw.base_instance = static_cast<std::uint32_t>(packed.draws.size());
-        packed.draws.push_back(draw);
-    }
-    return packed;
 }
 
 bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
@@ -155,9 +148,6 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
                                  .double_sided = material.double_sided,
                                  .mirrored = geometry.items[drawable.item].mirrored,
                                  .emits = emits(material)};
-        if (group.alpha == AlphaMode::blend) {
-            group.centre = (drawable.bounds.lower + drawable.bounds.upper) * 0.5F;
-        }
         if (!groups.empty() && can_share(groups.back(), group)) {
             ++groups.back().draw_count;
         } else {
@@ -167,27 +157,31 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
     return groups;
 }
 
-void upload_scene(Gpu& gpu, Execution& run, const SceneData& out, const SceneGeometry& geometry) {
-    MaterialTable materials(gpu);
+SceneLayout upload_scene(const Gpu& gpu, Execution& run, const SceneData& out, const SceneGeometry& geometry,
+                         const Deformations& deformed, SceneStore& store) {
+    store.materials.begin();
+    store.meshes.begin();
     SceneLayout layout;
     layout.geometry = geometry;
-    layout.drawables = list_drawables(geometry, materials);
-    layout.groups = group_draws(geometry, layout.drawables, materials);
-    layout.materials = materials.materials();
+    layout.drawables = list_drawables(geometry, store);
+    layout.groups = group_draws(geometry, layout.drawables, store.materials);
     layout.opaque_count = count_until(layout.drawables, AlphaMode::opaque);
     layout.solid_count = count_until(layout.drawables, AlphaMode::mask);
+    for (const SceneLayout::Drawable& drawable : layout.drawables) {
+        if (geometry.items[drawable.item].deformed) {
+            store.meshes.add_deformed(drawable);
+        }
+    }
+    store.materials.upload(run, out.materials, out.texels);
+    store.meshes.upload(gpu, run, out.vertices, out.indices, deformed);
+    layout.materials = store.materials.materials();
+    layout.draws = store.meshes.draws(layout.drawables);
 
-    PackedMeshes meshes = pack_meshes(layout.drawables);
-    std::vector<std::uint32_t> instance_ids(meshes.draws.size());
+    std::vector<std::uint32_t> instance_ids(layout.draws.size());
     std::iota(instance_ids.begin(), instance_ids.end(), 0U);
-    upload<Vertex>(gpu, run, out.vertices, meshes.vertices);
-    upload<std::uint32_t>(gpu, run, out.indices, meshes.indices);
-    upload<gpu::DrawCommand>(gpu, run, out.draws, meshes.draws);
+    upload<gpu::DrawCommand>(gpu, run, out.draws, layout.draws);
     upload<std::uint32_t>(gpu, run, out.instance_ids, instance_ids);
-    upload<gpu::Material>(gpu, run, out.materials, materials.records());
-    upload<std::uint32_t>(gpu, run, out.texels, materials.texels());
-    layout.draws = std::move(meshes.draws);
-    run.set(out.layout, std::move(layout));
+    return layout;
 }
 
 void upload_instances(const Gpu& gpu, Execution& run, const SceneData& scene) {
@@ -205,7 +199,23 @@ BufferHandle<T> write_upload(FrameGraph& graph, Pass& pass, std::string_view nam
     return pass.write(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
 }
 
+/// The same for a buffer whose content stays between frames.
+template <class T>
+BufferHandle<T> update_upload(FrameGraph& graph, Pass& pass, std::string_view name) {
+    return pass.update(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
+}
+
 }  // namespace
+
+std::span<const Vertex> vertices_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
+    const Deformation* const found = find(deformed, drawable.item);
+    return found == nullptr ? drawable.primitive->vertices : (*found->vertices)[drawable.index_in_mesh];
+}
+
+const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
+    const Deformation* const found = find(deformed, drawable.item);
+    return found == nullptr ? drawable.bounds : found->bounds[drawable.index_in_mesh];
+}
 
 std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {
     const auto first = std::ranges::lower_bound(groups, alpha, {}, &Group::alpha);
@@ -216,17 +226,32 @@ std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) cons
 SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
     const Gathered gathered = add_scene_gather(graph, gpu.scene_check());
     SceneData scene = graph.add("scene-upload", [&](Pass& pass) {
+        pass.remembers();  // where things lie in the buffers depends on what was there before
         pass.read(gathered.geometry);
+        pass.read(gathered.deformed);
+        // Shared, because the store is changed in place.
+        const auto kept = pass.update(graph.value<std::shared_ptr<SceneStore>>("scene store"));
         const SceneData out{.placement = gathered.placement,
                             .layout = pass.write(graph.value<SceneLayout>("scene layout")),
-                            .vertices = write_upload<Vertex>(graph, pass, "vertices"),
-                            .indices = write_upload<std::uint32_t>(graph, pass, "indices"),
+                            .vertices = update_upload<Vertex>(graph, pass, "vertices"),
+                            .indices = update_upload<std::uint32_t>(graph, pass, "indices"),
                             .instance_ids = write_upload<std::uint32_t>(graph, pass, "instance ids"),
                             .draws = write_upload<gpu::DrawCommand>(graph, pass, "draws"),
                             .materials = write_upload<gpu::Material>(graph, pass, "materials"),
-                            .texels = write_upload<std::uint32_t>(graph, pass, "texels"),
+                            .texels = update_upload<std::uint32_t>(graph, pass, "texels"),
                             .instances = {}};
-        pass.run([=, &gpu](Execution& run) { upload_scene(gpu, run, out, run.value(gathered.geometry)); });
+        pass.run([=, &gpu](Execution& run) {
+            const std::shared_ptr<SceneStore> store =
+                run.has_result() ? *run.previous(kept) : std::make_shared<SceneStore>(gpu);
+            const Deformations& deformed = run.value(gathered.deformed);
+            if (run.changed(gathered.geometry)) {
+                run.set(out.layout,
+                        upload_scene(gpu, run, out, run.value(gathered.geometry), deformed, *store));
+            } else {
+                store->meshes.upload(gpu, run, out.vertices, out.indices, deformed);
+            }
+            run.set(kept, store);
+        });
         return out;
     });
     graph.add("instance-upload", [&](Pass& pass) {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include "engine/bvh/box.hpp"
 #include "renderer/gpu.hpp"
 #include "renderer/gpu_types.hpp"
@@ -17,17 +19,29 @@ namespace candela {
 /// view.
 struct SceneGeometry {
     struct Item {
+        Entity entity;
         std::shared_ptr<const Mesh> mesh;
         bool mirrored = false;  ///< the world matrix reverses the winding of its triangles
+        bool deformed = false;  ///< its entity has a DeformedMesh
         bool operator==(const Item&) const = default;
     };
     std::vector<Item> items;
     bool operator==(const SceneGeometry&) const = default;
 };
 
-/// Local-to-world matrix of each item, by index; metres.
+/// The vertices of a DeformedMesh, and the box around those of each primitive; local space.
+struct Deformation {
+    std::shared_ptr<const DeformedMesh::Vertices> vertices;
+    std::vector<Box> bounds;
+    bool operator==(const Deformation&) const = default;
+};
+/// By item; only of those that are deformed.
+using Deformations = std::map<std::uint32_t, Deformation>;
+
+/// Where the surfaces of the items are.
 struct ScenePlacement {
-    std::vector<glm::mat4> world;
+    std::vector<glm::mat4> world;  ///< local-to-world matrix of each item, by index; metres
+    Deformations deformed;
     bool operator==(const ScenePlacement&) const = default;
 };
 
@@ -42,10 +56,11 @@ struct SceneLayout {
     /// One primitive of one item. It has one draw command and one record in the instance buffer.
     struct Drawable {
         std::uint32_t item;
-        const Primitive* primitive;  ///< kept alive by `geometry`
-        std::uint32_t material;      ///< index into `materials`
-        Box bounds;                  ///< bounding box of the primitive, local space
-        float albedo = 0.0F;         ///< strongest channel of its mean albedo
+        const Primitive* primitive;       ///< kept alive by `geometry`
+        std::uint32_t material;           ///< index into `materials`
+        Box bounds;                       ///< bounding box of the primitive, local space: see bounds_of
+        float albedo = 0.0F;              ///< strongest channel of its mean albedo
+        std::uint32_t index_in_mesh = 0;  ///< of the primitive
     };
     /// Consecutive draws that share all render state. Each blended draw has its own group, so that they can
     /// be sorted.
@@ -58,21 +73,26 @@ struct SceneLayout {
         bool double_sided;
         bool mirrored;
         bool emits;
-        glm::vec3 centre{0.0F};  ///< blended draws: centre of the bounding box, local space
     };
     SceneGeometry geometry;
     std::vector<Drawable> drawables;      ///< in drawing order: opaque, then masked, then blended
     std::vector<gpu::DrawCommand> draws;  ///< by drawable
     std::vector<Group> groups;            ///< in drawing order
-    std::vector<std::shared_ptr<const Material>> materials;
-    std::uint32_t opaque_count = 0;  ///< number of opaque drawables
-    std::uint32_t solid_count = 0;   ///< number of opaque and masked drawables: they stop light
+    std::vector<std::shared_ptr<const Material>> materials;  ///< null where an index is not in use
+    std::uint32_t opaque_count = 0;                          ///< number of opaque drawables
+    std::uint32_t solid_count = 0;  ///< number of opaque and masked drawables: they stop light
 
     /// The groups of one alpha mode.
     [[nodiscard]] std::span<const Group> groups_of(AlphaMode alpha) const;
     /// The drawables that stop light.
     [[nodiscard]] std::span<const Drawable> solids() const { return std::span(drawables).first(solid_count); }
 };
+
+/// The vertices of a drawable: those of its mesh, or the deformed ones.
+[[nodiscard]] std::span<const Vertex> vertices_of(const SceneLayout::Drawable& drawable,
+                                                  const Deformations& deformed);
+/// The box around them; local space.
+[[nodiscard]] const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& deformed);
 
 /// The scene on the GPU, with its description on the CPU.
 struct SceneData {
@@ -88,9 +108,10 @@ struct SceneData {
     BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
 };
 
-/// Adds nodes `scene-gather` (CPU: items that SceneCheck accepts and their world matrices, from MeshInstance
-/// and Transform), `scene-upload` (CPU, then upload: meshes and materials, when the set of items changes) and
-/// `instance-upload` (CPU, then upload: world matrices, when something moves).
+/// Adds nodes `scene-gather` (CPU: items that SceneCheck accepts, where they are and how they are
+/// deformed, from MeshInstance, Transform and DeformedMesh), `scene-upload` (CPU, then upload: meshes and
+/// materials, when the set of items changes, only those that the scene had not before; and deformed vertices,
+/// when they change) and `instance-upload` (CPU, then upload: world matrices, when something moves).
 [[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
 
 }  // namespace candela

@@ -19,59 +19,58 @@ std::uint32_t packed_colour(glm::u16vec4 colour) {
     return glm::packUnorm4x8(glm::vec4(glm::convertLinearToSRGB(glm::vec3(linear)), linear.a));
 }
 
-/// Vertex indices of a triangle, counter-clockwise in world space.
-glm::uvec3 corners(const SceneLayout& layout, const Origin& origin) {
-    const SceneLayout::Drawable& drawable = layout.drawables[origin.drawable];
+/// Vertex indices of triangle i of a drawable, counter-clockwise in world space.
+glm::uvec3 corners(const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::uint32_t i) {
     const auto& indices = drawable.primitive->indices;
-    const std::uint32_t i = origin.first_index;
+    const std::uint32_t first = 3 * i;
     if (layout.geometry.items[drawable.item].mirrored) {
-        return {indices[i], indices[i + 2], indices[i + 1]};
+        return {indices[first], indices[first + 2], indices[first + 1]};
     }
-    return {indices[i], indices[i + 1], indices[i + 2]};
+    return {indices[first], indices[first + 1], indices[first + 2]};
 }
 
 }  // namespace
 
-WorldTriangles place_triangles(const SceneLayout& layout, const ScenePlacement& placement) {
-    WorldTriangles world;
-    for (std::uint32_t d = 0; d < layout.solid_count; ++d) {
-        const Primitive& primitive = *layout.drawables[d].primitive;
-        const glm::mat4& matrix = placement.world[layout.drawables[d].item];
-        for (std::uint32_t i = 0; i < primitive.indices.size(); i += 3) {
-            const Origin origin{d, i};
-            const glm::uvec3 corner = corners(layout, origin);
-            world.triangles.push_back({transformed(matrix, primitive.vertices[corner.x].position),
-                                       transformed(matrix, primitive.vertices[corner.y].position),
-                                       transformed(matrix, primitive.vertices[corner.z].position)});
-            world.origins.push_back(origin);
-        }
-    }
-    return world;
+Triangle place_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                        std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world) {
+    const glm::uvec3 corner = corners(layout, drawable, i);
+    return {transformed(world, vertices[corner.x].position), transformed(world, vertices[corner.y].position),
+            transformed(world, vertices[corner.z].position)};
 }
 
-std::vector<gpu::TraceTriangle> trace_triangles(const SceneLayout& layout, const WorldTriangles& world,
-                                                std::span<const std::uint32_t> order) {
-    std::vector<gpu::TraceTriangle> triangles;
-    triangles.reserve(order.size());
-    for (const std::uint32_t id : order) {
-        const Triangle& triangle = world.triangles[id];
-        const Origin& origin = world.origins[id];
-        const SceneLayout::Drawable& drawable = layout.drawables[origin.drawable];
-        const auto& vertices = drawable.primitive->vertices;
-        const glm::uvec3 corner = corners(layout, origin);
-        triangles.push_back({.a = triangle.a,
-                             .material = drawable.material,
-                             .edge_ab = triangle.b - triangle.a,
-                             .id = origin.drawable < layout.opaque_count ? id : id | TRIANGLE_MASKED,
-                             .edge_ac = triangle.c - triangle.a,
-                             .colour_a = packed_colour(vertices[corner.x].colour),
-                             .uv_a = vertices[corner.x].uv,
-                             .uv_b = vertices[corner.y].uv,
-                             .uv_c = vertices[corner.z].uv,
-                             .colour_b = packed_colour(vertices[corner.y].colour),
-                             .colour_c = packed_colour(vertices[corner.z].colour)});
+std::vector<Triangle> place_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                                      std::span<const Vertex> vertices, const glm::mat4& world) {
+    const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+    std::vector<Triangle> triangles;
+    triangles.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        triangles.push_back(place_triangle(layout, drawable, vertices, i, world));
     }
     return triangles;
+}
+
+std::vector<gpu::TraceTriangle> trace_triangles(
+    const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::span<const Vertex> vertices,
+    std::span<const Triangle> triangles, std::span<const std::uint32_t> order, std::uint32_t first_id) {
+    const bool is_masked = drawable.primitive->material->alpha_mode == AlphaMode::mask;
+    std::vector<gpu::TraceTriangle> traced;
+    traced.reserve(order.size());
+    for (const std::uint32_t i : order) {
+        const Triangle& triangle = triangles[i];
+        const glm::uvec3 corner = corners(layout, drawable, i);
+        traced.push_back({.a = triangle.a,
+                          .material = drawable.material,
+                          .edge_ab = triangle.b - triangle.a,
+                          .id = (first_id + i) | (is_masked ? TRIANGLE_MASKED : 0U),
+                          .edge_ac = triangle.c - triangle.a,
+                          .colour_a = packed_colour(vertices[corner.x].colour),
+                          .uv_a = vertices[corner.x].uv,
+                          .uv_b = vertices[corner.y].uv,
+                          .uv_c = vertices[corner.z].uv,
+                          .colour_b = packed_colour(vertices[corner.y].colour),
+                          .colour_c = packed_colour(vertices[corner.z].colour)});
+    }
+    return traced;
 }
 
 }  // namespace candela

@@ -10,24 +10,19 @@
 
 namespace candela {
 
-/// Which triangle of the scene it is.
-struct Origin {
-    std::uint32_t drawable;     // index into SceneLayout::drawables
-    std::uint32_t first_index;  // of its three indices in the primitive
-};
+/// Triangle i of a drawable with these vertices, in world space, metres, counter-clockwise from its front.
+[[nodiscard]] Triangle place_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                                      std::span<const Vertex> vertices, std::uint32_t i,
+                                      const glm::mat4& world);
+/// All of them.
+[[nodiscard]] std::vector<Triangle> place_triangles(const SceneLayout& layout,
+                                                    const SceneLayout::Drawable& drawable,
+                                                    std::span<const Vertex> vertices, const glm::mat4& world);
 
-/// The triangles that stop light (opaque and masked), in world space, metres.
-struct WorldTriangles {
-    std::vector<Triangle> triangles;
-    std::vector<Origin> origins;  // by triangle
-};
-
-/// Transforms the triangles of the solid drawables by their items' matrices in `placement`.
-[[nodiscard]] WorldTriangles place_triangles(const SceneLayout& layout, const ScenePlacement& placement);
-
-/// The same triangles in the form that shaders read, in the order of the indices in `order`.
-[[nodiscard]] std::vector<gpu::TraceTriangle> trace_triangles(const SceneLayout& layout,
-                                                              const WorldTriangles& world,
-                                                              std::span<const std::uint32_t> order);
+/// The same triangles in the form that shaders read, in the order of the indices in `order`. Triangle i gets
+/// the id `first_id` + i.
+[[nodiscard]] std::vector<gpu::TraceTriangle> trace_triangles(
+    const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::span<const Vertex> vertices,
+    std::span<const Triangle> triangles, std::span<const std::uint32_t> order, std::uint32_t first_id);
 
 }  // namespace candela

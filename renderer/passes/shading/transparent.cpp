@@ -18,8 +18,10 @@ std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePla
                                        const CameraView& view) {
     std::vector<SortedGroup> sorted;
     for (const SceneLayout::Group& group : layout.groups_of(AlphaMode::blend)) {
-        const glm::mat4& world = placement.world[layout.drawables[group.first_draw].item];
-        const glm::vec4 centre = view.view_from_world * (world * glm::vec4(group.centre, 1.0F));
+        const SceneLayout::Drawable& drawable = layout.drawables[group.first_draw];
+        const Box& box = bounds_of(drawable, placement.deformed);
+        const glm::vec4 middle((box.lower + box.upper) * 0.5F, 1.0F);
+        const glm::vec4 centre = view.view_from_world * (placement.world[drawable.item] * middle);
         sorted.push_back({&group, -centre.z});
     }
     std::ranges::stable_sort(sorted, std::greater{}, &SortedGroup::depth);

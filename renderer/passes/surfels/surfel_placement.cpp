@@ -20,11 +20,13 @@ struct Side {
     const gpu::TraceTriangle* triangle;
     glm::vec3 normal;  // unit
     std::uint32_t item;
+    bool back;
 };
 
-/// A point of a cell, with the item that it lies on.
+/// A point of a cell, with the item and the triangle that it lies on.
 struct PlacedPoint : gpu::CellPoint {
     std::uint32_t item = 0;
+    SurfacePoint place;
 };
 
 /// All sides that reflect light: both sides of double-sided triangles.
@@ -45,7 +47,7 @@ Sides sides_of(const SurfelGround& ground) {
         }
         const glm::vec3 front = cross / twice_area;
         for (int side = 0; side < (ground.double_sided[triangle.material] ? 2 : 1); ++side) {
-            all.sides.push_back({&triangle, side == 0 ? front : -front, ground.item_of[i]});
+            all.sides.push_back({&triangle, side == 0 ? front : -front, ground.item_of[i], side == 1});
             all.area_before.push_back(area);
             area += 0.5 * static_cast<double>(twice_area);
         }
@@ -107,7 +109,8 @@ std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, st
                            .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
                            .surfel = 0,
                            .colour = colour_at(t, b)},
-                          all.sides[side].item});
+                          all.sides[side].item,
+                          {t.id & ~TRIANGLE_MASKED, b, all.sides[side].back}});
     }
     return points;
 }
@@ -228,6 +231,7 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points
             last = owners[i];
             const PlacedPoint& surfel = grid.surfels()[last];
             set.item_of.push_back(surfel.item);
+            set.surfel_places.push_back(surfel.place);
             set.surfels.push_back({.position = surfel.position,
                                    .map = static_cast<std::uint32_t>(set.surfels.size()),
                                    .normal = surfel.normal,
@@ -246,6 +250,7 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points
         surfel.area += points[i].area;
         surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
         set.points.push_back(points[i]);
+        set.point_places.push_back(points[i].place);
         set.points.back().surfel = static_cast<std::uint32_t>(set.surfels.size() - 1);
     }
     return set;
@@ -308,7 +313,10 @@ void append_emitting(SurfelSet& set, const SurfelSet& more) {
         point.surfel += surfels;
         set.points.push_back(point);
     }
-    set.item_of.insert(set.item_of.end(), more.item_of.begin(), more.item_of.end());
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(set.item_of, more.item_of);
+    append(set.surfel_places, more.surfel_places);
+    append(set.point_places, more.point_places);
     set.emitting_count = static_cast<std::uint32_t>(more.surfels.size());
 }
 

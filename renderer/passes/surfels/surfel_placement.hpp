@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <vector>
 
 #include "renderer/gpu_types.hpp"
 
 namespace candela {
+
+/// A point of a triangle.
+struct SurfacePoint {
+    std::uint32_t triangle = 0;  ///< gpu::TraceTriangle::id
+    glm::vec2 weights{0.0F};     ///< of its corners b and c
+    bool back = false;           ///< on its back
+};
 
 /// Surfels: points on the scene's surfaces that gather light and reflect it. Each represents a cell, the part
 /// of the surface around it, which is described by sample points.
@@ -14,7 +22,9 @@ struct SurfelSet {
     std::vector<gpu::Vpl> surfels;       ///< with flux 0
     std::vector<gpu::CellPoint> points;  ///< of the cells, in the order of the surfels
     std::vector<std::uint32_t> item_of;  ///< by surfel: index into SceneGeometry::items
-    std::uint32_t emitting_count = 0;    ///< surfels that emit light: the last ones
+    std::vector<SurfacePoint> surfel_places;
+    std::vector<SurfacePoint> point_places;
+    std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
 };
 
 /// The triangles on which surfels are placed.

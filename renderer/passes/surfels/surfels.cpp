@@ -6,7 +6,9 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <memory>
+#include <numbers>
 #include <numeric>
+#include <span>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/passes/scene/world_triangles.hpp"
@@ -49,22 +51,24 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
     return shapes;
 }
 
+/// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
+/// deformation came first.
 SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
-    ScenePlacement placement;
-    for (const glm::mat3& shape : shapes) {
-        placement.world.emplace_back(shape);
-    }
-    const WorldTriangles triangles = place_triangles(layout, placement);
-    std::vector<std::uint32_t> order(triangles.triangles.size());
-    std::iota(order.begin(), order.end(), 0U);
     SurfelGround ground;
-    ground.triangles = trace_triangles(layout, triangles, order);
-    for (const Origin& origin : triangles.origins) {
-        ground.item_of.push_back(layout.drawables[origin.drawable].item);
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        const std::vector<Vertex>& vertices = drawable.primitive->vertices;
+        const std::vector<Triangle> placed =
+            place_triangles(layout, drawable, vertices, glm::mat4(shapes[drawable.item]));
+        std::vector<std::uint32_t> order(placed.size());
+        std::iota(order.begin(), order.end(), 0U);
+        const auto first_id = static_cast<std::uint32_t>(ground.triangles.size());
+        const auto triangles = trace_triangles(layout, drawable, vertices, placed, order, first_id);
+        ground.triangles.insert(ground.triangles.end(), triangles.begin(), triangles.end());
+        ground.item_of.insert(ground.item_of.end(), triangles.size(), drawable.item);
     }
     for (const auto& material : layout.materials) {
-        ground.double_sided.push_back(material->double_sided);
-        ground.emits.push_back(emits(*material));
+        ground.double_sided.push_back(material && material->double_sided);
+        ground.emits.push_back(material && emits(*material));
     }
     return ground;
 }
@@ -85,15 +89,79 @@ glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
     return world * glm::mat4(glm::inverse(shape));
 }
 
-SurfelSet placed_in_world(const SpreadSurfels& spread, const ScenePlacement& placement) {
+/// Moves surfels and points with the triangles that they were placed on, of items that are deformed.
+class Deformer {
+ public:
+    Deformer(const SceneLayout& layout, const ScenePlacement& placement)
+        : layout_(layout), placement_(placement) {
+        for (const SceneLayout::Drawable& drawable : layout.solids()) {
+            first_triangles_.push_back(triangle_count_);
+            triangle_count_ += static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+        }
+    }
+
+    /// Where a point of a triangle is now.
+    struct Moved {
+        glm::vec3 position;
+        glm::vec3 normal;  ///< unit; 0 if the triangle has no area
+        float stretch;     ///< area of the triangle / that in the mesh
+    };
+    [[nodiscard]] Moved moved(const SurfacePoint& point) const {
+        const auto next = std::ranges::upper_bound(first_triangles_, point.triangle);
+        const auto index = static_cast<std::size_t>(next - first_triangles_.begin()) - 1;
+        const SceneLayout::Drawable& drawable = layout_.drawables[index];
+        const std::uint32_t i = point.triangle - first_triangles_[index];
+        const auto triangle_of = [&](std::span<const Vertex> vertices) {
+            return place_triangle(layout_, drawable, vertices, i, placement_.world[drawable.item]);
+        };
+        const Triangle in_mesh = triangle_of(drawable.primitive->vertices);
+        const Triangle t = triangle_of(vertices_of(drawable, placement_.deformed));
+        const glm::vec3 cross = glm::cross(t.b - t.a, t.c - t.a);
+        const float size = glm::length(cross);
+        const glm::vec3 front = size > 0.0F ? cross / size : glm::vec3(0.0F);
+        return {.position = t.a + point.weights.x * (t.b - t.a) + point.weights.y * (t.c - t.a),
+                .normal = point.back ? -front : front,
+                .stretch = size / glm::length(glm::cross(in_mesh.b - in_mesh.a, in_mesh.c - in_mesh.a))};
+    }
+
+    void apply(SurfelSet& set, std::size_t i) const {
+        gpu::Vpl& surfel = set.surfels[i];
+        const Moved centre = moved(set.surfel_places[i]);
+        surfel.position = surfel.map_origin = centre.position;
+        surfel.normal = centre.normal;
+        surfel.area = 0.0F;
+        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+            const Moved at = moved(set.point_places[p]);
+            set.points[p].position = at.position;
+            set.points[p].normal = at.normal;
+            set.points[p].area *= at.stretch;
+            surfel.area += set.points[p].area;
+        }
+        surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
+    }
+
+ private:
+    const SceneLayout& layout_;
+    const ScenePlacement& placement_;
+    std::vector<std::uint32_t> first_triangles_;  // ids, by drawable: see ground_of
+    std::uint32_t triangle_count_ = 0;
+};
+
+SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
+                          const ScenePlacement& placement) {
     std::vector<glm::mat4> matrices;
     std::vector<glm::mat3> normal_matrices;
     for (std::size_t i = 0; i < placement.world.size(); ++i) {
         matrices.push_back(world_from_shape(placement.world[i], spread.key.shapes[i]));
         normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(matrices.back()))));
     }
+    const Deformer deformer(layout, placement);
     SurfelSet set = *spread.set;
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        if (placement.deformed.contains(set.item_of[i])) {
+            deformer.apply(set, i);
+            continue;
+        }
         gpu::Vpl& surfel = set.surfels[i];
         const glm::mat4& matrix = matrices[set.item_of[i]];
         const glm::mat3& normal_matrix = normal_matrices[set.item_of[i]];
@@ -163,6 +231,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
     const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, settings);
     return graph.add("surfels", [&](Pass& pass) {
         pass.read(spread_surfels);
+        pass.read(scene.layout);
         pass.read(scene.placement);
         const Surfels out{
             .plan = pass.write(graph.value<VplPlan>("surfel plan")),
@@ -170,9 +239,9 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
             .surfels = pass.write(graph.buffer<gpu::Vpl>("surfels", 1, Lifetime::persistent), Usage::copy),
             .points = pass.write(graph.buffer<gpu::CellPoint>("cell points", 1, Lifetime::persistent),
                                  Usage::copy)};
-        pass.run([=, &gpu, placement = scene.placement](Execution& run) {
+        pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
             const SpreadSurfels& spread_now = run.value(spread_surfels);
-            const SurfelSet set = placed_in_world(spread_now, run.value(placement));
+            const SurfelSet set = placed_in_world(spread_now, run.value(layout), run.value(placement));
             upload<gpu::Vpl>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
             run.set(out.plan, plan_of(set));

@@ -39,7 +39,8 @@ std::vector<gpu::DrawCommand> visible_draws(const SceneLayout& layout, const Sce
     std::vector<gpu::DrawCommand> draws = layout.draws;
     for (std::size_t i = 0; i < draws.size(); ++i) {
         const SceneLayout::Drawable& drawable = layout.drawables[i];
-        if (is_outside(drawable.bounds, view.clip_from_world * placement.world[drawable.item])) {
+        if (is_outside(bounds_of(drawable, placement.deformed),
+                       view.clip_from_world * placement.world[drawable.item])) {
             draws[i].instance_count = 0;
         }
     }

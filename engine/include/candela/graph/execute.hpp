@@ -65,11 +65,14 @@ class CANDELA_API Execution {
         return static_cast<const T*>(previous_content(value));
     }
 
+    /// Whether the result of the pass's last run is there, so that parts of it can stay. False in the first
+    /// run, after GraphRuntime::invalidate, if the result was overwritten, or if the pass threw. Also false
+    /// during verification, which thereby compares partial updates with a full one.
+    [[nodiscard]] bool has_result() const { return !has_no_result_; }
+
     /// Whether an input (a version that the pass reads or modifies in place) has changed since the pass last
-    /// ran. For passes that update only parts of their previous result. Always true if there is no previous
-    /// result: in the first run, after GraphRuntime::invalidate, if the result was overwritten, or if the
-    /// pass threw. Also always true during verification, which thereby compares partial updates with a full
-    /// one. Throws GraphError for anything that is not an input, histories included.
+    /// ran. For passes that update only parts of their previous result. Always true without one: see
+    /// has_result. Throws GraphError for anything that is not an input, histories included.
     [[nodiscard]] bool changed(ResourceHandle read) const;
     /// Whether any of several inputs has.
     [[nodiscard]] bool changed(std::span<const ResourceHandle> reads) const {

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/bvh/box.hpp"
+#include "engine/bvh/bvh.hpp"
+
+namespace candela {
+
+// A hierarchy of hierarchies: each object of a scene has its own, over its triangles in world space, and a
+// small one, the top, joins them. If an object moves, only its own hierarchy and the top change. In memory
+// and for rays, all together are one hierarchy.
+
+/// Maximum depth of an object's hierarchy (`max_depth` of build_bvh). The top may use the rest of
+/// `bvh_max_depth`, at least 20 levels.
+inline constexpr std::uint32_t object_max_depth = 28;
+
+/// The hierarchy of an object and its place in the joint arrays of nodes and triangles.
+struct PlacedBvh {
+    const Bvh* bvh = nullptr;          ///< empty for an object without triangles
+    std::uint32_t first_node = 0;      ///< place of bvh->nodes[1]; the root is a node of the top
+    std::uint32_t first_triangle = 0;  ///< place of the triangle bvh->order[0]
+};
+
+/// One of the object's nodes as it is in the joint array.
+[[nodiscard]] BvhNode placed(const PlacedBvh& object, BvhNode node);
+
+/// The top: a hierarchy whose leaves are nodes of objects' hierarchies. Most are their roots. Those of large
+/// boxes are opened, that is replaced by their children, so that objects that overlap, such as walls that
+/// cross, hardly cost more than in a single hierarchy (Benthin et al., "Improved Two-Level BVHs using Partial
+/// Re-Braiding", 2017).
+struct TopBvh {
+    struct Leaf {
+        std::uint32_t object;  ///< index
+        std::uint32_t node;    ///< of the object's hierarchy
+    };
+    std::vector<Leaf> leaves;
+    Bvh bvh;  ///< over the boxes of `leaves`, each in a leaf of its own
+};
+
+/// Builds the top over the objects; opens at most `most_opened` nodes. O(n log n), deterministic.
+[[nodiscard]] TopBvh build_top(std::span<const PlacedBvh> objects, std::uint32_t most_opened = 1024);
+
+/// Fits the top's boxes to those of the objects after their hierarchies were refitted, and keeps its
+/// topology. The objects must be those of build_top, each with the same topology. O(n).
+void refit_top(TopBvh& top, std::span<const PlacedBvh> objects);
+
+/// The top's nodes in the joint array, which starts with them. Empty if no object has triangles.
+[[nodiscard]] std::vector<BvhNode> joint_nodes(const TopBvh& top, std::span<const PlacedBvh> objects);
+
+/// Like build_bvh for triangles, but over boxes, each in a leaf of its own: `order` has the boxes' indices.
+/// There must be at most 2^max_depth boxes.
+[[nodiscard]] Bvh build_box_bvh(std::span<const Box> boxes, std::uint32_t max_depth);
+/// Fits the hierarchy to other boxes: see refit for triangles.
+void refit_box_bvh(Bvh& bvh, std::span<const Box> boxes);
+
+}  // namespace candela

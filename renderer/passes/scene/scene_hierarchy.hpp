@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "engine/bvh/two_level.hpp"
+#include "renderer/passes/scene/buffer_ranges.hpp"
+#include "renderer/passes/scene/scene_upload.hpp"
+
+namespace candela {
+
+/// Properties of the whole scene that lighting uses, in world space. They cover the surfaces that stop light,
+/// opaque and masked; holes in masks count as surface.
+struct SceneMetrics {
+    glm::vec3 lower{0.0F};  ///< corner of the bounding box, metres
+    glm::vec3 upper{0.0F};
+    float area = 0.0F;         ///< of all triangles, one side each, m²
+    float mean_albedo = 0.0F;  ///< area-weighted mean of the strongest channel of each material's mean albedo
+    std::uint64_t triangles = 0;
+    bool operator==(const SceneMetrics&) const = default;
+
+    [[nodiscard]] glm::vec3 centre() const { return (lower + upper) * 0.5F; }
+    /// Radius of the bounding sphere of the box in metres; 0 for an empty scene.
+    [[nodiscard]] float radius() const { return glm::length(upper - lower) * 0.5F; }
+    /// Offset along the normal at which rays start, in metres: some hundred times the rounding error of
+    /// positions.
+    [[nodiscard]] float ray_offset() const { return 2e-5F * scale(); }
+    /// The radius rounded down to a power of two, so that it rarely changes while objects move.
+    [[nodiscard]] float scale() const {
+        return radius() > 0.0F ? std::exp2(std::floor(std::log2(radius()))) : 0.0F;
+    }
+};
+
+/// The hierarchy over the triangles of one solid drawable, in world space, and its place on the GPU.
+struct ObjectHierarchy {
+    /// What triangles and nodes are made from.
+    struct Source {
+        Entity entity;
+        const Primitive* primitive = nullptr;
+        std::uint32_t material = 0;
+        bool mirrored = false;
+        glm::mat4 world{1.0F};
+        std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
+        bool operator==(const Source&) const = default;
+    };
+    std::shared_ptr<const Mesh> mesh;  ///< keeps the primitive alive
+    Source source;
+    Bvh bvh;
+    float built_cost = 0.0F;     ///< SAH cost at the last build
+    double area = 0.0;           ///< of the triangles, one side each, m²
+    std::uint32_t first_id = 0;  ///< of its triangles: see gpu::TraceTriangle
+    BufferRange nodes;           ///< those after the root
+    BufferRange triangles;
+};
+
+/// The hierarchy over the triangles of all solid drawables, kept from frame to frame: one for each, joined by
+/// a top (engine/bvh/two_level.hpp). What has moved is refitted, and built anew once its SAH cost exceeds 1.5
+/// times that of the last build. So is the top, which is also built anew when objects come or go.
+class SceneHierarchy {
+ public:
+    /// Brings everything up to date with the scene. `other_layout`: the layout is another than in the last
+    /// call. The ranges of what has changed are not `uploaded` then.
+    void update(const SceneLayout& layout, const ScenePlacement& placement, bool other_layout);
+
+    [[nodiscard]] SceneMetrics metrics(const SceneLayout& layout) const;
+    [[nodiscard]] std::vector<PlacedBvh> placed_objects() const;
+
+    std::vector<ObjectHierarchy> objects;  ///< by solid drawable
+    TopBvh top;
+
+ private:
+    bool take_over(const SceneLayout& layout);
+
+    float top_cost_ = 0.0F;  // SAH cost at the last build
+};
+
+}  // namespace candela
