@@ -68,8 +68,7 @@ constexpr std::uint32_t no_id = std::numeric_limits<std::uint32_t>::max();
 /// The positions of a longest increasing subsequence of the objects' first ids (Schensted, 1961).
 std::vector<std::size_t> longest_rise(const std::vector<ObjectHierarchy>& objects) {
     constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-    std::vector<std::size_t>
-        last;  // of the subsequence of each length: the position with the smallest last id
+    std::vector<std::size_t> last;  // position of the smallest last id of the subsequences of each length
     std::vector<std::size_t> before(objects.size(), none);
     for (std::size_t i = 0; i < objects.size(); ++i) {
         if (objects[i].first_id == no_id) {
@@ -119,7 +118,7 @@ bool fill_in_ids(std::vector<ObjectHierarchy>& objects) {
 
 /// Makes the ids of the triangles increase from object to object, so that of two triangles at the same
 /// distance the same one is hit whatever has come and gone before. Changes few ids: as many as possible stay,
-/// and there is room between them.
+/// and there is room before and between them.
 void order_ids(std::vector<ObjectHierarchy>& objects) {
     std::vector<bool> stays(objects.size());
     for (const std::size_t i : longest_rise(objects)) {
@@ -136,7 +135,7 @@ void order_ids(std::vector<ObjectHierarchy>& objects) {
         return;
     }
     const auto room = static_cast<std::uint32_t>((TRIANGLE_MASKED - sum) / (objects.size() + 1));
-    std::uint32_t next = 0;
+    std::uint32_t next = room;
     for (ObjectHierarchy& object : objects) {
         set_first_id(object, next);
         next += triangle_count(object) + room;
