@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/scene_error.hpp>
 #include "renderer/scene_check.hpp"
 #include "tests/renderer/scene_builder.hpp"
@@ -108,6 +109,33 @@ std::vector<FaultCase> mesh_faults() {
                  [](Material& m) { m.base_colour_texture = image(0, 4, 0); }),
         material("the emissive texture has 7 texels for 2 × 3",
                  [](Material& m) { m.emissive_texture = image(2, 3, 7); })};
+}
+
+std::vector<FaultCase> deformation_faults() {
+    const MeshInstance instance = square_instance();
+    const auto deformed = [&](std::string words, const std::function<void(DeformedMesh::Vertices&)>& change) {
+        const DeformedMesh::Vertices good{instance.mesh->primitives.at(0).vertices};
+        DeformedMesh::Vertices bad = good;
+        change(bad);
+        return FaultCase{std::move(words),
+                         [=](World& world, Entity entity) {
+                             world.set(entity, instance);
+                             world.set(entity,
+                                       DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(bad)});
+                         },
+                         sets(DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(good)})};
+    };
+    FaultCase none = deformed("DeformedMesh: left out, because there are no vertices", [](auto&) {});
+    none.spoil = [=](World& world, Entity entity) {
+        world.set(entity, instance);
+        world.set(entity, DeformedMesh{});
+    };
+    return {
+        none,
+        deformed("2 lists of vertices, but mesh \"\" has 1 primitives", [](auto& all) { all.push_back({}); }),
+        deformed("3 vertices, but primitive 0 of mesh \"\" has 4", [](auto& all) { all[0].pop_back(); }),
+        deformed("DeformedMesh: left out, because primitive 0: vertex 1: its position is not finite",
+                 [](auto& all) { all[0][1].position.z = not_a_number; })};
 }
 
 /// A transform that is not finite, of an entity with a component to be shown.
@@ -326,6 +354,7 @@ class BadInput : public GlFixture {
 TEST_SUITE("bad input") {
     TEST_CASE_FIXTURE(BadInput, "a mesh with a fault is left out, and the warning names it") {
         check_left_out(mesh_faults());
+        check_left_out(deformation_faults());
     }
     TEST_CASE_FIXTURE(BadInput, "what is nowhere is left out, and the warning names it") {
         check_left_out(transform_faults());
@@ -339,6 +368,7 @@ TEST_SUITE("bad input") {
 
     TEST_CASE_FIXTURE(BadInput, "a checked renderer throws, names the entity, and goes on after a repair") {
         check_refused(mesh_faults());
+        check_refused(deformation_faults());
         check_refused(transform_faults());
         check_refused(light_faults());
         check_refused(sky_faults());

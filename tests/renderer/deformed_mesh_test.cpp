@@ -213,18 +213,4 @@ TEST_SUITE("deformed meshes") {
         CHECK(cloth_only < 250'000);
         CHECK(all > 3'000'000);
     }
-
-    TEST_CASE_FIXTURE(RenderFixture, "a deformed mesh with other numbers of vertices is refused by name") {
-        configure(direct_only());
-        const auto mesh = cloth(2, diffuse(glm::vec3(0.5F)));
-        ClothScene scene(mesh);
-        for (const DeformedMesh::Vertices& wrong :
-             {DeformedMesh::Vertices{}, DeformedMesh::Vertices{std::vector<Vertex>(8)},
-              DeformedMesh::Vertices{std::vector<Vertex>(9), {}}}) {
-            scene.world.set(scene.cloth, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(wrong)});
-            CHECK_THROWS_AS(static_cast<void>(render(scene, deformed_size)), SceneError);
-        }
-        scene.world.set(scene.cloth, deformed(*mesh, wave(0.0F)));
-        static_cast<void>(render(scene, deformed_size));
-    }
 }
