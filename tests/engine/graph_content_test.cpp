@@ -42,7 +42,7 @@ bool values_stay_equal(const Graph& graph) {
 
 /// The passes, visited in this order, that run in every frame, and those that read what such a pass writes
 /// again. For a texture or buffer every write counts as a change, for a value only one that may differ.
-std::set<std::size_t> made_anew(const Graph& graph, const std::vector<std::uint32_t>& order) {
+std::set<std::size_t> made_again(const Graph& graph, const std::vector<std::uint32_t>& order) {
     const bool stay_equal = values_stay_equal(graph);
     std::set<std::size_t> passes;
     std::set<std::pair<std::size_t, std::uint32_t>> versions;  // resource and version
@@ -121,7 +121,7 @@ TEST_CASE("graph: without changes, only passes that always run, their readers an
         (void)machine.run();
         const FrameRecord& record = machine.run();
         const auto& plan = machine.runtime().graph()->plan();
-        const std::set<std::size_t> anew = made_anew(graph, plan.order);
+        const std::set<std::size_t> again = made_again(graph, plan.order);
         for (std::size_t position = 0; position < plan.order.size(); ++position) {
             const std::size_t pass = plan.order[position];
             const bool ran = record.passes[position].ran;
@@ -130,7 +130,7 @@ TEST_CASE("graph: without changes, only passes that always run, their readers an
                     return !access.write || stays(graph, plan.object, access);
                 });
             RC_ASSERT((ran || !always(graph, pass)));
-            RC_ASSERT((!ran || anew.contains(pass) || !all_stay));
+            RC_ASSERT((!ran || again.contains(pass) || !all_stay));
         }
     }));
 }

@@ -48,7 +48,7 @@ double area_of(std::span<const Triangle> triangles) {
     return sum;
 }
 
-/// Returns whether the hierarchy was built anew.
+/// Returns whether the hierarchy was built again.
 bool fit(ObjectHierarchy& object, std::span<const Triangle> triangles) {
     if (object.bvh.order.size() == triangles.size()) {
         refit(object.bvh, triangles);

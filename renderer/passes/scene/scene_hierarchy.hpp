@@ -59,8 +59,9 @@ struct ObjectHierarchy {
 };
 
 /// The hierarchy over the triangles of all solid drawables, kept from frame to frame: one for each, joined by
-/// a top (engine/bvh/two_level.hpp). What has moved is refitted, and built anew once its SAH cost exceeds 1.5
-/// times that of the last build. So is the top, which is also built anew when objects come or go.
+/// a top (engine/bvh/two_level.hpp). What has moved is refitted, and built again once its SAH cost
+/// exceeds 1.5 times that of the last build. So is the top, which is also built again when objects come or
+/// go.
 class SceneHierarchy {
  public:
     /// Brings everything up to date with the scene. `other_layout`: the layout is another than in the last
