@@ -67,6 +67,18 @@ class HostSurfaceTests : public RenderFixture {
         return target.read();
     }
 
+    /// The surfaces that were kept, in Candela's own conventions.
+    HostSurfaces own_surfaces() {
+        const FrameResults results = renderer.results();
+        return {.depth = results.depth.texture,
+                .normal = results.normal.texture,
+                .albedo = results.albedo.texture,
+                .clip_from_view = results.view.clip_from_view,
+                .clip_depth_from_0 = true,
+                .empty_depth = 0.0F,
+                .normal_encoding = NormalEncoding::octahedral};
+    }
+
     /// A frame by another renderer from surfaces of the host's.
     Picture from(const HostSurfaces& surfaces) {
         TestedRenderer other(context->get_proc());
@@ -95,14 +107,7 @@ constexpr double rounding = 1e-4;
 TEST_SUITE("host surfaces") {
     TEST_CASE_FIXTURE(HostSurfaceTests, "Candela's own surfaces come back in on every path") {
         const Picture expected = usual();
-        const FrameResults results = renderer.results();
-        const HostSurfaces surfaces{.depth = results.depth.texture,
-                                    .normal = results.normal.texture,
-                                    .albedo = results.albedo.texture,
-                                    .clip_from_view = results.view.clip_from_view,
-                                    .clip_depth_from_0 = true,
-                                    .empty_depth = 0.0F,
-                                    .normal_encoding = NormalEncoding::octahedral};
+        const HostSurfaces surfaces = own_surfaces();
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
             configuration.path = path;
@@ -163,14 +168,7 @@ TEST_SUITE("host surfaces") {
                                              .near_plane = 0.5F,
                                              .far_plane = 8.0F});
         const Picture expected = usual();
-        const FrameResults results = renderer.results();
-        const HostSurfaces surfaces{.depth = results.depth.texture,
-                                    .normal = results.normal.texture,
-                                    .albedo = results.albedo.texture,
-                                    .clip_from_view = results.view.clip_from_view,
-                                    .clip_depth_from_0 = true,
-                                    .empty_depth = 0.0F,
-                                    .normal_encoding = NormalEncoding::octahedral};
+        const HostSurfaces surfaces = own_surfaces();
         CHECK(relative_mean_square(from(surfaces), expected) < rounding);
 
         configuration.refinement = {.enabled = true, .frames = 16};
