@@ -5,18 +5,6 @@
 #include <utility>
 
 namespace candela::gl {
-namespace {
-
-void set_enabled(const Functions& gl, GLenum capability, bool enabled) {
-    if (enabled) {
-        gl.Enable(capability);
-    } else {
-        gl.Disable(capability);
-    }
-}
-
-}  // namespace
-
 bool DebugMessage::is_error() const {
     return type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR ||
            severity == GL_DEBUG_SEVERITY_HIGH;

@@ -36,12 +36,6 @@ void require_version(const GetProc& get_proc) {
     }
 }
 
-std::uint32_t get_unsigned(const Functions& gl, GLenum name) {
-    GLint value = 0;
-    gl.GetIntegerv(name, &value);
-    return static_cast<std::uint32_t>(value);
-}
-
 std::vector<std::string> get_extensions(const Functions& gl) {
     std::vector<std::string> names;
     const GLuint count = get_unsigned(gl, GL_NUM_EXTENSIONS);

@@ -15,6 +15,20 @@ void load(const GetProc& get_proc, const char* name, Function& function) {
 
 }  // namespace
 
+GLuint get_unsigned(const Functions& gl, GLenum what) {
+    GLint value = 0;
+    gl.GetIntegerv(what, &value);
+    return static_cast<GLuint>(value);
+}
+
+void set_enabled(const Functions& gl, GLenum capability, bool enabled) {
+    if (enabled) {
+        gl.Enable(capability);
+    } else {
+        gl.Disable(capability);
+    }
+}
+
 Functions load_functions(const GetProc& get_proc) {
     Functions functions;
 #define CANDELA_GL_LOAD(name, capitals) load(get_proc, "gl" #name, functions.name);

@@ -184,6 +184,11 @@ struct Functions {
     // NOLINTEND(readability-identifier-naming)
 };
 
+/// A number that glGetIntegerv returns: the name of an object, an enumeration or a count.
+[[nodiscard]] GLuint get_unsigned(const Functions& gl, GLenum what);
+
+void set_enabled(const Functions& gl, GLenum capability, bool enabled);
+
 /// Looks up every function. Throws GlError that names the first missing one.
 [[nodiscard]] Functions load_functions(const GetProc& get_proc);
 

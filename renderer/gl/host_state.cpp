@@ -49,11 +49,6 @@ GLint get(const Functions& gl, GLenum what) {
     return value;
 }
 
-/// For names of objects, enumerations and counts.
-GLuint get_unsigned(const Functions& gl, GLenum what) {
-    return static_cast<GLuint>(get(gl, what));
-}
-
 GLint get_at(const Functions& gl, GLenum what, GLuint index) {
     GLint value = 0;
     gl.GetIntegeri_v(what, index, &value);
@@ -62,14 +57,6 @@ GLint get_at(const Functions& gl, GLenum what, GLuint index) {
 
 GLuint get_unsigned_at(const Functions& gl, GLenum what, GLuint index) {
     return static_cast<GLuint>(get_at(gl, what, index));
-}
-
-void set_enabled(const Functions& gl, GLenum capability, bool enabled) {
-    if (enabled) {
-        gl.Enable(capability);
-    } else {
-        gl.Disable(capability);
-    }
 }
 
 void set_enabled_at(const Functions& gl, GLenum capability, GLuint index, bool enabled) {
