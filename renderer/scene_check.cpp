@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include <candela/scene/hierarchy.hpp>
 #include <candela/scene/scene_error.hpp>
 
 namespace candela {

@@ -291,9 +291,4 @@ Fault fault_of(const glm::mat4& world) {
     return {};
 }
 
-std::string describe(const World& world, Entity entity) {
-    const Name* name = world.find<Name>(entity);
-    return name ? fmt::format("entity \"{}\"", name->value) : fmt::format("entity {}", entity.index);
-}
-
 }  // namespace candela

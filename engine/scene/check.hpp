@@ -39,7 +39,4 @@ enum class Strictness : std::uint8_t {
 /// Of a local-to-world matrix.
 [[nodiscard]] Fault fault_of(const glm::mat4& world);
 
-/// The entity as messages call it: by its Name, or by its index if it has none.
-[[nodiscard]] std::string describe(const World& world, Entity entity);
-
 }  // namespace candela

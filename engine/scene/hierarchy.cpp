@@ -6,13 +6,16 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "engine/scene/check.hpp"
-
 namespace candela {
 
 glm::mat4 local_matrix(const Transform& transform) {
     const glm::mat4 translation = glm::translate(glm::mat4(1.0F), transform.translation);
     return glm::scale(translation * glm::mat4_cast(transform.rotation), transform.scale);
+}
+
+std::string describe(const World& world, Entity entity) {
+    const Name* name = world.find<Name>(entity);
+    return name ? fmt::format("entity \"{}\"", name->value) : fmt::format("entity {}", entity.index);
 }
 
 glm::mat4 world_matrix(const World& world, Entity entity) {

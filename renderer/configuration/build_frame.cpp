@@ -210,6 +210,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
         begin_view(graph, i);
         keep_parts(graph, shape.views[i].keep, frame.views[i].parts);
     }
+    end_view(graph);
     return frame;
 }
 

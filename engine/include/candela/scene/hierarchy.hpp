@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <glm/mat4x4.hpp>
 
 #include <candela/api.hpp>
@@ -11,6 +13,9 @@ namespace candela {
 
 /// Local-to-parent matrix T·R·S of a transform, column vectors, metres.
 [[nodiscard]] CANDELA_API glm::mat4 local_matrix(const Transform& transform);
+
+/// A live entity as messages call it: by its Name, or by its index if it has none.
+[[nodiscard]] CANDELA_API std::string describe(const World& world, Entity entity);
 
 /// Local-to-world matrix of a live entity: the product of the local matrices from its topmost ancestor down.
 /// An entity without a Transform has the identity. Takes time linear in the entity's depth, which is not
