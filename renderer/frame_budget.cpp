@@ -43,7 +43,7 @@ FrameCost cost_of(const FrameReport& frame) {
         if (!pass.ran) {
             continue;
         }
-        // Without the number of the view: see build_frame.
+        // Without the number of the view: see view_ending.
         const std::string_view name = std::string_view(pass.name).substr(0, pass.name.find(' '));
         if (name == "vpl-gather") {
             cost.gather += pass.gpu_ms;

@@ -5,6 +5,7 @@
 
 #include "renderer/device_of.hpp"
 #include "renderer/gl/shader_source.hpp"
+#include "renderer/gpu_of.hpp"
 #include "renderer/renderer_state.hpp"
 
 namespace candela {
@@ -77,6 +78,10 @@ Quality Renderer::quality() const {
     return state_->quality();
 }
 
+bool Renderer::settled() const {
+    return state_->settled();
+}
+
 const std::vector<PassRecord>& Renderer::last_passes() const {
     return state_->last_passes();
 }
@@ -86,8 +91,12 @@ std::string_view glsl_types() {
     return std::ranges::find(files, "types.glsl", &gl::EmbeddedShader::name)->text;
 }
 
+Gpu& gpu_of(Renderer& renderer) {
+    return renderer.state_->gpu();
+}
+
 gl::Device& device_of(Renderer& renderer) {
-    return renderer.state_->device();
+    return gpu_of(renderer).device();
 }
 
 }  // namespace candela

@@ -12,6 +12,7 @@
 #include <candela/graph/describe.hpp>
 #include "renderer/gl/host_state.hpp"
 #include "renderer/passes/output/tone_map.hpp"
+#include "renderer/target_check.hpp"
 
 namespace candela {
 namespace {
@@ -158,33 +159,18 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     last_passes_.clear();
 }
 
-void Renderer::State::require_possible(const Target& target) const {
-    const std::uint32_t most = gpu_.device().limits().texture_size;
-    if (target.size.x == 0 || target.size.y == 0 || target.size.x > most || target.size.y > most) {
-        throw gl::GlError(
-            fmt::format("a target of {} × {} pixels is not possible; this driver allows 1 to {}",
-                        target.size.x, target.size.y, most));
-    }
-    gl::require_complete(gpu_.gl(), target.framebuffer,
-                         fmt::format("the target, framebuffer {},", target.framebuffer));
-}
-
-void Renderer::State::require_texture(GLuint texture, std::string_view what) const {
-    if (gpu_.gl().IsTexture(texture) == GL_FALSE) {
-        throw gl::GlError(fmt::format("{}, texture {}, does not exist", what, texture));
-    }
-}
-
-void Renderer::State::require_possible(std::span<const RenderView> views) const {
+/// Throws gl::GlError if there are none, or if a target or a texture is not possible.
+void Renderer::State::require_views(std::span<const RenderView> views) const {
     if (views.empty()) {
         throw gl::GlError("a frame needs at least one view");
     }
+    const gl::Device& device = gpu_.device();
     for (const RenderView& view : views) {
-        require_possible(view.target);
+        require_possible(device, view.target);
         if (view.surfaces) {
-            require_texture(view.surfaces->depth, "the host's depth");
-            require_texture(view.surfaces->normal, "the host's normals");
-            require_texture(view.surfaces->albedo, "the host's albedo");
+            require_texture(device, view.surfaces->depth, "the host's depth");
+            require_texture(device, view.surfaces->normal, "the host's normals");
+            require_texture(device, view.surfaces->albedo, "the host's albedo");
         }
     }
 }
@@ -203,7 +189,7 @@ void Renderer::State::set_view(const ViewHandles& handles, const RenderView& vie
 }
 
 void Renderer::State::render(const World& world, std::span<const RenderView> views) {
-    require_possible(views);
+    require_views(views);
     const gl::HostState host_state(gpu_.gl());
     FrameShape shape{.views = {}, .quality = {}, .contents = contents_now(world)};
     std::vector<ViewRequest> requests;
@@ -283,7 +269,7 @@ FrameResults Renderer::State::results(std::size_t view) const {
 /// Frame budget in milliseconds; 0: no limit.
 double Renderer::State::budget_ms() const {
     constexpr double on_hardware = 16.0;
-    constexpr double on_software = 100.0;
+    constexpr double on_software = 60.0;
     if (configuration_.frame_budget_ms) {
         return static_cast<double>(*configuration_.frame_budget_ms);
     }
@@ -373,7 +359,7 @@ std::vector<FrameReport> Renderer::State::take_frames(bool wait) {
 }
 
 void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
-    require_possible(target);
+    require_possible(gpu_.device(), target);
     const gl::HostState host_state(gpu_.gl());
     gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
     std::vector<glm::vec4> texels;
@@ -383,16 +369,16 @@ void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Tar
     }
     texture.upload(std::as_bytes(std::span(texels)));
     texture.bind(UNIT_RADIANCE);
-    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, configuration_.tone_map);
+    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, display_of(configuration_));
 }
 
 void Renderer::State::tone_map(GLuint texture, const Target& target) {
-    require_possible(target);
-    require_texture(texture, "the radiance");
+    require_possible(gpu_.device(), target);
+    require_texture(gpu_.device(), texture, "the radiance");
     const gl::HostState host_state(gpu_.gl());
     gpu_.gl().BindTextureUnit(UNIT_RADIANCE, texture);
     gpu_.nearest().bind(UNIT_RADIANCE);
-    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, configuration_.tone_map);
+    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, display_of(configuration_));
 }
 
 std::string Renderer::State::describe(GraphFormat format) const {
@@ -434,11 +420,14 @@ std::uint32_t Renderer::State::count_lacking(const ViewHandles& view) const {
 }
 
 LightReport Renderer::State::report_lights(const ViewHandles& view) const {
+    LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size())};
+    if (!shows_light(configuration_.show)) {
+        return report;  // shadow maps are culled
+    }
     const ShadowPlan& shadows = runtime_.value(frame_.shadows);
-    LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size()),
-                       .with_shadow = static_cast<std::uint32_t>(shadows.shadows.size()),
-                       .shadow_views = runtime_.value(frame_.drawn_shadows).newly_drawn,
-                       .without_shadow = shadows.lights_without};
+    report.with_shadow = static_cast<std::uint32_t>(shadows.shadows.size());
+    report.shadow_views = runtime_.value(frame_.drawn_shadows).newly_drawn;
+    report.without_shadow = shadows.lights_without;
     if (!view.lists) {
         return report;
     }
@@ -454,7 +443,7 @@ LightReport Renderer::State::report_lights(const ViewHandles& view) const {
 
 Report Renderer::State::report(std::size_t index) {
     const ViewHandles& view = view_handles(index);
-    Report report{.gl_renderer = device().renderer(),
+    Report report{.gl_renderer = gpu_.device().renderer(),
                   .triangles = runtime_.value(frame_.metrics).triangles,
                   .vpls = std::nullopt,
                   .refined = view.averaged ? runtime_.value(*view.averaged) + 1 : 0,

@@ -36,8 +36,9 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] Report report(std::size_t view);
     [[nodiscard]] std::string describe(GraphFormat format) const;
     [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
+    [[nodiscard]] bool settled() const { return completed_ && !refine_ && shape_.quality == Quality{}; }
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
-    [[nodiscard]] gl::Device& device() { return gpu_.device(); }
+    [[nodiscard]] Gpu& gpu() { return gpu_; }
 
  private:
     using Clock = std::chrono::steady_clock;
@@ -51,10 +52,7 @@ class CANDELA_PRIVATE Renderer::State {
                    std::vector<Extension> extensions);
     [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration,
                                                   std::vector<Extension> extensions);
-    // These throw gl::GlError: if a target cannot be drawn into, or a texture is none.
-    void require_possible(const Target& target) const;
-    void require_possible(std::span<const RenderView> views) const;
-    void require_texture(GLuint texture, std::string_view what) const;
+    void require_views(std::span<const RenderView> views) const;
     void set_view(const ViewHandles& handles, const RenderView& view);
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);

@@ -150,4 +150,14 @@ void Animation::apply(World& world, int frame) const {
     }
 }
 
+bool Animation::moves(const World& world, Entity entity) const {
+    for (std::size_t i = 0; i < driven_.size(); ++i) {
+        const Track& track = script_.tracks[i];
+        const bool transforms = !track.translation.empty() || !track.rotation.empty() || !track.scale.empty();
+        if (transforms && driven_[i].entity == entity) return true;
+    }
+    const auto* transform = world.find<Transform>(entity);
+    return transform != nullptr && transform->parent && moves(world, transform->parent);
+}
+
 }  // namespace candela::sandbox

@@ -21,6 +21,7 @@ template <class T>
 struct Key {
     int frame = 0;
     T value{};
+    bool operator==(const Key&) const = default;
 };
 
 /// Sorted by frame, and no two keys share a frame. Without keys the value is not animated.
@@ -37,6 +38,7 @@ struct Track {
     Keys<float> intensity{};   ///< of a light: candela, or lux if directional
     Keys<glm::vec3> colour{};  ///< of a light: linear RGB
     Keys<bool> enabled{};      ///< of a light; always stepped
+    bool operator==(const Track&) const = default;
 };
 
 /// Animation of a scene by frame number.
@@ -46,6 +48,7 @@ struct Script {
     int frames = 1;                    ///< >= 1
     bool loop = false;                 ///< restart after the last frame, instead of holding the last frame
     std::vector<Track> tracks;         ///< at most one per node
+    bool operator==(const Script&) const = default;
 };
 
 /// The values of a track at one frame; nullopt for values that are not animated.
@@ -81,6 +84,9 @@ class Animation {
     /// intensity that it had when this object was created. `world` is the world that was given to the
     /// constructor, or a copy of it.
     void apply(World& world, int frame) const;
+
+    /// Whether a track moves the entity or one of its parents.
+    [[nodiscard]] bool moves(const World& world, Entity entity) const;
 
  private:
     struct Driven {

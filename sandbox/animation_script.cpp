@@ -1,4 +1,5 @@
 #include "sandbox/animation_script.hpp"
+#include "engine/json_fault.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,9 @@
 #include <glm/trigonometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "sandbox/input_file.hpp"
-#include "sandbox/output_file.hpp"
+#include "engine/import/unit_length.hpp"
+#include "sandbox/files/input_file.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "sandbox/scene.hpp"
 
 namespace candela::sandbox {
@@ -113,7 +115,7 @@ glm::vec3 read_colour(const Json& json, const std::string& place) {
 glm::quat unit_quaternion(const glm::dquat& rotation, const std::string& place) {
     const double length = glm::length(rotation);
     if (!(length > 0.0)) fail(place, "has no length");
-    return {rotation / length};
+    return {is_unit_length(length) ? rotation : rotation / length};
 }
 
 glm::quat read_turn(const Json& json, const std::string& place) {
@@ -196,12 +198,8 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
 Json parse(std::string_view text) {
     try {
         return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        const auto read = text.substr(0, std::min(error.byte, text.size()));
-        const auto line = 1 + std::count(read.begin(), read.end(), '\n');
-        throw std::runtime_error(fmt::format("not valid JSON: line {}", line));
-    } catch (const Json::out_of_range&) {
-        throw std::runtime_error("not valid JSON: a number is too large");
+    } catch (const Json::exception& error) {
+        throw std::runtime_error(json_fault(error));
     }
 }
 

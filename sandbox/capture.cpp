@@ -9,7 +9,7 @@
 
 #include "renderer/device_of.hpp"
 #include "renderer/passes/view/view.hpp"
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {
 

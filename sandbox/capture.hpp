@@ -6,7 +6,7 @@
 
 #include <candela/renderer.hpp>
 #include "renderer/gl/texture.hpp"
-#include "sandbox/picture.hpp"
+#include "sandbox/files/picture.hpp"
 
 namespace candela::sandbox {
 

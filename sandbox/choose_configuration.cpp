@@ -1,17 +1,21 @@
 #include "sandbox/choose_configuration.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sandbox/input_file.hpp"
+#include "sandbox/files/input_file.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
 Configuration read_over(const Configuration& base, const std::filesystem::path& path) {
+    std::error_code ignored;
+    const NamedConfiguration* named = find_named(path.string());
+    if (named != nullptr && !std::filesystem::exists(path, ignored)) return choose_named(base, *named);
     const ConfigurationResult result = read_configuration(read_file(path), base);
     if (result.configuration) return *result.configuration;
     throw std::runtime_error(fmt::format("{}: {}", path.string(), fmt::join(result.errors, "; ")));
@@ -48,10 +52,36 @@ Configuration choose_configuration(const Options& options, bool in_window) {
     return configuration;
 }
 
+Configuration choose_named(const Configuration& present, const NamedConfiguration& named) {
+    Configuration chosen = named.configuration;
+    chosen.refinement = present.refinement;
+    chosen.frame_budget_ms = present.frame_budget_ms;
+    chosen.tone_map = present.tone_map;
+    chosen.show = present.show;
+    return chosen;
+}
+
+std::string_view name_of(const Configuration& configuration) {
+    const auto named = named_configurations();
+    const auto found = std::find_if(named.begin(), named.end(), [&](const NamedConfiguration& candidate) {
+        return choose_named(configuration, candidate) == configuration;
+    });
+    return found == named.end() ? "custom" : found->name;
+}
+
+const NamedConfiguration* find_named(std::string_view name) {
+    const auto named = named_configurations();
+    const auto found = std::ranges::find(named, name, &NamedConfiguration::name);
+    return found == named.end() ? nullptr : &*found;
+}
+
 std::string list_configurations() {
+    const auto named = named_configurations();
+    const auto longest =
+        std::ranges::max(named, {}, [](const auto& one) { return one.name.size(); }).name.size();
     std::string text;
-    for (const NamedConfiguration& named : named_configurations())
-        text += fmt::format("{:<12} {}\n", named.name, named.description);
+    for (const NamedConfiguration& one : named)
+        text += fmt::format("{:<{}}  {}\n", one.name, longest, one.description);
     return text;
 }
 

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "sandbox/capture.hpp"
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {
 
@@ -48,7 +48,8 @@ void apply(Renderer& renderer, const Configuration& configuration) {
 
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size) {
-    Renderer renderer(context.get_proc(), {.log = print_warning});
+    Renderer renderer(context.get_proc(),
+                      {.shader_directory = options.shaders.value_or(fs::path()), .log = print_warning});
     apply(renderer, configuration);
     Capture capture(renderer, size);
     const std::optional<fs::path> out = picture_path(options);

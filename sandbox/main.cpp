@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "sandbox/live_reference.hpp"
 #include "sandbox/options.hpp"
 #include "sandbox/session.hpp"
 
@@ -14,5 +15,5 @@ int main(int count, char** arguments) {
         fmt::print(exit->status == 0 ? stdout : stderr, "{}", exit->text);
         return exit->status;
     }
-    return run(std::get<Options>(parsed));
+    return run(std::get<Options>(parsed), make_live_reference);
 }

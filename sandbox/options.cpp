@@ -1,6 +1,7 @@
 #include "sandbox/options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,8 @@
 #include <CLI/CLI.hpp>
 
 #include <candela/version.hpp>
-#include "sandbox/output_file.hpp"
+#include "sandbox/choose_configuration.hpp"
+#include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {
 
@@ -122,6 +124,15 @@ void add_output(CLI::App& app, const std::string& flag, std::optional<fs::path>&
         ->type_name(fmt::format("FILE{}", fmt::join(extensions, "|")));
 }
 
+/// The values with their names.
+template <typename Enum, std::size_t N>
+std::vector<std::pair<std::string, Enum>> named(const std::array<Enum, N>& values) {
+    std::vector<std::pair<std::string, Enum>> names;
+    names.reserve(N);
+    for (const Enum value : values) names.emplace_back(to_string(value), value);
+    return names;
+}
+
 void declare(CLI::App& app, Options& options) {
     app.set_help_flag("--help", "print this and exit");
     app.set_version_flag("--version", "candela " CANDELA_VERSION, "print the version and exit");
@@ -149,14 +160,9 @@ void declare(CLI::App& app, Options& options) {
         ->type_name("R,G,B|FILE.hdr|.exr");
     app.add_option("--camera", options.camera, "default: the scene's first, else one that sees all of it")
         ->type_name("NAME|INDEX");
-    add_choice<std::optional<Show>, Show>(
-        app, "--show", options.show,
-        {{"total", Show::total}, {"direct", Show::direct}, {"indirect", Show::indirect}},
-        "what goes into the picture");
-    std::vector<std::pair<std::string, ShadingPath>> paths;
-    paths.reserve(all_shading_paths.size());
-    for (const ShadingPath path : all_shading_paths) paths.emplace_back(to_string(path), path);
-    add_choice<std::optional<ShadingPath>, ShadingPath>(app, "--path", options.path, paths,
+    add_choice<std::optional<Show>, Show>(app, "--show", options.show, named(all_shows),
+                                          "what goes into the picture");
+    add_choice<std::optional<ShadingPath>, ShadingPath>(app, "--path", options.path, named(all_shading_paths),
                                                         "how visible surfaces meet their lights");
     add_choice<std::optional<bool>, bool>(app, "--indirect", options.indirect, {{"on", true}, {"off", false}},
                                           "light by way of surfaces");
@@ -183,10 +189,18 @@ void declare(CLI::App& app, Options& options) {
                    "a script of light, mesh and camera motion, or the name of a shipped one: door-opens, "
                    "flicker-walk, orbit-camera, orbit-light, teleport, toggle")
         ->type_name("FILE.json|NAME");
-    app.add_option("--config", options.config,
-                   "configuration; flags override it; in a window it is read again whenever it is saved")
-        ->type_name("FILE.json")
-        ->check(CLI::ExistingFile.description(""));
+    app.add_option(
+           "--config", options.config,
+           "configuration, or the name of one of --list-configs; flags override it; in a window a file is "
+           "read again whenever it is saved")
+        ->type_name("FILE.json|NAME")
+        ->check([](const std::string& given) {
+            return find_named(given) != nullptr ? std::string() : CLI::ExistingFile(given);
+        });
+    app.add_option("--shaders", options.shaders,
+                   "read the shaders from this directory; in a window, again whenever one is saved")
+        ->type_name("DIR")
+        ->check(CLI::ExistingDirectory.description(""));
     app.add_flag("--print-config", options.print_config, "print the whole configuration as JSON and exit");
     add_output(app, "--out", options.out, {".png", ".exr", ".pfm"},
                "picture: PNG tone-mapped, EXR and PFM linear radiance; %d numbers frames; default headless: "
@@ -194,6 +208,9 @@ void declare(CLI::App& app, Options& options) {
     add_output(app, "--report", options.report, {".json"}, "times, counts and the energy account");
     add_output(app, "--describe-graph", options.describe_graph, {".txt", ".dot", ".json"},
                "the compiled frame graph");
+    add_output(
+        app, "--ui-log", options.ui_log, {".jsonl"},
+        "what the window shows, and where its controls are, a JSON object a line: for automatic tests");
     app.add_flag("--list-configs", options.list_configs, "print the named configurations and exit");
 }
 

@@ -39,11 +39,13 @@ struct Options {
     std::optional<Interleave> interleave;
     std::optional<std::filesystem::path> animate;  ///< a script file, or the name of a shipped script
     std::optional<std::filesystem::path> config;
+    std::optional<std::filesystem::path> shaders;  ///< a directory; default: the shaders in the library
     bool print_config = false;
 
     std::optional<std::filesystem::path> out;             ///< .png, .exr or .pfm; default: see picture_path
     std::optional<std::filesystem::path> report;          ///< .json
     std::optional<std::filesystem::path> describe_graph;  ///< .txt, .dot or .json
+    std::optional<std::filesystem::path> ui_log;          ///< .jsonl
     bool list_configs = false;
 };
 

@@ -22,6 +22,7 @@ void Playback::advance(World& world) {
         playing_ = !at_end();
         frame_ = frame_of(animation_->script(), frame_ + 1);
     }
+    jumped_ = !shown_;
     if (shown_ == frame_) return;
     animation_->apply(world, frame_);
     shown_ = frame_;

@@ -31,12 +31,16 @@ class Playback {
     /// one shown last. Pauses at the end of a script that does not loop.
     void advance(World& world);
 
+    /// Whether the frame that was shown last follows a seek or a step, and not the frame before it.
+    [[nodiscard]] bool jumped() const { return jumped_; }
+
  private:
     [[nodiscard]] bool at_end() const { return frame_ + 1 == frames() && !animation_->script().loop; }
 
     const Animation* animation_;
     int frame_ = 0;
     bool playing_ = true;
+    bool jumped_ = false;
     std::optional<int> shown_;  ///< nullopt: the next frame must be applied
 };
 

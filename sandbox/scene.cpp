@@ -12,6 +12,7 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/gltf.hpp>
+#include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "engine/bvh/box.hpp"
 
@@ -71,10 +72,25 @@ fs::path shipped_file(const std::string& folder, const std::string& name) {
     return fs::exists(beside, ignored) ? beside : fs::path(CANDELA_SHIPPED) / folder / name;
 }
 
+std::vector<fs::path> shipped_scenes() {
+    std::vector<fs::path> scenes;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(shipped_file("scenes", ""), ignored)) {
+        if (entry.path().extension() == ".gltf") scenes.push_back(entry.path());
+    }
+    std::ranges::sort(scenes);
+    return scenes;
+}
+
 Scene load_scene(const fs::path& path) {
     Scene scene{path, {}, {}, {}};
     scene.warnings = import_gltf(path, scene.world).warnings;
     return scene;
+}
+
+std::vector<std::string> save_scene(const World& world, const fs::path& path,
+                                    std::span<const Entity> of_app) {
+    return export_gltf(world, path, of_app);
 }
 
 std::optional<std::string> animation_of(const Scene& scene) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,18 @@ struct Scene {
 /// there is none, in the source tree.
 [[nodiscard]] std::filesystem::path shipped_file(const std::string& folder, const std::string& name);
 
+/// The shipped scenes, sorted by name.
+[[nodiscard]] std::vector<std::filesystem::path> shipped_scenes();
+
 /// Imports a glTF file, without an animation. Throws SceneError that names the file and the error.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
+
+/// Saves a world as .gltf or .glb so that load_scene opens the same. `of_app` are entities that the app has
+/// added for itself, such as the camera of its view: they are not saved. Returns what glTF cannot hold, one
+/// line each. Throws SceneError that names the file and the error; the files are then as they were. See
+/// export_gltf.
+std::vector<std::string> save_scene(const World& world, const std::filesystem::path& path,
+                                    std::span<const Entity> of_app);
 
 /// The bounding sphere of the bounding box of all mesh instances; world space, metres. Radius 0 without
 /// meshes.

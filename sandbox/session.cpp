@@ -21,8 +21,8 @@
 #include "sandbox/headless.hpp"
 #include "sandbox/report.hpp"
 #include "sandbox/scene.hpp"
-#include "sandbox/window.hpp"
-#include "sandbox/window_session.hpp"
+#include "sandbox/window/window.hpp"
+#include "sandbox/window/window_session.hpp"
 
 namespace candela::sandbox {
 
@@ -116,7 +116,7 @@ Scene open_scene(const Options& options) {
     return scene;
 }
 
-void run_session(const Options& options) {
+void run_session(const Options& options, const MakeReference& make_reference) {
     ConfigWatch watch(options);
     const bool windowed = wants_window(options);
     const Configuration configuration = choose_configuration(options, windowed);
@@ -125,16 +125,14 @@ void run_session(const Options& options) {
                    options.list_configs ? list_configurations() : write_configuration(configuration) + "\n");
         return;
     }
+    std::vector<std::string> tried;
+    if (const std::unique_ptr<Window> window =
+            open_window(options, options.size.value_or(window_size), tried))
+        return run_window(
+            *window, [&] { return open_scene(options); }, configuration, watch, options, make_reference);
+    for (const std::string& error : tried) fmt::print(stderr, "candela: no window: {}\n", error);
     Scene scene = open_scene(options);
     for (const std::string& warning : scene.warnings) print_warning(warning);
-
-    std::vector<std::string> tried;
-    const glm::ivec2 size_in_window = options.size.value_or(window_size);
-    if (const std::unique_ptr<Window> window = open_window(options, size_in_window, tried)) {
-        const Entity camera = choose_camera(scene.world, options.camera, aspect(size_in_window));
-        return run_window(*window, scene, camera, configuration, watch, options);
-    }
-    for (const std::string& error : tried) fmt::print(stderr, "candela: no window: {}\n", error);
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
@@ -144,9 +142,9 @@ void run_session(const Options& options) {
 
 }  // namespace
 
-int run(const Options& options) {
+int run(const Options& options, const MakeReference& make_reference) {
     try {
-        run_session(options);
+        run_session(options, make_reference);
         return 0;
     } catch (const ContextError& error) {
         return report_error(error, no_driver);

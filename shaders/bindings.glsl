@@ -37,6 +37,8 @@
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_LACKING_MASK BINDING_LIST_COUNT
 #define BINDING_LACKING BINDING_LIST_ENTRIES
+// Passes that inspect resources read light lists, but draw no meshes.
+#define BINDING_INSPECTED_RANGES BINDING_INSTANCES
 
 #define MOST_STORAGE_BLOCKS 12  // of a program: blended surfaces, with light lists, surfels and rays
 
@@ -60,9 +62,14 @@
 // Passes that draw meshes read no G-buffer.
 #define UNIT_EMISSION UNIT_ALBEDO
 #define UNIT_SKY UNIT_ALBEDO
+// Passes that show textures read nothing else.
+#define UNIT_INSPECTED UNIT_BASE_COLOUR
+#define UNIT_FIRST_PICTURE UNIT_RADIANCE
+#define UNIT_SECOND_PICTURE UNIT_MEAN
 
 #define IMAGE_RADIANCE 0
 #define IMAGE_INDIRECT 0
+#define IMAGE_INSPECTED 0
 #define IMAGE_LAST 0
 
 #define ATTRIBUTE_POSITION 0
@@ -77,6 +84,7 @@
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
 #define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp
+#define INSPECT_GROUP 64    // invocations of a work group of inspect_range.comp: a power of two
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel

@@ -140,10 +140,67 @@ std::string dot_name(std::string_view text) {
     return escaped + "\"";
 }
 
+/// The names, one per line.
+std::string dot_label(const std::vector<std::string>& names) {
+    std::string label;
+    for (const std::string& name : names) {
+        const std::string quoted = dot_name(name);
+        label += (label.empty() ? "" : "\\n") + quoted.substr(1, quoted.size() - 2);
+    }
+    return '"' + label + '"';
+}
+
+/// All that one pass needs of another, of this frame or of the last one.
+struct DotEdge {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    bool of_history = false;
+    std::vector<std::string> resources;
+};
+
+void add_dot_edge(std::vector<DotEdge>& edges, DotEdge edge) {
+    const auto same = std::ranges::find_if(edges, [&](const DotEdge& other) {
+        return other.from == edge.from && other.to == edge.to && other.of_history == edge.of_history;
+    });
+    if (same == edges.end()) {
+        edges.push_back(std::move(edge));
+    } else if (std::ranges::count(same->resources, edge.resources.front()) == 0) {
+        same->resources.push_back(std::move(edge.resources.front()));
+    }
+}
+
+std::vector<DotEdge> dot_edges(const CompiledGraph& graph) {
+    const detail::Declaration& declared = graph.declared();
+    const detail::Plan& plan = graph.plan();
+    std::vector<DotEdge> edges;
+    for (const std::uint32_t pass : plan.order) {
+        for (const Access& access : declared.accesses_of(pass)) {
+            const std::uint32_t base = declared.resources[access.resource].history_of;
+            const std::uint32_t version =
+                base == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
+                             : plan.version(base, declared.resources[base].versions);
+            const std::uint32_t writer = plan.writer[version];
+            if (writer == none || (writer == pass && base == none)) {
+                continue;
+            }
+            add_dot_edge(edges, {writer, pass, base != none, {name_of(graph, access.resource)}});
+        }
+    }
+    return edges;
+}
+
+/// Whether the pass reads or writes textures or buffers; others only use values and components.
+bool uses_gpu(const CompiledGraph& graph, std::uint32_t pass) {
+    return std::ranges::any_of(graph.declared().accesses_of(pass), [&](const Access& access) {
+        return graph.declared().resources[access.resource].kind != ResourceKind::value;
+    });
+}
+
 nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t position) {
     const std::uint32_t pass = graph.plan().order[position];
     const detail::PassNode& node = graph.declared().passes[pass];
     nlohmann::ordered_json json{{"name", node.name},
+                                {"kind", uses_gpu(graph, pass) ? "gpu" : "cpu"},
                                 {"side_effect", node.side_effect},
                                 {"barrier", to_string(graph.plan().barrier[position])},
                                 {"world", nlohmann::ordered_json::array()},
@@ -165,6 +222,24 @@ nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t posit
         json[access.write ? "writes" : "reads"].push_back(std::move(entry));
     }
     return json;
+}
+
+/// The parts of storage_text on their own, as declared.
+void add_storage(const CompiledGraph& graph, const Resource& resource, nlohmann::ordered_json& json) {
+    json["kind"] = to_string(resource.kind);
+    if (resource.kind == ResourceKind::buffer) {
+        const BufferDesc& desc = graph.declared().buffer(resource);
+        json["count"] = desc.count;
+        json["stride"] = desc.stride;
+    }
+    if (resource.kind == ResourceKind::texture) {
+        const TextureDesc& desc = graph.declared().texture(resource);
+        json["format"] = to_string(desc.format);
+        json["shape"] = to_string(desc.shape);
+        json["size"] = {desc.size.x, desc.size.y};
+        json["layers"] = desc.layers;
+        json["mips"] = desc.mips;
+    }
 }
 
 }  // namespace
@@ -191,26 +266,17 @@ std::string describe_text(const CompiledGraph& graph) {
 
 std::string describe_dot(const CompiledGraph& graph) {
     const detail::Declaration& declared = graph.declared();
-    const detail::Plan& plan = graph.plan();
-    std::string text = "digraph frame {\n    rankdir=LR;\n    node [shape=box];\n";
-    for (const std::uint32_t pass : plan.order) {
-        text += fmt::format("    {};\n", dot_name(declared.passes[pass].name));
+    std::string text =
+        "digraph frame {\n    rankdir=LR;\n    label=\"boxes: on the GPU; rounded: on the CPU; dashed: last "
+        "frame's\";\n    node [shape=box, style=filled, fillcolor=\"#cfe2f3\"];\n";
+    for (const std::uint32_t pass : graph.plan().order) {
+        const char* look = uses_gpu(graph, pass) ? "" : " [style=\"rounded,filled\", fillcolor=\"#fff2cc\"]";
+        text += fmt::format("    {}{};\n", dot_name(declared.passes[pass].name), look);
     }
-    for (const std::uint32_t pass : plan.order) {
-        const std::string to = dot_name(declared.passes[pass].name);
-        for (const Access& access : declared.accesses_of(pass)) {
-            const std::uint32_t base = declared.resources[access.resource].history_of;
-            const std::uint32_t version =
-                base == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
-                             : plan.version(base, declared.resources[base].versions);
-            const std::uint32_t writer = plan.writer[version];
-            if (writer == none || (writer == pass && base == none)) {
-                continue;
-            }
-            text +=
-                fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[writer].name), to,
-                            dot_name(name_of(graph, access.resource)), base == none ? "" : ", style=dashed");
-        }
+    for (const DotEdge& edge : dot_edges(graph)) {
+        text += fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[edge.from].name),
+                            dot_name(declared.passes[edge.to].name), dot_label(edge.resources),
+                            edge.of_history ? ", style=dashed" : "");
     }
     return text + "}\n";
 }
@@ -241,6 +307,7 @@ std::string describe_json(const CompiledGraph& graph) {
         if (resource.history != none) {
             entry["history_object"] = object + 1;
         }
+        add_storage(graph, resource, entry);
         json["resources"].push_back(std::move(entry));
     }
     return json.dump(2) + "\n";

@@ -1,18 +1,14 @@
 #include <candela/scene/gltf.hpp>
 
-#include <algorithm>
-#include <exception>
-#include <new>
 #include <utility>
 #include <variant>
-
-#include <fmt/format.h>
 
 #include "engine/import/gltf_document.hpp"
 #include "engine/import/gltf_environment.hpp"
 #include "engine/import/gltf_materials.hpp"
 #include "engine/import/gltf_meshes.hpp"
 #include "engine/import/gltf_nodes.hpp"
+#include "engine/import/naming_file.hpp"
 
 namespace candela {
 
@@ -59,45 +55,23 @@ ImportReport import_document(gltf::Document document, const std::filesystem::pat
                              World& into) {
     const auto materials = gltf::read_materials(document, base_directory);
     const auto meshes = gltf::read_meshes(document, materials);
-    const std::optional<Environment> environment = gltf::read_environment(document.model, base_directory);
+    const auto environment = gltf::read_environment(document.model, base_directory);
     World grown = into;  // a copy, so that running out of memory halfway leaves the world as it was
-    ImportReport report = create_entities(gltf::read_nodes(document.model, meshes), grown);
+    ImportReport report = create_entities(gltf::read_nodes(document, meshes), grown);
     if (environment) {
         report.entities.push_back(grown.create());
-        grown.set(report.entities.back(), Name{"environment"});
-        grown.set(report.entities.back(), *environment);
+        grown.set(report.entities.back(), Name{environment->name});
+        grown.set(report.entities.back(), environment->environment);
     }
     report.warnings = std::move(document.warnings);
     into = std::move(grown);
     return report;
 }
 
-/// The message as one line of limited length. It may quote arbitrary strings from the file.
-std::string one_line(std::string_view message) {
-    constexpr std::size_t longest = 300;
-    std::string line(message.substr(0, longest));
-    std::ranges::replace_if(
-        line, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, ' ');
-    line.erase(line.find_last_not_of(" .") + 1);
-    return line;
-}
-
-/// Runs the import and turns every exception into a SceneError that names the file.
-template <class Import>
-ImportReport naming_file(std::string_view name, Import import) {
-    try {
-        return import();
-    } catch (const std::bad_alloc&) {
-        throw SceneError(fmt::format("{}: it does not fit into memory", name));
-    } catch (const std::exception& error) {
-        throw SceneError(fmt::format("{}: {}", name, one_line(error.what())));
-    }
-}
-
 }  // namespace
 
 ImportReport import_gltf(const std::filesystem::path& path, World& into) {
-    return naming_file(path.string(), [&] {
+    return gltf::naming_file(path.string(), [&] {
         const std::filesystem::path directory = path.parent_path();
         return import_document(gltf::read_document(gltf::read_file(path, "the file"), directory), directory,
                                into);
@@ -106,7 +80,7 @@ ImportReport import_gltf(const std::filesystem::path& path, World& into) {
 
 ImportReport import_gltf(std::span<const unsigned char> bytes, const std::filesystem::path& base_directory,
                          std::string_view name, World& into) {
-    return naming_file(name, [&] {
+    return gltf::naming_file(name, [&] {
         return import_document(gltf::read_document(bytes, base_directory), base_directory, into);
     });
 }

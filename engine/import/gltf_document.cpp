@@ -1,4 +1,5 @@
 #include "engine/import/gltf_document.hpp"
+#include "engine/json_fault.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -118,10 +119,7 @@ Json parse_json(Bytes text) {
     try {
         return Json::parse(text.begin(), text.end());
     } catch (const Json::exception& error) {
-        const std::string_view message = error.what();
-        const std::size_t prefix = message.find("] ");  // [json.exception.parse_error.101]
-        throw SceneError(fmt::format(
-            "invalid JSON: {}", prefix == std::string_view::npos ? message : message.substr(prefix + 2)));
+        throw SceneError(json_fault(error));
     }
 }
 
@@ -191,6 +189,14 @@ std::vector<tinygltf::Image> describe_images(const Json& document) {
         }
     }
     return images;
+}
+
+std::vector<bool> find_named_nodes(const Json& document) {
+    std::vector<bool> named;
+    for (const Json& node : document.value("nodes", Json::array())) {
+        named.push_back(node.contains("name"));
+    }
+    return named;
 }
 
 /// Adds two defaults that TinyGLTF 2.5 does not handle: byte offsets that a sparse accessor leaves out, and
@@ -338,6 +344,7 @@ Document read_document(Bytes bytes, const std::filesystem::path& base_directory)
     std::vector<tinygltf::Buffer> buffers = load_buffers(json, container.binary, base_directory);
     std::vector<tinygltf::Image> images = describe_images(json);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
+    document.node_has_name = find_named_nodes(json);
     document.model = parse_model(std::move(json));
     document.model.buffers = std::move(buffers);
     document.model.images = std::move(images);

@@ -17,15 +17,17 @@ inline constexpr const char* emissive_strength_extension = "KHR_materials_emissi
 inline constexpr const char* texture_transform_extension = "KHR_texture_transform";
 inline constexpr const char* unlit_extension = "KHR_materials_unlit";
 inline constexpr const char* environment_extension = "CANDELA_environment";
+inline constexpr const char* light_extension = "CANDELA_light";
 /// All extensions that are supported.
-inline constexpr std::array<std::string_view, 5> supported_extensions{
-    lights_extension, emissive_strength_extension, texture_transform_extension, unlit_extension,
-    environment_extension};
+inline constexpr std::array<std::string_view, 6> supported_extensions{
+    lights_extension, emissive_strength_extension, texture_transform_extension,
+    unlit_extension,  environment_extension,       light_extension};
 
 /// A checked glTF document with its buffers loaded (`model.buffers[i].data`). Images stay encoded:
 /// `model.images[i]` has a name and either `uri` or `bufferView`. Animations and skins are left out.
 struct Document {
     tinygltf::Model model;
+    std::vector<bool> node_has_name;  ///< per node: whether the file names it, if only with an empty name
     std::vector<std::string> warnings;
 };
 

@@ -2,16 +2,23 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <candela/scene/components.hpp>
 #include "engine/import/gltf_document.hpp"
 
 namespace candela::gltf {
 
-/// The environment of the default scene: its extension CANDELA_environment, with members `radiance` (three
-/// numbers; default 1), `uri` (a picture, see load_sky_picture; default none) and `rotation` (radians;
-/// default 0). Throws SceneError if the picture cannot be read.
-[[nodiscard]] std::optional<Environment> read_environment(const tinygltf::Model& model,
-                                                          const std::filesystem::path& base_directory);
+struct NamedEnvironment {
+    std::string name;
+    Environment environment;
+};
+
+/// The environment of the default scene: its extension CANDELA_environment, with members `name` (default
+/// "environment"), `radiance` (three numbers; default 1), `uri` or `bufferView` (a picture, see
+/// load_sky_picture; default none) and `rotation` (radians; default 0). Throws SceneError if the picture
+/// cannot be read.
+[[nodiscard]] std::optional<NamedEnvironment> read_environment(const tinygltf::Model& model,
+                                                               const std::filesystem::path& base_directory);
 
 }  // namespace candela::gltf

@@ -189,7 +189,7 @@ AlphaMode to_alpha_mode(std::string_view name) {
 /// KHR_materials_unlit: what is seen is the base colour, whatever the light. Such a surface emits it.
 void show_unlit(Material& material) {
     material.emissive = glm::vec3(material.base_colour);
-    material.emissive_texture = material.base_colour_texture;
+    material.emissive_texture = emits(material) ? material.base_colour_texture : nullptr;
     material.base_colour = glm::vec4(0.0F, 0.0F, 0.0F, material.base_colour.a);
 }
 

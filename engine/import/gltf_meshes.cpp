@@ -12,6 +12,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_accessors.hpp"
+#include "engine/import/unit_length.hpp"
 
 namespace candela::gltf {
 
@@ -53,7 +54,7 @@ std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::
             const glm::dvec3 normal(normals[i]);
             const double length = glm::length(normal);
             if (length > 0.0) {
-                vertices[i].normal = glm::vec3(normal / length);
+                vertices[i].normal = is_unit_length(length) ? normals[i] : glm::vec3(normal / length);
             }
         }
     }

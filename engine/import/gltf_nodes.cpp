@@ -12,6 +12,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/decompose.hpp"
 #include "engine/import/gltf_document.hpp"
+#include "engine/import/unit_length.hpp"
 
 namespace candela::gltf {
 
@@ -120,7 +121,7 @@ Transform read_translation_rotation_scale(const tinygltf::Node& node) {
     if (length == 0.0) {
         throw SceneError("its rotation is zero");
     }
-    transform.rotation = glm::quat(rotation / length);
+    transform.rotation = glm::quat(is_unit_length(length) ? rotation : rotation / length);
     return transform;
 }
 
@@ -171,6 +172,12 @@ SpotLight read_cones(const tinygltf::SpotLight& source, int index) {
     return light;
 }
 
+bool casts_shadow(const tinygltf::Light& source) {
+    const auto extension = source.extensions.find(light_extension);
+    return extension == source.extensions.end() || !extension->second.Has("castsShadow") ||
+           extension->second.Get("castsShadow").Get<bool>();
+}
+
 decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int index) {
     glm::vec3 colour(1.0F);
     assign(colour, source.color);
@@ -179,10 +186,10 @@ decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int inde
         source.range > 0.0 ? static_cast<float>(source.range) : std::numeric_limits<float>::infinity();
 
     if (source.type == "directional") {
-        return DirectionalLight{colour, intensity};
+        return DirectionalLight{colour, intensity, casts_shadow(source)};
     }
     if (source.type == "point") {
-        return PointLight{colour, intensity, range};
+        return PointLight{colour, intensity, range, casts_shadow(source)};
     }
     if (source.type != "spot") {
         throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, source.type));
@@ -191,6 +198,7 @@ decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int inde
     light.colour = colour;
     light.intensity = intensity;
     light.range = range;
+    light.casts_shadow = casts_shadow(source);
     return light;
 }
 
@@ -200,13 +208,17 @@ int light_of(const tinygltf::Node& node) {
     return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
 }
 
-std::string name_of(const tinygltf::Model& model, int index) {
+std::string name_of(const Document& document, int index) {
+    const tinygltf::Model& model = document.model;
     const tinygltf::Node& node = node_at(model, index);
+    if (document.node_has_name[static_cast<std::size_t>(index)]) {
+        return node.name;
+    }
     const auto name_in = [](const auto& list, int i) {
         return i < 0 ? std::string() : list[static_cast<std::size_t>(i)].name;
     };
-    for (std::string name : {node.name, name_in(model.cameras, node.camera),
-                             name_in(model.lights, light_of(node)), name_in(model.meshes, node.mesh)}) {
+    for (std::string name : {name_in(model.cameras, node.camera), name_in(model.lights, light_of(node)),
+                             name_in(model.meshes, node.mesh)}) {
         if (!name.empty()) {
             return name;
         }
@@ -243,8 +255,9 @@ const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
     return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
 }
 
-std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
+std::vector<StagedEntity> read_nodes(const Document& document,
                                      const std::vector<std::shared_ptr<const Mesh>>& meshes) {
+    const tinygltf::Model& model = document.model;
     check_hierarchy(model);
     std::vector<StagedEntity> entities;
     std::vector<Visit> ahead;
@@ -255,7 +268,7 @@ std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
         for (const Transform& transform : read_transforms(node_at(model, node), node)) {
             StagedEntity& entity = entities.emplace_back();
             entity.parent = parent;
-            entity.name = name_of(model, node);
+            entity.name = name_of(document, node);
             entity.transform = transform;
             parent = entities.size() - 1;
         }

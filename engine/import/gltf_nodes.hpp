@@ -10,6 +10,7 @@
 #include <tiny_gltf.h>
 
 #include <candela/scene/components.hpp>
+#include "engine/import/gltf_document.hpp"
 
 namespace candela::gltf {
 
@@ -28,10 +29,11 @@ struct StagedEntity {
 
 /// The nodes of the default scene (the first scene if no default is given), parents before children, siblings
 /// in the file's order. A sheared node makes two entities with its name, the first the parent of the second
-/// (see decompose). A node without a name gets the name of its camera, light or mesh, or else `node N`.
+/// (see decompose). A node that the file does not name gets the name of its camera, light or mesh, or else
+/// `node N`.
 /// Throws SceneError, which names the node, camera or light and the problem, such as two parents, a cycle or
 /// no scene.
-[[nodiscard]] std::vector<StagedEntity> read_nodes(const tinygltf::Model& model,
+[[nodiscard]] std::vector<StagedEntity> read_nodes(const Document& document,
                                                    const std::vector<std::shared_ptr<const Mesh>>& meshes);
 
 }  // namespace candela::gltf

@@ -280,6 +280,8 @@ std::vector<Rule> rules() {
         {"extensions.KHR_lights_punctual.lights.[].spot.innerConeAngle", number(inner_cone)},
         {"extensions.KHR_lights_punctual.lights.[].spot.outerConeAngle", number(outer_cone)},
 
+        {"extensions.KHR_lights_punctual.lights.[].extensions.CANDELA_light.castsShadow", flag()},
+
         {"nodes.[].name", text()},
         {"nodes.[].mesh", mesh},
         {"nodes.[].camera", camera},
@@ -292,6 +294,8 @@ std::vector<Rule> rules() {
         {"nodes.[].extensions.KHR_lights_punctual.light", light},
         {"scenes.[].nodes.[]", node},
         {"scenes.[].extensions.CANDELA_environment.radiance", numbers(3, not_negative)},
+        {"scenes.[].extensions.CANDELA_environment.bufferView", buffer_view},
+        {"scenes.[].extensions.CANDELA_environment.name", text()},
         {"scenes.[].extensions.CANDELA_environment.rotation", number(any)},
         {"scenes.[].extensions.CANDELA_environment.uri", text()},
         {"scene", scene},

@@ -13,28 +13,19 @@
 #include <tinyexr.h>
 
 #include "engine/import/gltf_document.hpp"
+#include "engine/import/sky_picture_size.hpp"
 #include "engine/scene/check.hpp"
 
 namespace candela {
 namespace {
 
-constexpr std::uint32_t widest = 16384;
+constexpr std::int64_t widest = 16384;
 
 struct Free {
     void operator()(float* texels) const { std::free(texels); }  // NOLINT(cppcoreguidelines-no-malloc)
 };
 /// Texels that a library has allocated with malloc.
 using Texels = std::unique_ptr<float, Free>;
-
-void check_size(int width, int height) {
-    if (width != 2 * height || width <= 0) {
-        throw SceneError(
-            fmt::format("it has {} × {} pixels and is not twice as wide as high", width, height));
-    }
-    if (static_cast<std::uint32_t>(width) > widest) {
-        throw SceneError(fmt::format("it is {} pixels wide; {} are possible", width, widest));
-    }
-}
 
 /// `channels`: floats of a texel, of which the first three are used.
 SkyPicture to_picture(int width, int height, const Texels& texels, std::size_t channels) {
@@ -59,7 +50,7 @@ SkyPicture read_hdr(gltf::Bytes bytes) {
     if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
         throw SceneError("it is not a readable Radiance picture");
     }
-    check_size(width, height);
+    check_sky_size(width, height);
     const Texels texels(stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3));
     if (texels == nullptr) {
         throw SceneError(fmt::format("it cannot be decoded: {}", stbi_failure_reason()));
@@ -87,7 +78,7 @@ SkyPicture read_exr(gltf::Bytes bytes) {
     check_exr(ParseEXRHeaderFromMemory(&header, &version, bytes.data(), bytes.size(), &message), message);
     const EXRBox2i window = header.data_window;
     FreeEXRHeader(&header);
-    check_size(window.max_x - window.min_x + 1, window.max_y - window.min_y + 1);
+    check_sky_size(window.max_x - window.min_x + 1, window.max_y - window.min_y + 1);
     float* loaded = nullptr;
     int width = 0;
     int height = 0;
@@ -105,6 +96,16 @@ std::shared_ptr<const SkyPicture> checked(SkyPicture picture) {
 }
 
 }  // namespace
+
+void check_sky_size(std::int64_t width, std::int64_t height) {
+    if (width != 2 * height || width <= 0) {
+        throw SceneError(
+            fmt::format("it has {} × {} pixels and is not twice as wide as high", width, height));
+    }
+    if (width > widest) {
+        throw SceneError(fmt::format("it is {} pixels wide; {} are possible", width, widest));
+    }
+}
 
 std::shared_ptr<const SkyPicture> decode_sky_picture(gltf::Bytes bytes) {
     if (gltf::starts_with(bytes, "\x76\x2f\x31\x01")) {

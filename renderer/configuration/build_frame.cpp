@@ -1,8 +1,5 @@
 #include "renderer/configuration/build_frame.hpp"
 
-#include <fmt/format.h>
-#include <string>
-
 #include <candela/scene/hierarchy.hpp>
 #include "renderer/configuration/build_view.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
@@ -38,7 +35,7 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
 
 /// Begins the part of the graph that belongs to one view.
 void begin_view(FrameGraph& graph, std::size_t index) {
-    graph.append_to_names(index == 0 ? std::string() : fmt::format(" {}", index + 1));
+    graph.append_to_names(view_ending(index));
 }
 
 void end_view(FrameGraph& graph) {
@@ -99,8 +96,8 @@ struct WantedVpls {
 WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& contents) {
     const bool has_emission = contents.emitters || contents.sky;
     WantedVpls wanted{configuration.vpls,
-                      {.emitted = has_emission && configuration.show != Show::indirect,
-                       .reflected = configuration.indirect && configuration.show != Show::direct}};
+                      {.emitted = has_emission && shows_direct(configuration.show),
+                       .reflected = configuration.indirect && shows_indirect(configuration.show)}};
     if (has_emission) {
         wanted.settings.placement = VplPlacement::surfels;
     }

@@ -34,7 +34,7 @@ FrameParts asked_parts(FrameParts keep, std::span<const Extension> extensions) {
 }
 
 bool shows_emitters(const SharedFrame& shared) {
-    return shared.contents.emitters && shared.configuration.show != Show::indirect;
+    return shared.contents.emitters && shows_sources(shared.configuration.show);
 }
 
 /// Surfaces that are found before they are shaded, if any.
@@ -65,7 +65,8 @@ FoundSurfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, con
 std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                                     const LitScene& lit, const FrameView& view,
                                     std::optional<TextureHandle> depth) {
-    switch (info_of(configuration.path).lights) {
+    const LightList list = info_of(configuration.path).lights;
+    switch (shows_light(configuration.show) ? list : LightList::all) {
         case LightList::all:
             break;
         case LightList::tile: {
@@ -100,7 +101,8 @@ Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>&
                       .shadows = shared.lit.shadows,
                       .lists = lists,
                       .show = shared.configuration.show};
-    if (shared.contents.suns && shared.configuration.shadows.enabled) {
+    const bool shadows = shared.configuration.shadows.enabled && shows_light(lighting.show);
+    if (shared.contents.suns && shadows) {
         lighting.sun_rays = shared.lit.tracing;
     }
     if (shared.vpls) {
@@ -118,7 +120,7 @@ Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& sha
     if (out.interleave > 1) {
         lighting.most_vpls = most_vpls_of_blended;
     }
-    if (path.lights == LightList::tile && path.surfaces != SurfaceStage::forward) {
+    if (out.lists && path.lights == LightList::tile && path.surfaces != SurfaceStage::forward) {
         lighting.lists = add_blended_light_tiles(graph, gpu, out.lists->inputs, shared.lit.scene.layout);
     }
     return lighting;
@@ -171,7 +173,7 @@ void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const S
     if (shows_emitters(shared)) {
         parts.radiance = add_emission(graph, gpu, seen, view, {*parts.radiance, *parts.depth});
     }
-    if (shared.lit.sky && shared.configuration.show != Show::indirect) {
+    if (shared.lit.sky && shows_sources(shared.configuration.show)) {
         parts.radiance = add_background(graph, gpu, *shared.lit.sky, view, {*parts.radiance, *parts.depth});
     }
 }
@@ -227,7 +229,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
     }
     extend(graph, shared, ExtensionPlace::before_tone_map, parts);
-    add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, configuration.tone_map);
+    add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, display_of(configuration));
     out.parts = parts;
 }
 

@@ -70,6 +70,9 @@ class Device {
     /// output.
     [[nodiscard]] std::vector<DebugMessage> take_messages();
 
+    /// Waits until the GPU has done everything so far.
+    void finish() const { functions_.Finish(); }
+
     /// Objects made for this device that are alive now.
     [[nodiscard]] const ObjectCounts& live() const { return live_; }
 

@@ -75,6 +75,7 @@
     X(TextureSubImage3D, TEXTURESUBIMAGE3D) \
     X(TextureParameteri, TEXTUREPARAMETERI) \
     X(GetTextureSubImage, GETTEXTURESUBIMAGE) \
+    X(CopyImageSubData, COPYIMAGESUBDATA) \
     X(GetTextureParameteriv, GETTEXTUREPARAMETERIV) \
     X(GetTextureLevelParameteriv, GETTEXTURELEVELPARAMETERIV) \
     X(GenerateTextureMipmap, GENERATETEXTUREMIPMAP) \

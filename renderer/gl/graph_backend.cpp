@@ -49,7 +49,8 @@ ObjectId GraphBackend::create_buffer(std::string_view name, const BufferDesc& de
 }
 
 ObjectId GraphBackend::create_view(std::string_view name, ObjectId whole, TexturePart part) {
-    Texture view(*device_, name, textures_.at(whole), part);
+    const Texture& shared = textures_.at(whole);
+    Texture view(*device_, name, shared.name(), shared.desc(), part);
     const ObjectId id = view.name();
     textures_.emplace(id, std::move(view));
     return id;

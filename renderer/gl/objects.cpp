@@ -159,9 +159,10 @@ void Buffer::write(std::span<const std::byte> data, std::uint64_t offset) {
                             data.data());
 }
 
-void Buffer::read(std::span<std::byte> data) const {
-    gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    gl().GetNamedBufferSubData(name(), 0, static_cast<GLsizeiptr>(data.size()), data.data());
+void read_buffer(const Functions& gl, GLuint buffer, std::span<std::byte> data, std::uint64_t offset) {
+    gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl.GetNamedBufferSubData(buffer, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()),
+                             data.data());
 }
 
 Sampler::Sampler(Device& device, std::string_view label, const SamplerDesc& desc)

@@ -53,6 +53,10 @@ concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 template <class R>
 concept PlainRange = std::ranges::contiguous_range<R> && Plain<std::ranges::range_value_t<R>>;
 
+/// Reads bytes of the buffer named `buffer` back, from `offset` on, after all GPU commands issued so far;
+/// waits for the GPU.
+void read_buffer(const Functions& gl, GLuint buffer, std::span<std::byte> data, std::uint64_t offset = 0);
+
 /// A buffer of fixed size that the CPU can upload to, for vertices, indices, uniforms, storage or indirect
 /// arguments.
 class Buffer : public Object {
@@ -83,7 +87,7 @@ class Buffer : public Object {
     template <Plain T>
     [[nodiscard]] std::vector<T> download() const {
         std::vector<T> content(static_cast<std::size_t>(bytes() / sizeof(T)));
-        read(std::as_writable_bytes(std::span<T>(content)));
+        read_buffer(gl(), name(), std::as_writable_bytes(std::span<T>(content)));
         return content;
     }
 
@@ -92,7 +96,6 @@ class Buffer : public Object {
 
  private:
     void write(std::span<const std::byte> data, std::uint64_t offset);
-    void read(std::span<std::byte> data) const;
 };
 
 /// How shaders filter a texture.

@@ -87,13 +87,12 @@ GLuint create_texture(const Functions& gl, TextureShape shape) {
     return name;
 }
 
-GLuint create_view(const Functions& gl, const Texture& whole, TexturePart part) {
-    const TextureDesc desc = part_desc(whole.desc(), part);
+GLuint create_view(const Functions& gl, GLuint whole, const TextureDesc& desc, TexturePart part) {
     const GLuint first_layer = part.layer == TexturePart::all_layers ? 0 : part.layer;
     GLuint name = 0;
     gl.GenTextures(1, &name);  // CreateTextures gives the name a target, which glTextureView does not accept
-    gl.TextureView(name, texture_target(desc.shape), whole.name(), format_info(desc.format).internal,
-                   part.mip, 1, first_layer, desc.layers);
+    gl.TextureView(name, texture_target(desc.shape), whole, format_info(desc.format).internal, part.mip, 1,
+                   first_layer, desc.layers);
     return name;
 }
 
@@ -161,9 +160,11 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     set_sampling();
 }
 
-Texture::Texture(Device& device, std::string_view label, const Texture& whole, TexturePart part)
-    : Object(device, ObjectKind::texture, create_view(device.gl(), whole, part), label),
-      desc_(part_desc(whole.desc(), part)) {
+Texture::Texture(Device& device, std::string_view label, GLuint whole, const TextureDesc& desc,
+                 TexturePart part)
+    : Object(device, ObjectKind::texture, create_view(device.gl(), whole, part_desc(desc, part), part),
+             label),
+      desc_(part_desc(desc, part)) {
     set_sampling();
 }
 
@@ -240,6 +241,22 @@ void Texture::read_as(GLenum type, std::span<std::byte> content, std::uint32_t l
 
 void Texture::bind(GLuint unit) const {
     gl().BindTextureUnit(unit, name());
+}
+
+std::vector<glm::vec4> read_texels(const Functions& gl, GLuint texture, glm::uvec2 size) {
+    std::vector<glm::vec4> texels(static_cast<std::size_t>(size.x) * size.y);
+    const PackedTransfers packed(gl);
+    gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    gl.GetTextureSubImage(texture, 0, 0, 0, 0, static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y), 1,
+                          GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(glm::vec4)),
+                          texels.data());
+    return texels;
+}
+
+void copy_texels(const Functions& gl, GLuint from, GLuint to, glm::uvec2 size) {
+    gl.MemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
+    gl.CopyImageSubData(from, GL_TEXTURE_2D, 0, 0, 0, 0, to, GL_TEXTURE_2D, 0, 0, 0, 0,
+                        static_cast<GLsizei>(size.x), static_cast<GLsizei>(size.y), 1);
 }
 
 }  // namespace candela::gl

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -31,8 +32,9 @@ class Texture : public Object {
     /// the texture or there is not enough memory.
     Texture(Device& device, std::string_view label, const TextureDesc& desc);
 
-    /// A view of a part of `whole`, which shares its storage. Keeps the storage alive.
-    Texture(Device& device, std::string_view label, const Texture& whole, TexturePart part);
+    /// A view of a part of the texture named `whole`, whose storage `desc` describes, and which it shares.
+    /// Keeps the storage alive.
+    Texture(Device& device, std::string_view label, GLuint whole, const TextureDesc& desc, TexturePart part);
 
     [[nodiscard]] const TextureDesc& desc() const { return desc_; }
     [[nodiscard]] GLenum target() const { return texture_target(desc_.shape); }
@@ -62,5 +64,12 @@ class Texture : public Object {
 
     TextureDesc desc_;
 };
+
+/// Level 0 of a 2D colour texture of this name and size, row by row, the bottom row first; missing channels
+/// are (0, 0, 0, 1). Waits for the GPU.
+[[nodiscard]] std::vector<glm::vec4> read_texels(const Functions& gl, GLuint texture, glm::uvec2 size);
+
+/// Copies level 0 of a 2D texture to another of the same size and format.
+void copy_texels(const Functions& gl, GLuint from, GLuint to, glm::uvec2 size);
 
 }  // namespace candela::gl

@@ -1,11 +1,13 @@
-// Maps radiance to display colours, or copies it. One fragment per pixel of the target.
+// Maps radiance to display colours, or copies it; see Display in tone_map.hpp. One fragment per pixel of the target.
 #include "bindings.glsl"
 #include "maths.glsl"
 
 layout(binding = UNIT_RADIANCE) uniform sampler2D radiance;
 
-uniform float exposure;   // multiplies radiance
-uniform bool curve;       // off: writes linear radiance; alpha is 1 where there is a surface
+uniform float exposure;
+uniform bool curve;
+uniform bool encoded;
+uniform bool opaque;
 uniform vec2 target_origin;  // in the framebuffer, pixels
 uniform vec2 target_size;
 
@@ -35,6 +37,8 @@ void main() {
     vec2 size = vec2(textureSize(radiance, 0));
     vec2 pixel = gl_FragCoord.xy - target_origin;
     vec4 linear = size == target_size ? texelFetch(radiance, ivec2(pixel), 0) : scaled_radiance(pixel, size);
-    linear.rgb *= exposure;
-    colour = curve ? vec4(srgb_encode(filmic(linear.rgb)), 1.0) : linear;
+    vec3 shown = linear.rgb * exposure;
+    if (curve) shown = filmic(shown);
+    if (encoded) shown = srgb_encode(shown);
+    colour = vec4(shown, opaque ? 1.0 : linear.a);
 }

@@ -85,13 +85,33 @@ void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout v
 
 #endif
 
+#if defined(SHOW_ALBEDO) || defined(SHOW_NORMALS)
+
+// What the surfaces are, instead of their light.
+void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
+    for (int s = 0; s < SURFACES; ++s) {
+#ifdef SHOW_ALBEDO
+        radiance[s] = surfaces[s].albedo;
+#else
+        radiance[s] = 0.5 * surfaces[s].normal + 0.5;
+#endif
+    }
+}
+
+#else
+
 // Radiance that the surfaces reflect: ρ/π times their irradiance. `pixels`: their pixels, counted from the target's
-// lower left corner.
+// lower left corner. SHOW_IRRADIANCE: as if they were white.
 void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
     vec3 direct[SURFACES];
     vec3 indirect[SURFACES];
     for (int s = 0; s < SURFACES; ++s) direct[s] = indirect[s] = vec3(0.0);
     gather_lights(surfaces, pixels, direct);
     if (lights_before == 0u) gather_indirect(surfaces, pixels, indirect);
+#ifdef SHOW_IRRADIANCE
+    for (int s = 0; s < SURFACES; ++s) surfaces[s].albedo = vec3(1.0);
+#endif
     for (int s = 0; s < SURFACES; ++s) radiance[s] = surfaces[s].albedo / PI * (direct[s] + indirect[s] / PI);
 }
+
+#endif

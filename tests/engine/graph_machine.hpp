@@ -82,7 +82,22 @@ inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& ord
 /// A runtime with its own backend, which runs the graph's passes as computations.
 class Machine {
  public:
-    Machine(const Graph& graph, CompileOptions options) : graph_(graph), runtime_(backend_) {
+    Machine(const Graph& graph, CompileOptions options) : runtime_(backend_) {
+        for (std::size_t index = 0; index < graph.resources.size(); ++index) {
+            const Resource& resource = graph.resources[index];
+            if (resource.kind != ResourceKind::value && resource.lifetime == Lifetime::imported) {
+                imported_[index] = resource.kind == ResourceKind::texture
+                                       ? backend_.create_texture("import", {})
+                                       : backend_.create_buffer("import", {});
+            }
+        }
+        switch_to(graph, options);
+    }
+
+    /// Goes on with another graph, whose resources are the same. It must outlive the machine.
+    void switch_to(const Graph& graph, CompileOptions options) {
+        graph_ = &graph;
+        handles_ = {};
         auto compiled =
             compile(declare(graph, handles_,
                             [this](std::size_t pass, const auto& handles) {
@@ -90,20 +105,16 @@ class Machine {
                             }),
                     options);
         runtime_.switch_to(std::move(compiled).take());
-        for (std::size_t index = 0; index < graph.resources.size(); ++index) {
-            const bool gpu = graph.resources[index].kind != ResourceKind::value;
-            if (gpu && graph.resources[index].lifetime == Lifetime::imported) {
-                imported_[index] = backend_.create_texture("import", {});
-            }
-        }
+        bound_ = false;
+        seen_.clear();
     }
 
     /// Provides the host's inputs: values, and those of its objects that changed or that the graph has
     /// written.
     void provide(const Host& host) {
         world_.set(entity_, Number{host.number});
-        for (std::size_t index = 0; index < graph_.resources.size(); ++index) {
-            const Resource& resource = graph_.resources[index];
+        for (std::size_t index = 0; index < graph_->resources.size(); ++index) {
+            const Resource& resource = graph_->resources[index];
             if (resource.lifetime != Lifetime::imported) {
                 continue;
             }
@@ -152,55 +163,55 @@ class Machine {
 
  private:
     void compute(Execution& run, std::size_t pass, const Handles& handles) {
-        const Content hash = evaluate(graph_, pass, run.world().get<Number>(entity_).value,
+        const Content hash = evaluate(*graph_, pass, run.world().get<Number>(entity_).value,
                                       [&](const Access& access) -> Content {
                                           if (access.previous) {
                                               return previous(run, access, handles);
                                           }
                                           return read(run, access.resource, handles.newest[access.resource]);
                                       });
-        for (const Access& access : graph_.passes[pass].accesses) {
+        for (const Access& access : graph_->passes[pass].accesses) {
             if (access.write) {
-                const Content content = result(graph_.resources[access.resource], access.resource, hash);
+                const Content content = result(graph_->resources[access.resource], access.resource, hash);
                 write(run, access.resource, handles.newest[access.resource],
                       content + (pass == sabotaged_ ? 10 : 0));
             }
         }
-        if (graph_.passes[pass].side_effect) {
+        if (graph_->passes[pass].side_effect) {
             seen_[pass] = hash;
         }
     }
 
     ObjectId object(Execution& run, std::size_t resource, ResourceHandle handle) const {
-        return graph_.resources[resource].kind == ResourceKind::texture
+        return graph_->resources[resource].kind == ResourceKind::texture
                    ? run.object(TextureHandle{handle})
                    : run.object(BufferHandle<float>{handle});
     }
 
     Content previous(Execution& run, const Access& access, const Handles& handles) const {
         const ResourceHandle handle = handles.previous.at(access.resource);
-        const bool valid = graph_.resources[access.resource].kind == ResourceKind::texture
+        const bool valid = graph_->resources[access.resource].kind == ResourceKind::texture
                                ? run.history_valid(TextureHandle{handle})
                                : run.history_valid(BufferHandle<float>{handle});
         return valid ? backend_.objects.at(object(run, access.resource, handle)).content : 0;
     }
 
     Content read(Execution& run, std::size_t resource, ResourceHandle handle) const {
-        if (graph_.resources[resource].kind == ResourceKind::value) {
+        if (graph_->resources[resource].kind == ResourceKind::value) {
             return static_cast<Content>(run.value(ValueHandle<int>{handle}));
         }
         return backend_.objects.at(object(run, resource, handle)).content;
     }
 
     void write(Execution& run, std::size_t resource, ResourceHandle handle, Content content) {
-        if (graph_.resources[resource].kind == ResourceKind::value) {
+        if (graph_->resources[resource].kind == ResourceKind::value) {
             run.set(ValueHandle<int>{handle}, static_cast<int>(content));
         } else {
             backend_.objects.at(object(run, resource, handle)).content = content;
         }
     }
 
-    const Graph& graph_;
+    const Graph* graph_ = nullptr;
     RecordingBackend backend_;
     GraphRuntime runtime_;
     Handles handles_;

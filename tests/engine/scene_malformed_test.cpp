@@ -367,6 +367,8 @@ TEST_SUITE("malformed glTF") {
 
     TEST_CASE("files that are not glTF") {
         CHECK(error_of(Bytes{}) == "the file is empty");
+        CHECK(error_of(to_bytes("{\n\"asset\" 2}"))
+                  .starts_with("invalid JSON: parse error at line 2, column 9: "));
         CHECK(error_of(to_bytes("{")).starts_with("invalid JSON: parse error"));
         CHECK(error_of(to_bytes("gl")).starts_with("invalid JSON: parse error"));
         CHECK(error_of(to_bytes("[]")) == "the document is not a JSON object");

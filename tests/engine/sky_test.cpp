@@ -167,6 +167,12 @@ TEST_SUITE("sky") {
               "scenes[0].extensions.CANDELA_environment.rotation is not a number");
         CHECK(error_of(under_sky({{"uri", 7}})) ==
               "scenes[0].extensions.CANDELA_environment.uri is not a string");
+        CHECK(error_of(under_sky({{"name", 7}})) ==
+              "scenes[0].extensions.CANDELA_environment.name is not a string");
+        CHECK(error_of(under_sky({{"bufferView", 9}})) ==
+              "scenes[0].extensions.CANDELA_environment.bufferView is 9, but there are 1 buffer views");
+        CHECK(error_of(under_sky({{"bufferView", 0}})) ==
+              "the environment's picture: it is neither a Radiance (.hdr) nor an OpenEXR (.exr) picture");
         CHECK(error_of(under_sky({{"uri", "missing.hdr"}})) ==
               "the environment's picture: missing.hdr does not exist");
         CHECK(error_of(under_sky({{"uri", "data:application/octet-stream;base64,AAAA"}})) ==

@@ -16,9 +16,9 @@ Viewpoint::Viewpoint(const Camera& camera, const glm::mat4& to_world, glm::uvec2
                                : static_cast<double>(camera.half_height);
 }
 
-Ray Viewpoint::through(glm::uvec2 pixel) const {
-    const glm::dvec2 centre = (glm::dvec2(pixel) + 0.5) / size_ * 2.0 - 1.0;
-    const glm::dvec3 aside = half_height_ * (centre.x * size_.x / size_.y * right_ - centre.y * up_);
+Ray Viewpoint::through(glm::dvec2 point) const {
+    const glm::dvec2 at = point / size_ * 2.0 - 1.0;
+    const glm::dvec3 aside = half_height_ * (at.x * size_.x / size_.y * right_ - at.y * up_);
     Ray ray{.origin = {}, .direction = {}, .nearest = camera_.near_plane, .farthest = camera_.far_plane};
     if (camera_.projection == Camera::Projection::perspective) {
         ray.origin = eye_;

@@ -14,9 +14,9 @@ class Viewpoint {
  public:
     Viewpoint(const Camera& camera, const glm::mat4& to_world, glm::uvec2 size);
 
-    /// The ray through the centre of the pixel (row 0 at the top), from the near plane to the far plane.
-    /// Distances along the ray are depths in metres.
-    [[nodiscard]] Ray through(glm::uvec2 pixel) const;
+    /// The ray through a point of the picture, in pixels from its top left corner, from the near plane to the
+    /// far plane. Distances along the ray are depths in metres.
+    [[nodiscard]] Ray through(glm::dvec2 point) const;
 
  private:
     Camera camera_;

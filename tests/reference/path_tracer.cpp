@@ -19,13 +19,14 @@ namespace {
 struct Trace {
     const SceneContent& scene;
     const Settings& settings;
+    const std::stop_token& stop;
     Viewpoint viewpoint;
     Estimate estimate;
     std::vector<PixelTrait> traits;
 };
 
 void check(const Settings& settings) {
-    if (settings.samples == 0 || settings.samples % 2 != 0)
+    if (settings.samples == 0 || settings.samples % 2 != 0 || settings.first_sample % 2 != 0)
         throw std::invalid_argument("the reference's samples must be an even number");
     if (settings.size.x == 0 || settings.size.y == 0)
         throw std::invalid_argument("the reference's picture has no pixels");
@@ -56,7 +57,7 @@ glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen
     glm::dvec3 sum(0.0);
     for (const SeenSurface& layer : seen) {
         for (std::uint32_t i = 0; i < samples; ++i) {
-            sampler.start(i);
+            sampler.start(trace.settings.first_sample / 2 + i);
             sum += layer.weight * indirect_light(trace.scene, layer.surface, sampler, trace.settings);
         }
     }
@@ -67,7 +68,7 @@ glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen
 glm::vec3 sampled_light(const Trace& trace, const Surface& surface, Sampler& sampler) {
     glm::dvec3 sum(0.0);
     for (std::uint32_t i = 0; i < trace.settings.samples; ++i) {
-        sampler.start(i);
+        sampler.start(trace.settings.first_sample + i);
         if (trace.scene.emitters.any()) sum += light_of_emitters(trace.scene, surface, sampler);
         if (trace.scene.sky.any()) sum += light_of_sky(trace.scene, surface, sampler);
     }
@@ -92,19 +93,19 @@ glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, S
 
 void trace_pixel(Trace& trace, glm::uvec2 pixel) {
     const std::size_t i = std::size_t{pixel.y} * trace.settings.size.x + pixel.x;
-    const Ray ray = trace.viewpoint.through(pixel);
+    const Ray ray = trace.viewpoint.through(glm::dvec2(pixel) + 0.5 + trace.settings.offset);
     const auto seen = seen_surfaces(trace.scene.geometry, ray);
     float light_through = 1.0F;
     for (const SeenSurface& layer : seen) light_through -= layer.weight;
     trace.estimate.direct.pixels[i] = light_through * trace.scene.sky.radiance(ray.direction);
     if (seen.empty()) return;
     trace.estimate.hit[i] = 1;
-    trace.estimate.direct.pixels[i] +=
-        add_direct(trace, seen, Sampler(pixel_seed(trace.settings.seed, pixel, 2)), trace.traits[i]);
+    trace.estimate.direct.pixels[i] += add_direct(
+        trace, seen, Sampler(pixel_seed(trace.settings.seed, pixel, Numbers::direct_light)), trace.traits[i]);
     if (trace.settings.bounces == 0U) return;
-    for (std::uint32_t half = 0; half < 2; ++half) {
+    for (const Numbers half : {Numbers::first_half, Numbers::second_half}) {
         const Sampler sampler(pixel_seed(trace.settings.seed, pixel, half));
-        trace.estimate.halves[half].pixels[i] = mean_indirect(trace, seen, sampler);
+        trace.estimate.halves[static_cast<std::size_t>(half)].pixels[i] = mean_indirect(trace, seen, sampler);
     }
     trace.estimate.indirect.pixels[i] =
         0.5F * (trace.estimate.halves[0].pixels[i] + trace.estimate.halves[1].pixels[i]);
@@ -115,7 +116,8 @@ void trace_rows(Trace& trace) {
     std::atomic<std::uint32_t> next_row{0};
     const auto work = [&] {
         for (std::uint32_t y = next_row++; y < trace.settings.size.y; y = next_row++) {
-            for (std::uint32_t x = 0; x < trace.settings.size.x; ++x) trace_pixel(trace, {x, y});
+            for (std::uint32_t x = 0; x < trace.settings.size.x && !trace.stop.stop_requested(); ++x)
+                trace_pixel(trace, {x, y});
         }
     };
     const unsigned wanted = trace.settings.threads;
@@ -127,17 +129,18 @@ void trace_rows(Trace& trace) {
 
 }  // namespace
 
-Estimate trace(const Scene& scene, Entity camera, const Settings& settings) {
+Estimate trace(const Scene& scene, Entity camera, const Settings& settings, const std::stop_token& stop) {
     check(settings);
     const auto start = std::chrono::steady_clock::now();
     const PlacedCamera& placed = find_camera(scene.content(), camera);
     Trace trace{.scene = scene.content(),
                 .settings = settings,
+                .stop = stop,
                 .viewpoint = Viewpoint(placed.camera, placed.to_world, settings.size),
                 .estimate = black_estimate(settings.size),
                 .traits = std::vector<PixelTrait>(std::size_t{settings.size.x} * settings.size.y)};
     trace_rows(trace);
-    trace.estimate.edge = find_edges(trace.traits, settings.size, edge_radius);
+    if (!stop.stop_requested()) trace.estimate.edge = find_edges(trace.traits, settings.size, edge_radius);
     trace.estimate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(trace.estimate);
 }

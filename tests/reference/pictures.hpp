@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sandbox/picture.hpp"
+#include "sandbox/files/picture.hpp"
 #include "tests/reference/path_tracer.hpp"
 #include "tests/renderer/scene_builder.hpp"
 

@@ -54,14 +54,15 @@ float unit(std::uint32_t bits) {
 
 }  // namespace
 
-Sampler::Sampler(std::uint64_t seed) : state_(seed) {
-    const auto draw = [&] { return static_cast<std::uint32_t>((state_ = mixed(state_)) >> 32U); };
+Sampler::Sampler(std::uint64_t seed) : seed_(seed) {
+    const auto draw = [&] { return static_cast<std::uint32_t>((seed_ = mixed(seed_)) >> 32U); };
     for (Scramble& scramble : scrambles_) scramble = {draw(), draw(), draw()};
 }
 
 void Sampler::start(std::uint32_t index) {
     path_ = index;
     direction_ = 0;
+    state_ = mixed(seed_ ^ index);
 }
 
 glm::vec2 Sampler::next_direction() {
@@ -79,9 +80,9 @@ float Sampler::next() {
     return unit(static_cast<std::uint32_t>(mixed(state_) >> 32U));
 }
 
-std::uint64_t pixel_seed(std::uint32_t seed, glm::uvec2 pixel, std::uint32_t half) {
+std::uint64_t pixel_seed(std::uint32_t seed, glm::uvec2 pixel, Numbers use) {
     const std::uint64_t place = static_cast<std::uint64_t>(pixel.y) << 32U | pixel.x;
-    return mixed(mixed(static_cast<std::uint64_t>(seed) << 1U | half) ^ place);
+    return mixed(mixed(static_cast<std::uint64_t>(seed) << 2U | static_cast<std::uint64_t>(use)) ^ place);
 }
 
 glm::vec3 across(glm::vec3 axis, float length, float angle) {

@@ -74,6 +74,19 @@ TEST_SUITE("reference: tracer") {
         CHECK(std::abs(correlation(one.halves[0], two.halves[0], truth.indirect)) < 0.15);
     }
 
+    TEST_CASE("the sampled direct light of seeds is independent") {
+        const Scene scene = shipped_scene("lamp");
+        const auto direct = [&](std::uint32_t samples, std::uint32_t seed) {
+            return traced(scene, {.size = {48, 48}, .samples = samples, .bounces = 0, .seed = seed}).direct;
+        };
+        const sandbox::Picture truth = direct(512, 9);
+        for (std::uint32_t seed = 0; seed < 3; ++seed) {
+            CAPTURE(seed);
+            // The same limit as above.
+            CHECK(std::abs(correlation(direct(4, seed), direct(4, seed + 1), truth)) < 0.15);
+        }
+    }
+
     TEST_CASE("indirect light is the mean of the halves, and the total is direct plus indirect light") {
         const Estimate estimate = traced(cornell_box(), {.size = {32, 32}, .samples = 4});
         const sandbox::Picture total = reference::total(estimate);
@@ -124,6 +137,8 @@ TEST_SUITE("reference: tracer") {
         const Scene scene = cornell_box();
         CHECK_THROWS_AS(traced(scene, {.size = {8, 8}, .samples = 3}), std::invalid_argument);
         CHECK_THROWS_AS(traced(scene, {.size = {8, 8}, .samples = 0}), std::invalid_argument);
+        CHECK_THROWS_AS(traced(scene, {.size = {8, 8}, .samples = 2, .first_sample = 1}),
+                        std::invalid_argument);
         CHECK_THROWS_AS(traced(scene, {.size = {8, 0}, .samples = 2}), std::invalid_argument);
         CHECK_THROWS_AS(static_cast<void>(trace(reference::Scene(scene.world), scene.light,
                                                 {.size = {8, 8}, .samples = 2})),

@@ -50,6 +50,21 @@ TEST_SUITE("configuration") {
         }
     }
 
+    TEST_CASE("everything that can be shown has a name") {
+        CHECK(all_shows.size() == 6);
+        for (std::size_t i = 0; i < all_shows.size(); ++i) {
+            CHECK(static_cast<std::size_t>(all_shows.at(i)) == i);
+        }
+        for (const Show show : all_shows) {
+            const std::string json = R"({"show": ")" + std::string(to_string(show)) + "\"}";
+            REQUIRE(read_configuration(json).configuration);
+            CHECK(read_configuration(json).configuration->show == show);
+        }
+        CHECK(to_string(Show::irradiance) == "irradiance");
+        CHECK(to_string(Show::albedo) == "albedo");
+        CHECK(to_string(Show::normals) == "normals");
+    }
+
     TEST_CASE("members that are left out keep the values of the base") {
         CHECK(read_configuration("{}").configuration == Configuration{});
         Configuration wanted = unusual();
@@ -58,8 +73,6 @@ TEST_SUITE("configuration") {
     }
 
     TEST_CASE("every error names its member") {
-        CHECK(errors_of("") == GraphErrors{"not valid JSON"});
-        CHECK(errors_of("{\"path\": ") == GraphErrors{"not valid JSON"});
         CHECK(errors_of("[]") == GraphErrors{"not a JSON object"});
         CHECK(errors_of("3") == GraphErrors{"not a JSON object"});
         const std::string paths =
@@ -103,6 +116,34 @@ TEST_SUITE("configuration") {
         CHECK(several[2].starts_with("vpls.seed: "));
         CHECK(several[3].starts_with("shadows.enabled: "));
         CHECK(several[4] == "extra: is unknown");
+    }
+
+    TEST_CASE("text that is not JSON has one error, with its line and column and what was expected") {
+        struct Case {
+            std::string_view json;
+            std::string_view place;     ///< of the last character that was read
+            std::string_view expected;  ///< what should be there instead
+        };
+        for (const Case& invalid :
+             {Case{"", "line 1, column 1", "unexpected end of input"},
+              Case{"{\"path\": ", "line 1, column 10", "unexpected end of input"},
+              Case{"{\n  \"show\": \"total\"\n  \"path\": \"forward\"\n}", "line 3, column 8",
+                   "expected '}'"},
+              Case{"{\n  \"show\": \"total\",\n}", "line 3, column 1", "expected string literal"},
+              Case{"{\"indirect\": yes}", "line 1, column 14", "invalid literal"},
+              Case{"{} {}", "line 1, column 4", "expected end of input"}}) {
+            CAPTURE(invalid.json);
+            const GraphErrors errors = errors_of(invalid.json);
+            REQUIRE(errors.size() == 1);
+            CAPTURE(errors[0]);
+            CHECK(errors[0].starts_with("invalid JSON: parse error at " + std::string(invalid.place) + ": "));
+            CHECK(errors[0].find(invalid.expected) != std::string::npos);
+            CHECK(errors[0].find('\n') == std::string::npos);
+        }
+        const GraphErrors too_large = errors_of(R"({"frame_budget_ms": 1e999})");
+        REQUIRE(too_large.size() == 1);
+        CHECK(too_large[0].starts_with("invalid JSON: number overflow"));
+        CHECK(too_large[0].find("1e999") != std::string::npos);
     }
 
     TEST_CASE("values out of range and NaN are errors") {

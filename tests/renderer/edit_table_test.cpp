@@ -25,9 +25,9 @@ namespace {
 // `blended` are those for blended surfaces in front of them.
 //
 // Passes that read transforms (scene-gather, lights, view) run whenever a transform has changed; passes that
-// depend on them run only if their results differ. After a change of the picture's size or of a setting, the
-// surfaces are rendered and shaded again, because intermediate targets are not kept. Of the VPL passes, those
-// from `paths` to `vpl-maps` belong to traced VPLs, those from `motion` on to surfels.
+// depend on them run only if their results differ. After a change of the picture's size or of the path, the
+// surfaces are rendered and shaded again, because intermediate targets of other descriptions are not kept. Of
+// the VPL passes, those from `paths` to `vpl-maps` belong to traced VPLs, those from `motion` on to surfels.
 constexpr std::string_view table = R"(
                      gather upload instances bvh lights plan shadows light-upload view view-upload view-cull paths trace vpl-constants vpl-maps motion spread surfels visibility surfel-light surfel-bounce surfel-constants surfel-maps surfaces tiles tile-grid clusters cluster-grid depths bounded blended shading tone-map
 first frame            x      x        x      x    x     x      x         x        x        x          x       x     x         x          x       x      x       x        x           x             x              x              x         x       x       x        x          x         x       x       x       x       x
@@ -47,10 +47,11 @@ material changes       x      x        x      x    .     .      x         .     
 mesh goes              x      x        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x       x        x           x             x              x              x         x       .       .        x          x         x       x       x       x       x
 target widens          .      .        .      .    .     .      .         .        x        x          x       .     .         .          .       .      .       .        .           .             .              .              .         x       x       x        x          x         x       x       x       x       x
 target doubles         .      .        .      .    .     .      .         .        x        x          .       .     .         .          .       .      .       .        .           .             .              .              .         x       x       x        x          x         x       x       x       x       x
-indirect light shown   .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         x       .       .        .          .         .       .       .       x       x
-exposure changes       .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         x       .       .        .          .         .       .       .       x       x
-more VPLs              .      .        .      .    .     .      .         .        .        .          .       x     x         x          x       .      x       x        x           x             x              x              x         x       .       .        .          .         .       .       .       x       x
+indirect light shown   .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       x       x
+exposure changes       .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       .       x
+more VPLs              .      .        .      .    .     .      .         .        .        .          .       x     x         x          x       .      x       x        x           x             x              x              x         .       .       .        .          .         .       .       .       x       x
 another path           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         x       .       .        .          .         .       .       .       x       x
+albedo shown           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       x       x
 )";
 
 /// The column for a pass of a path.
@@ -173,6 +174,7 @@ class EditTable : public RenderFixture {
                  const bool forward = configuration_.path == ShadingPath::forward;
                  configuration_.path = forward ? ShadingPath::deferred : ShadingPath::forward;
              }},
+            {"albedo shown", [&] { configuration_.show = Show::albedo; }},  // without light
         };
     }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -9,6 +10,8 @@
 #include <vector>
 
 #include "renderer/device_of.hpp"
+#include "renderer/difference.hpp"
+#include "renderer/inspection.hpp"
 #include "tests/renderer/host_view.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
@@ -311,8 +314,9 @@ std::vector<glm::vec3> gradient() {
     return pixels;
 }
 
-/// Renders the scene with two paths and tone-maps a picture after the host has done this, in its own context.
-/// Returns the pictures. Checks that the host's state stays, and that there is no error.
+/// Renders the scene with two paths, tone-maps a picture, and inspects a resource, after the host has done
+/// this, in its own context. Returns the pictures. Checks that the host's state stays, and that there is no
+/// error.
 std::vector<Picture> pictures_after(const Oddity& oddity, const Scene& scene) {
     const auto context = make_current_context();
     TestedRenderer renderer(context->get_proc());
@@ -332,6 +336,12 @@ std::vector<Picture> pictures_after(const Oddity& oddity, const Scene& scene) {
         take([&] { renderer.render(scene.world, scene.camera, target.target()); });
     }
     take([&] { renderer.tone_map(gradient(), target.target()); });
+    ResourceInspector inspector(renderer);
+    REQUIRE(inspector.show(Inspection{.resource = "depth"}).empty());
+    take([&] { renderer.render(scene.world, scene.camera, target.target()); });
+    gl::Texture black(device_of(renderer), "black", {size, Format::rgba8});
+    black.upload(std::vector(std::size_t{4} * size.x * size.y, std::byte{0}));
+    take([&] { draw_difference(renderer, inspector.result().texture, black.name(), 1.0F, target.target()); });
     for (const gl::DebugMessage& message : device_of(renderer).take_messages()) {
         CAPTURE(message.text);
         CHECK_FALSE(message.is_error());
@@ -345,6 +355,8 @@ void check_harmless(const std::vector<Oddity>& oddities) {
     const std::vector<Picture> usual = pictures_after({"nothing", [](const Host&) {}}, scene);
     CHECK(mean(usual[0]) > 0.01);
     CHECK(usual[2].pixels == gradient());  // the tone curve is off
+    CHECK(usual[3] == usual[1]);
+    CHECK(mean(usual[4]) > 0.01);
     for (const Oddity& oddity : oddities) {
         CAPTURE(oddity.name);
         CHECK(pictures_after(oddity, scene) == usual);

@@ -116,6 +116,16 @@ TEST_SUITE("host surfaces") {
         CHECK(mean(expected) > 0.01);
     }
 
+    TEST_CASE_FIXTURE(HostSurfaceTests, "whatever is shown, it is shown of the host's surfaces") {
+        for (const Show show : all_shows) {
+            CAPTURE(to_string(show));
+            configuration.show = show;
+            const Picture expected = usual();
+            CHECK(mean(expected) > 0.005);
+            CHECK(relative_mean_square(from(own_surfaces()), expected) < rounding);
+        }
+    }
+
     TEST_CASE_FIXTURE(HostSurfaceTests, "surfaces in the conventions of other engines") {
         // Seen at a slant, so that view space is not world space, and from far enough away that there are
         // pixels without a surface.

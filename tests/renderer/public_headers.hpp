@@ -15,5 +15,6 @@
 #include <candela/scene/components.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
+#include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <candela/scene/sky_picture.hpp>

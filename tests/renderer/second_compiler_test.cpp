@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/difference.hpp"
+#include "renderer/inspection.hpp"
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
@@ -112,7 +114,9 @@ TEST_SUITE("second compiler") {
         };
         configure_each(VplPlacement::surfels, Show::total);
         configure_each(VplPlacement::paths, Show::total);
-        configure_each(VplPlacement::surfels, Show::indirect);
+        for (const Show show : {Show::indirect, Show::irradiance, Show::albedo, Show::normals}) {
+            configure_each(VplPlacement::surfels, show);
+        }
         // The renderer builds what the last world needs: here a sun, a sky and a surface that emits light.
         World world;
         add(world, Transform{}, DirectionalLight{});
@@ -122,6 +126,22 @@ TEST_SUITE("second compiler") {
         const RenderTarget target(device, {1, 1});
         renderer.render(world, camera, target.target());
         configure_each(VplPlacement::surfels, Show::total);
+        // Inspection of textures, of integers and of light lists, and the difference of two pictures.
+        Extension integers{.name = "integers", .place = ExtensionPlace::after_surfaces};
+        integers.declare = [](FrameGraph& graph, ViewFrame&) {
+            graph.add("integers", [&](Pass& pass) {
+                static_cast<void>(
+                    pass.write(graph.texture("integers", {{1, 1}, Format::r32ui}), Usage::copy));
+            });
+        };
+        REQUIRE(renderer.extend(integers).empty());
+        ResourceInspector inspector(renderer);
+        for (const char* const name : {"albedo", "integers", "light-clusters count"}) {
+            REQUIRE(inspector.show(Inspection{.resource = name}).empty());
+            CHECK(renderer.describe(GraphFormat::text).find(name) != std::string::npos);
+        }
+        const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
+        draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
         CHECK(sources.size() > 40);
 
         // A driver that offers fewer storage blocks than the largest program needs is refused at once.

@@ -60,6 +60,21 @@ TEST_SUITE("choosing a configuration") {
         }
     }
 
+    TEST_CASE("errors of the file's syntax name the file, the line and the column") {
+        const TemporaryFolder folder;
+        Options options;
+        options.config = folder / "a.json";
+        std::ofstream(*options.config) << "{\n  \"vpls\": {\n    count: 3\n  }\n}\n";
+        const std::string place =
+            options.config->string() + ": invalid JSON: parse error at line 3, column 5: ";
+        try {
+            static_cast<void>(choose_configuration(options, true));
+            FAIL("no error");
+        } catch (const std::runtime_error& error) {
+            CHECK(std::string(error.what()).starts_with(place));
+        }
+    }
+
     TEST_CASE("errors name the file") {
         const TemporaryFolder folder;
         Options options;

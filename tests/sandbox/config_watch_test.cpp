@@ -30,7 +30,7 @@ class Watched {
     void remove() const { fs::remove(path_); }
 
     std::optional<ConfigurationResult> look() {
-        now_ += ConfigWatch::interval;
+        now_ += SaveWatch::interval;
         return watch_->poll(now_);
     }
     std::optional<ConfigurationResult> look_too_early() { return watch_->poll(now_); }
@@ -60,7 +60,7 @@ class Watched {
     mutable fs::file_time_type written_ = fs::file_time_type::clock::now();
     Options options_ = make_options();
     std::optional<ConfigWatch> watch_;
-    ConfigWatch::Clock::time_point now_{std::chrono::hours(1)};
+    SaveWatch::Clock::time_point now_{std::chrono::hours(1)};
 };
 
 ShadingPath path_of(const std::optional<ConfigurationResult>& result) {
@@ -83,7 +83,7 @@ TEST_SUITE("config watch") {
     TEST_CASE("without a file nothing is watched") {
         ConfigWatch watch{Options{}};
         for (int second = 0; second < 5; ++second)
-            CHECK_FALSE(watch.poll(ConfigWatch::Clock::time_point(std::chrono::seconds(second))));
+            CHECK_FALSE(watch.poll(SaveWatch::Clock::time_point(std::chrono::seconds(second))));
     }
 
     TEST_CASE("a saved file is read once, however it was saved, and flags still override it") {

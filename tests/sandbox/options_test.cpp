@@ -127,8 +127,9 @@ TEST_SUITE("options") {
         CHECK(accepted({"--context", "auto"}).context == ContextChoice::automatic);
         CHECK(accepted({"--context", "window"}).context == ContextChoice::window);
         CHECK(accepted({"--context", "egl"}).context == ContextChoice::egl);
-        CHECK(accepted({"--show", "total"}).show == Show::total);
-        CHECK(accepted({"--show", "direct"}).show == Show::direct);
+        for (const Show show : all_shows) {
+            CHECK(accepted({"--show", std::string(to_string(show)).c_str()}).show == show);
+        }
         for (const candela::ShadingPath path : candela::all_shading_paths) {
             CHECK(accepted({"--path", std::string(to_string(path)).c_str()}).path == path);
         }

@@ -1,4 +1,4 @@
-#include "sandbox/orbit_camera.hpp"
+#include "sandbox/editing/orbit_camera.hpp"
 
 #include <cmath>
 
@@ -77,9 +77,9 @@ TEST_SUITE("orbit camera") {
 
     TEST_CASE("panning moves along the picture, zooming along the view") {
         const OrbitCamera camera = some_camera();
-        const OrbitCamera moved = panned(camera, {0.5F, -0.25F});
-        CHECK(std::abs(glm::dot(moved.eye - camera.eye, camera.forward())) < rounding);
-        CHECK(std::abs(distance(moved.eye, camera.eye) - std::hypot(0.5F, 0.25F)) < rounding);
+        const OrbitCamera aside = moved(camera, {0.5F, -0.25F, 0.0F});
+        CHECK(std::abs(glm::dot(aside.eye - camera.eye, camera.forward())) < rounding);
+        CHECK(std::abs(distance(aside.eye, camera.eye) - std::hypot(0.5F, 0.25F)) < rounding);
 
         const OrbitCamera nearer = zoomed(camera, 0.5F);
         CHECK(distance(nearer.pivot(), camera.pivot()) < rounding);

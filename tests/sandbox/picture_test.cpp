@@ -1,4 +1,4 @@
-#include "sandbox/picture.hpp"
+#include "sandbox/files/picture.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <span>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -11,7 +12,9 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/scene_error.hpp>
-#include "sandbox/viewport.hpp"
+#include "sandbox/editing/viewport.hpp"
+#include "tests/engine/world_difference.hpp"
+#include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {
 
@@ -53,6 +56,21 @@ TEST_SUITE("scene") {
         CHECK(scene.warnings.empty());
         CHECK(cameras(scene.world).size() == 1);
         CHECK(scene.world.count<PointLight>() == 1);
+    }
+
+    TEST_CASE("a saved scene opens as it was, without what the app has added for itself") {
+        const TemporaryFolder folder;
+        Scene scene = load_scene(shipped_file("scenes", "glass.gltf"));
+        const Entity lamp = scene.world.create();
+        scene.world.set(lamp, Name{"my lamp"});
+        scene.world.set(lamp, Transform{.translation = {0.1F, 0.2F, 0.3F}});
+        scene.world.set(lamp, SpotLight{.intensity = 3.0F});
+        const World before = scene.world;
+        const Entity viewer = add_camera(scene.world, "viewer");
+        for (const char* name : {"a.gltf", "a.glb"}) {
+            CHECK(save_scene(scene.world, folder / name, std::span(&viewer, 1)).empty());
+            CHECK(test::difference(load_scene(folder / name).world, before) == "");
+        }
     }
 
     TEST_CASE("cameras are chosen by name, else by index, else the first") {

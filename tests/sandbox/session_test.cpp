@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "sandbox/picture.hpp"
+#include "sandbox/files/picture.hpp"
 #include "sandbox/scene.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 

@@ -9,8 +9,8 @@
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "sandbox/output_file.hpp"
-#include "sandbox/picture.hpp"
+#include "sandbox/files/output_file.hpp"
+#include "sandbox/files/picture.hpp"
 #include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
 #include "tests/study/measures.hpp"

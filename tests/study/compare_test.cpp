@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
 
-#include "sandbox/picture.hpp"
+#include "sandbox/files/picture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 #include "tests/study/test_pictures.hpp"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 using namespace candela::study;

@@ -5,56 +5,21 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-#include <string_view>
 
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace candela::study {
 namespace {
 
+using sandbox::mean_over;
+using sandbox::mean_vector;
 using sandbox::Picture;
-
-// A tenth of the mean brightness, squared; prevents dark pixels from dominating the relative error.
-constexpr double floor_of_square = 0.01;
-
-/// 0 divided by anything is 0, even by 0.
-double ratio(double part, double whole) {
-    return part == 0.0 ? 0.0 : part / whole;
-}
-
-double square(glm::dvec3 vector) {
-    return glm::dot(vector, vector);
-}
+using sandbox::ratio;
+using sandbox::relative_square;
+using sandbox::square;
 
 double channel_sum(glm::dvec3 vector) {
     return vector.r + vector.g + vector.b;
-}
-
-void require_finite(const Picture& picture, std::string_view name) {
-    if (const auto pixel = first_not_finite(picture)) {
-        throw std::invalid_argument(
-            fmt::format("{}: pixel ({}, {}) is not finite", name, pixel->x, pixel->y));
-    }
-}
-
-/// The mean of `value` over the pixels that count.
-template <typename Value>
-auto mean_over(std::size_t pixels, std::span<const std::uint8_t> hit, Value value) {
-    decltype(value(std::size_t{0})) sum{};
-    double count = 0.0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        if (!counts(hit, i)) continue;
-        sum += value(i);
-        count += 1.0;
-    }
-    return sum / count;
-}
-
-/// The mean RGB vector of the reference.
-glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit) {
-    return mean_over(picture.pixels.size(), hit,
-                     [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); });
 }
 
 double largest_channel(const Picture& picture, std::span<const std::uint8_t> hit) {
@@ -65,11 +30,6 @@ double largest_channel(const Picture& picture, std::span<const std::uint8_t> hit
                 std::max<double>({largest, picture.pixels[i].r, picture.pixels[i].g, picture.pixels[i].b});
     }
     return largest;
-}
-
-/// The squared relative error of a pixel, or of a pixel's change: |a - r|² / (|r|² + 0.01 |m|²).
-double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square) {
-    return ratio(square(a - r), square(r) + floor_of_square * mean_square);
 }
 
 /// The mask of a frame; empty if all pixels count.
@@ -106,42 +66,16 @@ void require_sequences(std::span<const Picture> frames, std::span<const Picture>
 
 }  // namespace
 
-std::optional<glm::ivec2> first_not_finite(const Picture& picture) {
-    const auto found = std::find_if(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& pixel) {
-        return !(std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b));
-    });
-    if (found == picture.pixels.end()) return std::nullopt;
-    const auto index = static_cast<int>(found - picture.pixels.begin());
-    return glm::ivec2(index % picture.size.x, index / picture.size.x);
-}
-
-void require_comparable(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
-    if (picture.size != reference.size || picture.pixels.size() != reference.pixels.size()) {
-        throw std::invalid_argument(fmt::format("a picture of {}x{} cannot be compared with one of {}x{}",
-                                                picture.size.x, picture.size.y, reference.size.x,
-                                                reference.size.y));
-    }
-    if (!hit.empty() && hit.size() != picture.pixels.size()) {
-        throw std::invalid_argument(fmt::format("a mask of {} pixels does not fit {}x{}", hit.size(),
-                                                picture.size.x, picture.size.y));
-    }
-    require_finite(picture, "the picture");
-    require_finite(reference, "the reference");
-    const bool any = hit.empty() ? !picture.pixels.empty()
-                                 : std::any_of(hit.begin(), hit.end(), [](std::uint8_t h) { return h != 0; });
-    if (!any) throw std::invalid_argument("no pixel counts");
-}
-
 Errors measure(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
-    require_comparable(picture, reference, hit);
-    const glm::dvec3 mean = mean_vector(reference, hit);
+    const double rel_mse = sandbox::relative_mse(picture, reference, hit);
     const auto a = [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); };
     const auto r = [&](std::size_t i) { return glm::dvec3(reference.pixels[i]); };
     const auto mean_of = [&](auto value) { return mean_over(picture.pixels.size(), hit, value); };
     return {
-        .rel_mse = mean_of([&](std::size_t i) { return relative_square(a(i), r(i), square(mean)); }),
+        .rel_mse = rel_mse,
         .rmse = std::sqrt(mean_of([&](std::size_t i) { return square(a(i) - r(i)); })),
-        .bias = ratio(mean_of([&](std::size_t i) { return channel_sum(a(i) - r(i)); }), channel_sum(mean)),
+        .bias = ratio(mean_of([&](std::size_t i) { return channel_sum(a(i) - r(i)); }),
+                      channel_sum(mean_vector(reference, hit))),
         .spikes = ratio(largest_channel(picture, hit), largest_channel(reference, hit)),
     };
 }

@@ -1,37 +1,29 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include <glm/vec2.hpp>
-
-#include "sandbox/picture.hpp"
+#include "sandbox/picture_error.hpp"
 
 namespace candela::study {
 
-/// Which pixels count: one entry per pixel, not 0 if it counts; row 0 at the top.
-using Mask = std::vector<std::uint8_t>;
-
-/// Whether a pixel is in `hit`; all are if it is empty.
-[[nodiscard]] inline bool counts(std::span<const std::uint8_t> hit, std::size_t pixel) {
-    return hit.empty() || hit[pixel] != 0;
-}
+using sandbox::counts;
+using sandbox::first_not_finite;
+using sandbox::Mask;
+using sandbox::require_comparable;
 
 /// The difference between a picture of linear radiance and its reference, over the pixels that count. a and r
-/// are the RGB vectors of a pixel in the picture and in the reference, m is the mean vector of the reference.
+/// are the RGB vectors of a pixel in the picture and in the reference.
 struct Errors {
-    double rel_mse = 0.0;  ///< mean(|a - r|² / (|r|² + 0.01 |m|²))
+    double rel_mse = 0.0;  ///< see sandbox::relative_mse
     double rmse = 0.0;     ///< √mean(|a - r|²), in units of radiance
     double bias = 0.0;     ///< Σ(a - r) / Σr over pixels and channels
     double spikes = 0.0;   ///< the picture's largest channel divided by the reference's largest
 };
 
 /// The errors over the pixels in `hit`, or over all pixels if it is empty. If the reference is black, the
-/// error of a black picture is 0 and that of any other is infinite. Throws std::invalid_argument if the sizes
-/// differ, if a pixel is not finite or if no pixel counts.
+/// error of a black picture is 0 and that of any other is infinite. Throws as sandbox::relative_mse does.
 [[nodiscard]] Errors measure(const sandbox::Picture& picture, const sandbox::Picture& reference,
                              std::span<const std::uint8_t> hit = {});
 
@@ -54,13 +46,6 @@ struct Errors {
 [[nodiscard]] double flicker(std::span<const sandbox::Picture> frames,
                              std::span<const sandbox::Picture> reference_frames,
                              std::span<const Mask> hits = {});
-
-/// Throws as `measure` does; for other measures.
-void require_comparable(const sandbox::Picture& picture, const sandbox::Picture& reference,
-                        std::span<const std::uint8_t> hit);
-
-/// The first pixel, from the top left, that contains NaN or infinity.
-[[nodiscard]] std::optional<glm::ivec2> first_not_finite(const sandbox::Picture& picture);
 
 /// The means of blocks of `factor` x `factor` pixels; incomplete blocks at the right and at the bottom are
 /// dropped.

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "tests/study/scene_hash.hpp"
 
 namespace candela::study {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 #include "tests/study/scene_hash.hpp"
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "sandbox/output_file.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 using namespace candela;

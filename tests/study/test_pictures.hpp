@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "sandbox/picture.hpp"
+#include "sandbox/files/picture.hpp"
 
 namespace candela::study {
 

@@ -192,6 +192,28 @@ std::string_view Declaration::why_no_parts(const Resource& whole, TexturePart pa
     return "";
 }
 
+ResourceHandle Declaration::find(std::string_view name, ResourceKind kind) const {
+    for (std::uint32_t index = size_of(resources); index-- > 0;) {
+        const Resource& resource = resources[index];
+        if (resource.kind == kind && resource.name == name && is_written(resource)) {
+            return {id, index, resource.versions};
+        }
+    }
+    return {};
+}
+
+/// Whether passes have written it; a texture with parts is written if all of them are. Never a history.
+bool Declaration::is_written(const Resource& resource) const {
+    if (resource.first_part == none) {
+        return resource.versions > 0;
+    }
+    std::uint32_t part = resource.first_part;
+    while (part != none && resources[part].versions > 0) {
+        part = resources[part].next_part;
+    }
+    return part == none;
+}
+
 void Declaration::begin_pass(std::string_view name) {
     if (declaring_) {
         error(ErrorCode::nested_pass,

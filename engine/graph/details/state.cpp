@@ -151,6 +151,7 @@ class StateTransfer {
     std::vector<std::uint8_t> inherit() {
         take_slots();
         take_records();
+        take_transients();
         for (const auto& [slot, old_slot] : slot_pairs_) {
             const std::uint32_t old_version = old_.holds[old_slot];
             const std::uint32_t version = old_version == none ? none : new_version_[old_version];
@@ -263,6 +264,28 @@ class StateTransfer {
             if (old != none && same_pass(plan_.order[index], old_plan_.order[old])) {
                 take_record(index, old);
             }
+        }
+    }
+
+    /// Objects of transients that hold what the new graph puts into one of its own. If there are several for
+    /// one, that which the new graph would put there last.
+    void take_transients() {
+        for (std::uint32_t position = state_.step_count(); position-- > 0;) {
+            for (const Output& output : state_.steps[position].outputs) {
+                if (old_version_[output.version] != none) {
+                    take_transient(output.slot, old_version_[output.version]);
+                }
+            }
+        }
+    }
+
+    void take_transient(std::uint32_t slot, std::uint32_t old_version) {
+        const std::uint32_t old_slot = old_plan_.object[old_plan_.resource(old_version)];
+        const auto is_transient = [](const Slot& of) { return of.owned && of.kept_as.empty(); };
+        if (old_.holds[old_slot] == old_version && taken_[old_slot] == 0 &&
+            is_transient(old_.slots[old_slot]) && is_transient(state_.slots[slot]) &&
+            state_.slots[slot].object == 0) {
+            take_slot(slot, old_slot);
         }
     }
 

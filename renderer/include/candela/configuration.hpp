@@ -13,9 +13,24 @@
 
 namespace candela {
 
-/// Which part of the light the picture shows. Direct light includes that of the sky and of surfaces that emit
-/// it, and the view of these.
-enum class Show : std::uint8_t { total, direct, indirect };
+/// What the picture shows: light, or what the surfaces are.
+enum class Show : std::uint8_t {
+    total,
+    direct,    ///< includes the light of the sky and of surfaces that emit it, and the view of these
+    indirect,  ///< light that surfaces reflect onto others
+    /// The irradiance E of the visible surfaces, as the radiance E/π of white ones; without the view of the
+    /// sky and of what surfaces emit.
+    irradiance,
+    albedo,  ///< linear, from 0 to 1; displayed without exposure and tone curve
+    normals  ///< (0.5 n + 0.5) in world space; displayed as they are
+};
+inline constexpr std::array all_shows{Show::total,      Show::direct, Show::indirect,
+                                      Show::irradiance, Show::albedo, Show::normals};
+
+/// Whether lights and VPLs are evaluated for the picture at all.
+[[nodiscard]] constexpr bool shows_light(Show show) {
+    return show != Show::albedo && show != Show::normals;
+}
 
 /// How VPLs are placed. Names in JSON: paths, surfels.
 enum class VplPlacement : std::uint8_t {
@@ -167,7 +182,7 @@ struct Configuration {
     ToneMapSettings tone_map;
     /// Time budget of a frame in milliseconds while something moves. To keep to it, fewer pixels are rendered
     /// (and scaled up), and each pixel evaluates fewer VPLs. 0: no budget. Without a value ("auto" in JSON):
-    /// 16 on a GPU, 100 with a software driver.
+    /// 16 on a GPU, 60 with a software driver.
     std::optional<float> frame_budget_ms = 0.0F;
     bool operator==(const Configuration&) const = default;
 };
@@ -180,7 +195,8 @@ struct ConfigurationResult {
 };
 
 /// Reads a JSON object. Members that are left out keep the values of `base`. Unknown members, wrong types and
-/// values out of range are errors; each message starts with the member's path: "vpls.count: ...".
+/// values out of range are errors; each message starts with the member's path: "vpls.count: ...". The message
+/// for text that is not JSON names line and column.
 [[nodiscard]] CANDELA_API ConfigurationResult read_configuration(std::string_view json,
                                                                  const Configuration& base = {});
 
@@ -190,12 +206,20 @@ struct ConfigurationResult {
 /// The errors in a configuration's values, one per string; empty if it is valid.
 [[nodiscard]] CANDELA_API std::vector<std::string> validate(const Configuration& configuration);
 
+/// What a named configuration is for.
+enum class NamedFor : std::uint8_t {
+    purpose,  ///< a compromise between speed and accuracy
+    path      ///< the default with one of the shading paths
+};
+
 /// A configuration that the app offers by name. The strings have static storage duration.
 struct NamedConfiguration {
+    NamedFor kind = NamedFor::path;
     std::string_view name;
     std::string_view description;
     Configuration configuration;
 };
+/// Those for purposes come first: draft, balanced, best, report.
 [[nodiscard]] CANDELA_API std::span<const NamedConfiguration> named_configurations();
 
 /// Names as in JSON and on the command line; static storage duration.

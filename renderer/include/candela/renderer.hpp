@@ -23,9 +23,7 @@
 
 namespace candela {
 
-namespace gl {
-class Device;
-}
+class Gpu;
 
 /// Output of Renderer::describe: plain text, Graphviz DOT, or JSON.
 enum class GraphFormat : std::uint8_t { text, dot, json };
@@ -103,8 +101,9 @@ class CANDELA_API Renderer {
     /// back and takes more than twice the time.
     void verify(bool on);
 
-    /// Tone-maps a picture of linear radiance that was computed elsewhere, for example an average of frames,
-    /// into `target`. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
+    /// Tone-maps a picture of linear radiance, or of what else Configuration::show selects, that was computed
+    /// elsewhere, for example an average of frames, into `target`. `radiance` holds target.size.x ×
+    /// target.size.y pixels row by row, the bottom row first.
     /// Throws gl::GlError if it holds another number of pixels, and where `render` does because of a target.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
     /// The same for a 2D texture of linear radiance on the GPU, by its GL name. It is scaled to the target.
@@ -128,13 +127,17 @@ class CANDELA_API Renderer {
     /// its budget; `interleave` is the factor n that was used in the first view.
     [[nodiscard]] Quality quality() const;
 
+    /// Whether rendering the same views of the same world again would give the same pictures: refinement is
+    /// complete or off, and the frame budget does not reduce the quality.
+    [[nodiscard]] bool settled() const;
+
     /// All passes of the last frame, with whether each ran. Empty between a change of the configuration and
     /// the next frame.
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const;
 
  private:
     class State;
-    friend gl::Device& device_of(Renderer& renderer);
+    friend Gpu& gpu_of(Renderer& renderer);
 
     std::unique_ptr<State> state_;
 };

@@ -7,30 +7,41 @@
 
 namespace candela {
 
+Display display_of(const Configuration& configuration) {
+    const ToneMapSettings& settings = configuration.tone_map;
+    const bool light = shows_light(configuration.show);
+    return {.exposure = light ? std::exp2(settings.exposure_ev) : 1.0F,
+            .curve = settings.enabled && light,
+            .encoded = settings.enabled && configuration.show != Show::normals,
+            .opaque = settings.enabled};
+}
+
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
-                  TextureHandle picture, const ToneMapSettings& settings) {
+                  TextureHandle picture, const Display& display) {
     graph.add("tone-map", [&](Pass& pass) {
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
         pass.read(target);
-        pass.parameter(settings);
+        pass.parameter(display);
         const gl::Program& program = tone_map_program(gpu);
         (void)pass.write(picture, Usage::layer_target);
         pass.run([=, &gpu, &program](Execution& run) {
-            draw_tone_mapped(gpu, program, run.value(target), settings);
+            draw_tone_mapped(gpu, program, run.value(target), display);
         });
     });
 }
 
 void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, const Target& target,
-                      const ToneMapSettings& settings) {
+                      const Display& display) {
     const glm::ivec2 origin(target.origin);
     const glm::ivec2 size(target.size);
     gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
     gpu.gl().Viewport(origin.x, origin.y, size.x, size.y);
     program.set("target_origin", glm::vec2(origin));
     program.set("target_size", glm::vec2(size));
-    program.set("exposure", std::exp2(settings.exposure_ev));
-    program.set("curve", settings.enabled);
+    program.set("exposure", display.exposure);
+    program.set("curve", display.curve);
+    program.set("encoded", display.encoded);
+    program.set("opaque", display.opaque);
     gpu.draw_fullscreen(program);
 }
 

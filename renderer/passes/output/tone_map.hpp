@@ -8,17 +8,28 @@
 
 namespace candela {
 
-/// Adds node `tone-map` (raster): writes radiance to the host's target through a filmic curve (Narkowicz,
-/// "ACES Filmic Tone Mapping Curve", 2015), sRGB-encoded by the shader, alpha 1; or as it is, times
-/// the exposure. Depends on `radiance` and `target`, whose framebuffer is the object of `picture`, an
+/// How the values of a picture become those of the target.
+struct Display {
+    float exposure = 1.0F;  ///< factor on the values
+    bool curve = false;     ///< the filmic curve of Narkowicz, "ACES Filmic Tone Mapping Curve" (2015)
+    bool encoded = false;   ///< sRGB encoding, by the shader
+    bool opaque = false;    ///< alpha is 1; otherwise, that of the picture
+    bool operator==(const Display&) const = default;
+};
+/// Radiance is exposed and goes through the curve; albedo is encoded only, and normals are as they are.
+/// Without tone mapping, all are linear.
+[[nodiscard]] Display display_of(const Configuration& configuration);
+
+/// Adds node `tone-map` (raster): writes radiance, or what else the picture shows, to the host's target.
+/// Depends on `radiance` and `target`, whose framebuffer is the object of `picture`, an
 /// imported texture.
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
-                  TextureHandle picture, const ToneMapSettings& settings);
+                  TextureHandle picture, const Display& display);
 
 /// Does the work of the node, also for pictures from elsewhere. The texture at UNIT_RADIANCE is drawn to the
 /// target, with bilinear scaling if its size differs. Changes the draw framebuffer and the viewport.
 void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, const Target& target,
-                      const ToneMapSettings& settings);
+                      const Display& display);
 [[nodiscard]] const gl::Program& tone_map_program(Gpu& gpu);
 
 }  // namespace candela

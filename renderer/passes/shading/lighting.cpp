@@ -58,8 +58,15 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.push_back(
             fmt::format("MOST_VPLS={}", std::min(most_asked(*lighting.vpls), lighting.most_vpls)));
     }
-    if (lighting.show == Show::indirect) {
+    if (!shows_direct(lighting.show)) {
         words.emplace_back("DIRECT_HIDDEN");
+    }
+    if (lighting.show == Show::irradiance) {
+        words.emplace_back("SHOW_IRRADIANCE");
+    } else if (lighting.show == Show::albedo) {
+        words.emplace_back("SHOW_ALBEDO");
+    } else if (lighting.show == Show::normals) {
+        words.emplace_back("SHOW_NORMALS");
     }
     if (lighting.sun_rays) {
         words.emplace_back("SUN_RAYS");
@@ -75,6 +82,11 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
 
 void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.read(lighting.lights);
+    pass.parameter(lighting.show);
+    pass.parameter(lighting.most_vpls);
+    if (!shows_light(lighting.show)) {
+        return;
+    }
     pass.read(lighting.buffers.constants, {Usage::uniform, UNIFORMS_LIGHTS});
     pass.read(lighting.buffers.lights, {Usage::storage, BINDING_LIGHTS});
     pass.read(lighting.buffers.shadows, {Usage::storage, BINDING_SHADOWS});
@@ -92,8 +104,6 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     if (lighting.lists) {
         read_light_lists(pass, *lighting.lists);
     }
-    pass.parameter(lighting.show);
-    pass.parameter(lighting.most_vpls);
 }
 
 LightingParts lighting_parts(const Execution& run, const Lighting& lighting) {
@@ -102,7 +112,7 @@ LightingParts lighting_parts(const Execution& run, const Lighting& lighting) {
     const bool many_rays =
         lighting.sun_rays && std::ranges::count_if(lights.entries, casts_sun_rays) > few_suns;
     const std::uint32_t entries = many_rays ? 8 : 8192;
-    const std::uint32_t shown = lighting.show == Show::indirect ? 0 : light_count(lights);
+    const std::uint32_t shown = shows_direct(lighting.show) ? light_count(lights) : 0;
     return {.count = std::max(groups(shown, entries), 1U), .entries = entries};
 }
 

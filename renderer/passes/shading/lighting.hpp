@@ -44,6 +44,17 @@ struct Lighting {
     Show show = Show::total;
 };
 
+[[nodiscard]] constexpr bool shows_direct(Show show) {
+    return show == Show::total || show == Show::direct || show == Show::irradiance;
+}
+[[nodiscard]] constexpr bool shows_indirect(Show show) {
+    return show == Show::total || show == Show::indirect || show == Show::irradiance;
+}
+/// Whether the sky and surfaces that emit light are seen themselves.
+[[nodiscard]] constexpr bool shows_sources(Show show) {
+    return show == Show::total || show == Show::direct;
+}
+
 /// Names to define in shaders that include lighting.glsl.
 [[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
 

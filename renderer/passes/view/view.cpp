@@ -81,6 +81,10 @@ gpu::ViewConstants view_constants(const CameraView& view, glm::uvec2 size) {
 
 }  // namespace
 
+std::string view_ending(std::size_t index) {
+    return index == 0 ? "" : fmt::format(" {}", index + 1);
+}
+
 CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request) {
     const glm::vec2 size(request.size);
     glm::mat4 jittered(1.0F);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
+#include <string>
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
@@ -12,6 +14,9 @@
 #include "renderer/gpu_types.hpp"
 
 namespace candela {
+
+/// What the names of the passes and resources of view number `index` of a frame end with: nothing, " 2", ...
+[[nodiscard]] std::string view_ending(std::size_t index);
 
 /// The view that the host asks for.
 struct ViewRequest {

@@ -146,8 +146,8 @@ class CANDELA_API GraphRuntime {
     ///
     /// Persistent resources and values that both graphs declare with the same kind, name and description keep
     /// their content. A pass that both graphs declare with the same name, accesses and parameters stays up to
-    /// date: it runs again only to provide results that were not kept, such as transients. Imported textures
-    /// and buffers must be bound again; imported values stay set.
+    /// date: it runs again only to provide results that were not kept, such as transients that were
+    /// overwritten. Imported textures and buffers must be bound again; imported values stay set.
     ///
     /// Objects that the new graph does not use go to a free pool. The next call of `switch_to` reuses what it
     /// can from there and destroys the rest; `trim` destroys them at once. If the back end throws, the

@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <typeindex>
@@ -123,6 +124,18 @@ class Pass {
     detail::Declaration& declared_;
 };
 
+/// What FrameGraph::find_texture returns. `desc` is as declared; a pass may reserve another one.
+struct FoundTexture {
+    TextureHandle handle;
+    TextureDesc desc;
+};
+
+/// What FrameGraph::find_buffer returns. Only the size of the elements is known, not their type.
+struct FoundBuffer {
+    BufferHandle<void> handle;
+    std::uint32_t stride = 1;  ///< bytes from one element to the next
+};
+
 /// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
 /// reports every error. `compile` consumes the graph: afterwards it may only be assigned to or destroyed.
 class FrameGraph {
@@ -187,6 +200,35 @@ class FrameGraph {
     template <class T>
     [[nodiscard]] BufferHandle<T> history(BufferHandle<T> buffer) {
         return {declared_.add_history(buffer, ResourceKind::buffer)};
+    }
+
+    /// The newest version of the texture with this name, for a pass declared next to read. Only what passes
+    /// have written so far is found, not what they are yet to write, nor histories and what only the host
+    /// writes; of several transients with the name, that declared last. `name` is as in messages and in
+    /// descriptions, with what append_to_names has added. O(resources).
+    [[nodiscard]] std::optional<FoundTexture> find_texture(std::string_view name) const {
+        const ResourceHandle found = declared_.find(name, ResourceKind::texture);
+        if (found == ResourceHandle{}) {
+            return std::nullopt;
+        }
+        return FoundTexture{{found}, declared_.texture(declared_.resources[found.resource])};
+    }
+    /// The same for a buffer.
+    [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const {
+        const ResourceHandle found = declared_.find(name, ResourceKind::buffer);
+        if (found == ResourceHandle{}) {
+            return std::nullopt;
+        }
+        return FoundBuffer{{found}, declared_.buffer(declared_.resources[found.resource]).stride};
+    }
+    /// The same for a value, if it is a T.
+    template <class T>
+    [[nodiscard]] std::optional<ValueHandle<T>> find_value(std::string_view name) const {
+        const ResourceHandle found = declared_.find(name, ResourceKind::value);
+        if (found == ResourceHandle{} || declared_.value_type(found) != typeid(T)) {
+            return std::nullopt;
+        }
+        return ValueHandle<T>{found};
     }
 
     /// Adds a pass. Calls `declare(Pass&)` immediately and returns its result, usually the handles that the

@@ -29,12 +29,13 @@ struct ImportReport {
 ///
 /// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
 /// surface emits its base colour, without that of its vertices), KHR_texture_transform, and
-/// CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians}, which
-/// becomes an entity with an Environment. Any other extension is an error if the file requires it and a
-/// warning if the file only uses it. Also left out with a warning: points and lines, skins, animations, morph
-/// targets, further sets of texture coordinates and colours. Triangles without area are dropped. A node with
-/// a sheared matrix, which a Transform cannot represent, becomes two entities, one the parent of the other
-/// (see decompose).
+/// CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name":
+/// "sky"}, which becomes an entity with an Environment (instead of "uri" it may have a "bufferView"), and
+/// CANDELA_light of a light, {"castsShadow": false}. Any other extension is an error if the file requires it
+/// and a warning if the file only uses it. Also left out with a warning: points and lines, skins, animations,
+/// morph targets, further sets of texture coordinates and colours. Triangles without area are dropped. A node
+/// with a sheared matrix, which a Transform cannot represent, becomes two entities, one the parent of the
+/// other (see decompose).
 ///
 /// Throws SceneError, whose message is one line that names the file, the object and the problem. The world is
 /// then unchanged.

@@ -10,10 +10,9 @@
 
 namespace candela {
 
-/// Reads an equirectangular picture of the sky, twice as wide as high and at most 16,384 pixels wide:
-/// Radiance
-/// (.hdr) or OpenEXR (.exr). Throws SceneError, whose message is one line that names the file and the
-/// problem.
+/// Reads an equirectangular picture of the sky from a Radiance (.hdr) or OpenEXR (.exr) file. It must be
+/// twice as wide as high and at most 16,384 pixels wide. Throws SceneError, whose message is one line that
+/// names the file and the problem.
 [[nodiscard]] CANDELA_API std::shared_ptr<const SkyPicture> load_sky_picture(
     const std::filesystem::path& path);
 

@@ -130,6 +130,8 @@ class CANDELA_API Declaration {
     ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
     ResourceHandle add_history(ResourceHandle of, ResourceKind kind);
     ResourceHandle add_part(ResourceHandle of, TexturePart part);
+    /// See FrameGraph::find_texture. A null handle if there is none.
+    [[nodiscard]] ResourceHandle find(std::string_view name, ResourceKind kind) const;
 
     /// See FrameGraph::append_to_names.
     void append_to_names(std::string_view ending) { ending_ = ending; }
@@ -158,6 +160,9 @@ class CANDELA_API Declaration {
         return textures[resource.desc];
     }
     [[nodiscard]] const BufferDesc& buffer(const Resource& resource) const { return buffers[resource.desc]; }
+    [[nodiscard]] std::type_index value_type(ResourceHandle value) const {
+        return value_types[resources[value.resource].desc];
+    }
 
     std::uint32_t id = 0;
     std::vector<PassNode> passes;
@@ -182,6 +187,7 @@ class CANDELA_API Declaration {
     ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
                                 std::size_t desc);
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
+    [[nodiscard]] bool is_written(const Resource& resource) const;
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
     void error(ErrorCode code, std::string message) { errors.push_back({code, std::move(message)}); }
     [[nodiscard]] std::string_view why_no_parts(const Resource& whole, TexturePart part) const;

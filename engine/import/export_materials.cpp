@@ -1,0 +1,148 @@
+#include "engine/import/export_materials.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <stb/stb_image_write.h>
+#include <tiny_gltf.h>
+
+#include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_document.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+std::vector<std::byte> encode_png(const Image& image) {
+    std::vector<std::byte> png;
+    const auto store = [](void* context, void* data, int length) {
+        const auto* const bytes = static_cast<const std::byte*>(data);
+        static_cast<std::vector<std::byte>*>(context)->assign(bytes, bytes + length);
+    };
+    const auto width = static_cast<int>(image.width);
+    const auto height = static_cast<int>(image.height);
+    if (stbi_write_png_to_func(store, &png, width, height, 4, image.texels.data(), 4 * width) == 0) {
+        throw SceneError("a texture cannot be encoded as PNG");
+    }
+    return png;
+}
+
+int to_wrap_mode(Wrap wrap) {
+    switch (wrap) {
+        case Wrap::mirrored_repeat:
+            return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+        case Wrap::clamp_to_edge:
+            return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+        case Wrap::repeat:
+            break;
+    }
+    return TINYGLTF_TEXTURE_WRAP_REPEAT;
+}
+
+const char* name_of(AlphaMode mode) {
+    switch (mode) {
+        case AlphaMode::mask:
+            return "MASK";
+        case AlphaMode::blend:
+            return "BLEND";
+        case AlphaMode::opaque:
+            break;
+    }
+    return "OPAQUE";
+}
+
+void check_base_colour(const glm::vec4& colour) {
+    if (std::max({colour.r, colour.g, colour.b, colour.a}) > 1.0F) {
+        throw SceneError("a channel of its base colour is above 1, which glTF does not allow");
+    }
+}
+
+/// glTF's emissive factors are at most 1. Quotients and strength are written in double precision, so that
+/// their product, rounded to a float, is the emission again.
+void write_emission(const glm::vec3& emissive, Json& material, Draft& draft) {
+    const double strength = std::max({emissive.r, emissive.g, emissive.b});
+    if (strength <= 1.0) {
+        material["emissiveFactor"] = to_json(emissive);
+        return;
+    }
+    const glm::dvec3 factor = glm::dvec3(emissive) / strength;
+    material["emissiveFactor"] = {factor.r, factor.g, factor.b};
+    material["extensions"][emissive_strength_extension] = {{"emissiveStrength", strength}};
+    draft.use_extension(emissive_strength_extension);
+}
+
+}  // namespace
+
+std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& material) {
+    if (const auto found = materials_.find(material); found != materials_.end()) {
+        return found->second;
+    }
+    try {
+        const std::size_t index = draft_.add("materials", describe(*material));
+        return materials_.emplace(material, index).first->second;
+    } catch (const SceneError& error) {
+        throw SceneError(fmt::format("material \"{}\": {}", material->name, error.what()));
+    }
+}
+
+/// Metalness 0 and roughness 1 make it diffuse in other renderers, too.
+Json MaterialWriter::describe(const Material& material) {
+    check_base_colour(material.base_colour);
+    Json json = {{"pbrMetallicRoughness",
+                  {{"baseColorFactor", to_json(material.base_colour)},
+                   {"metallicFactor", 0},
+                   {"roughnessFactor", 1}}}};
+    if (!material.name.empty()) {
+        json["name"] = to_json(material.name);
+    }
+    if (material.base_colour_texture) {
+        json["pbrMetallicRoughness"]["baseColorTexture"] = texture_info(material.base_colour_texture);
+    }
+    if (emits(material)) {
+        write_emission(material.emissive, json, draft_);
+    }
+    if (material.emissive_texture) {
+        json["emissiveTexture"] = texture_info(material.emissive_texture);
+    }
+    if (material.double_sided) {
+        json["doubleSided"] = true;
+    }
+    if (material.alpha_mode != AlphaMode::opaque) {
+        json["alphaMode"] = name_of(material.alpha_mode);
+    }
+    if (material.alpha_cutoff != Material{}.alpha_cutoff) {
+        json["alphaCutoff"] = to_json(material.alpha_cutoff);
+    }
+    return json;
+}
+
+Json MaterialWriter::texture_info(const std::shared_ptr<const Image>& image) {
+    auto found = textures_.find(image);
+    if (found == textures_.end()) {
+        found = textures_.emplace(image, add_texture(*image)).first;
+    }
+    return {{"index", found->second}};
+}
+
+std::size_t MaterialWriter::add_texture(const Image& image) {
+    Json source = draft_.add_picture(encode_png(image), fmt::format("-{}.png", textures_.size()));
+    source["mimeType"] = "image/png";
+    const std::size_t index = draft_.add("images", std::move(source));
+    return draft_.add("textures", {{"source", index}, {"sampler", sampler_of(image.wrap_u, image.wrap_v)}});
+}
+
+std::size_t MaterialWriter::sampler_of(Wrap u, Wrap v) {
+    const auto found = samplers_.find({u, v});
+    if (found != samplers_.end()) {
+        return found->second;
+    }
+    const std::size_t index =
+        draft_.add("samplers", {{"wrapS", to_wrap_mode(u)}, {"wrapT", to_wrap_mode(v)}});
+    samplers_.emplace(std::pair(u, v), index);
+    return index;
+}
+
+}  // namespace candela::gltf

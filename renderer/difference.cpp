@@ -1,0 +1,20 @@
+#include "renderer/difference.hpp"
+
+#include "renderer/gl/host_state.hpp"
+#include "renderer/gpu_of.hpp"
+#include "renderer/passes/inspect/difference.hpp"
+#include "renderer/target_check.hpp"
+
+namespace candela {
+
+void draw_difference(Renderer& renderer, std::uint32_t a, std::uint32_t b, float factor,
+                     const Target& target) {
+    Gpu& gpu = gpu_of(renderer);
+    require_possible(gpu.device(), target);
+    require_texture(gpu.device(), a, target.size, "the first picture");
+    require_texture(gpu.device(), b, target.size, "the second picture");
+    const gl::HostState host_state(gpu.gl());
+    draw_difference(gpu, {.first = a, .second = b}, factor, target);
+}
+
+}  // namespace candela

@@ -1,0 +1,225 @@
+#include "renderer/inspection.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <glm/common.hpp>
+#include <span>
+#include <utility>
+
+#include "renderer/gpu_of.hpp"
+#include "renderer/passes/inspect/inspect.hpp"
+#include "renderer/passes/inspect/inspect_range.hpp"
+#include "shaders/inspect/heat_colours.glsl"
+
+namespace candela {
+namespace {
+
+constexpr std::string_view extension_name = "inspect";
+constexpr std::string_view result_pass = "inspect-result";
+
+/// The picture of the last frame, and the buffer with its range.
+struct Picture {
+    Shown shown;
+    bool lists = false;
+    ObjectId texture = 0;
+    ObjectId ranges = 0;
+    std::optional<ValueRange> range{};  // none: not read back yet
+};
+
+struct FoundElements {
+    ObjectId buffer = 0;
+    std::uint32_t stride = 1;
+    std::uint64_t count = 0;
+};
+
+std::string describe(const Picture& picture) {
+    const Shown& shown = picture.shown;
+    if (picture.lists) {
+        const std::string tiles = fmt::format("lengths of light lists, {} × {} tiles of {} pixels",
+                                              shown.texels.x, shown.texels.y, shown.texel_size);
+        return shown.layers == 1 ? tiles : fmt::format("{}, {} slices", tiles, shown.layers);
+    }
+    const TextureDesc& desc = shown.desc;
+    std::string text = fmt::format("{}, {} × {} texels", to_string(desc.format), desc.size.x, desc.size.y);
+    if (desc.shape != TextureShape::flat) {
+        text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
+    }
+    return desc.mips == 1 ? text : fmt::format("{}, {} mips", text, desc.mips);
+}
+
+std::string_view unit_of(const Picture& picture) {
+    if (picture.lists) {
+        return "lights";
+    }
+    return picture.shown.depth_terms ? "m" : "";
+}
+
+FoundElements elements_of(const Execution& run, const FoundBuffer& buffer) {
+    return {run.object(buffer.handle), buffer.stride, run.count(buffer.handle)};
+}
+
+ValueRange read_range(const Gpu& gpu, ObjectId ranges) {
+    glm::vec2 range(0.0F);
+    gl::read_buffer(gpu.gl(), ranges, std::as_writable_bytes(std::span(&range, 1)));
+    return {range.x, range.y};
+}
+
+}  // namespace
+
+struct ResourceInspector::State : std::enable_shared_from_this<State> {
+    Inspection wanted;
+    bool declared = false;  // in the graph that is being declared
+    Picture picture;
+    FoundElements elements;
+
+    void declare(FrameGraph& graph, Gpu& gpu, const ViewFrame& frame);
+    ValueHandle<Inspection> add_settings(FrameGraph& graph);
+    void add_picture(FrameGraph& graph, Gpu& gpu, const Inspected& inspected);
+    void add_elements(FrameGraph& graph, const FoundBuffer& buffer);
+};
+
+/// Adds the passes for the resource, in the first view whose frame has it.
+void ResourceInspector::State::declare(FrameGraph& graph, Gpu& gpu, const ViewFrame& frame) {
+    declared &= frame.index > 0;
+    const auto found = declared ? std::nullopt : find_inspected(graph, frame, wanted.resource);
+    if (!found) {
+        return;
+    }
+    declared = true;
+    if (found->has_picture()) {
+        add_picture(graph, gpu, *found);
+    } else {
+        add_elements(graph, *found->buffer);
+    }
+}
+
+/// Has a side effect because what is wanted changes from outside of the graph.
+ValueHandle<Inspection> ResourceInspector::State::add_settings(FrameGraph& graph) {
+    return graph.add("inspect-settings", [&](Pass& pass) {
+        pass.side_effect();
+        const auto settings = pass.write(graph.value<Inspection>("inspection"));
+        pass.run([=, self = shared_from_this()](Execution& run) { run.set(settings, self->wanted); });
+        return settings;
+    });
+}
+
+/// The last pass keeps the others in the graph, and makes their results known outside of it.
+void ResourceInspector::State::add_picture(FrameGraph& graph, Gpu& gpu, const Inspected& inspected) {
+    const auto settings = add_settings(graph);
+    const auto ranges = add_inspect_range(graph, gpu, inspected, settings);
+    const auto drawn = add_inspect(graph, gpu, inspected, settings, ranges);
+    graph.add(result_pass, [&](Pass& pass) {
+        pass.side_effect();
+        read_inspected(pass, inspected);
+        pass.read(settings);
+        pass.read(ranges, Usage::copy);
+        pass.read(drawn, Usage::sampled);
+        pass.run([=, self = shared_from_this()](Execution& run) {
+            const bool same_range = !run.changed(ranges);
+            self->picture = {.shown = shown_of(run, inspected, run.value(settings)),
+                             .lists = inspected.grid.has_value(),
+                             .texture = run.object(drawn),
+                             .ranges = run.object(ranges),
+                             .range = same_range ? self->picture.range : std::nullopt};
+            if (inspected.buffer) {
+                self->elements = elements_of(run, *inspected.buffer);
+            }
+        });
+    });
+}
+
+void ResourceInspector::State::add_elements(FrameGraph& graph, const FoundBuffer& buffer) {
+    graph.add(result_pass, [&](Pass& pass) {
+        pass.side_effect();
+        pass.read(buffer.handle, Usage::copy);
+        pass.run(
+            [=, self = shared_from_this()](Execution& run) { self->elements = elements_of(run, buffer); });
+    });
+}
+
+ResourceInspector::ResourceInspector(Renderer& renderer) : renderer_(&renderer) {}
+
+std::vector<std::string> ResourceInspector::show(std::optional<Inspection> wanted) {
+    if (!wanted) {
+        renderer_->remove_extension(extension_name);
+        state_.reset();
+    } else if (shown_ && shown_->resource == wanted->resource) {
+        state_->wanted = *wanted;
+    } else {
+        auto state = std::make_shared<State>();
+        state->wanted = *wanted;
+        Extension extension{.name = std::string(extension_name)};
+        extension.declare = [state, &gpu = gpu_of(*renderer_)](FrameGraph& graph, ViewFrame& frame) {
+            state->declare(graph, gpu, frame);
+        };
+        std::vector<std::string> errors = renderer_->extend(std::move(extension));
+        if (!errors.empty()) {
+            return errors;
+        }
+        state_ = std::move(state);
+    }
+    shown_ = std::move(wanted);
+    return {};
+}
+
+/// Whether the last frame had the passes. The objects that they have reported exist until the next call of
+/// the renderer.
+bool ResourceInspector::has_run() const {
+    return std::ranges::any_of(renderer_->last_passes(),
+                               [](const PassRecord& pass) { return pass.name.starts_with(result_pass); });
+}
+
+InspectionResult ResourceInspector::result() const {
+    InspectionResult result;
+    if (!shown_) {
+        return result;
+    }
+    if (!has_run()) {
+        const bool no_frame = renderer_->last_passes().empty();
+        result.description = no_frame ? "no frame yet" : "not in this graph, or not before the tone map";
+        return result;
+    }
+    Picture& picture = state_->picture;
+    if (picture.texture == 0) {
+        const FoundElements& elements = state_->elements;
+        result.description =
+            fmt::format("a buffer with room for {} elements of {} bytes", elements.count, elements.stride);
+        return result;
+    }
+    if (!picture.shown.range && !picture.range) {
+        picture.range = read_range(gpu_of(*renderer_), picture.ranges);
+    }
+    const ValueRange range = picture.shown.range ? *picture.shown.range : *picture.range;
+    return {.texture = picture.texture,
+            .size = picture.shown.picture,
+            .description = describe(picture),
+            .unit = unit_of(picture),
+            .mapping = picture.shown.mapping,
+            .low = range.low,
+            .high = range.high,
+            .mips = picture.shown.mips,
+            .layers = picture.shown.layers};
+}
+
+BufferElements ResourceInspector::read_buffer(std::uint64_t first, std::uint64_t most) const {
+    if (!shown_ || !has_run() || state_->elements.buffer == 0) {
+        return {};
+    }
+    const FoundElements& found = state_->elements;
+    const std::uint64_t begin = std::min(first, found.count);
+    BufferElements read{.bytes = {}, .stride = found.stride, .count = found.count};
+    read.bytes.resize(std::min(most, found.count - begin) * found.stride);
+    gl::read_buffer(gpu_of(*renderer_).gl(), found.buffer, read.bytes, begin * found.stride);
+    return read;
+}
+
+glm::vec3 heat_colour(float at) {
+    using glm::vec3;
+    constexpr std::array<vec3, HEAT_COLOUR_COUNT> colours{HEAT_COLOURS};
+    const float place = glm::clamp(at, 0.0F, 1.0F) * (HEAT_COLOUR_COUNT - 1);
+    const auto first = std::min(static_cast<std::size_t>(place), std::size_t{HEAT_COLOUR_COUNT - 2});
+    return glm::mix(colours.at(first), colours.at(first + 1), place - static_cast<float>(first));
+}
+
+}  // namespace candela

@@ -1,0 +1,207 @@
+#include "renderer/passes/inspect/inspected.hpp"
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "shaders/bindings.glsl"
+
+namespace candela {
+namespace {
+
+constexpr int channels_luminance = 5;  // as in shaders/inspect/inspected.glsl, like the values of Channels
+
+DepthMeaning meaning_of(const FrameGraph& graph, const ViewFrame& frame, std::string_view name,
+                        TextureHandle texture) {
+    if (frame.depth == texture) {
+        return frame.view;
+    }
+    if (name == "vpl maps") {
+        if (const auto atlas = graph.find_value<VplAtlas>("vpl atlas")) {
+            return *atlas;
+        }
+    }
+    const bool cubes = name == "shadow cubes";
+    if (cubes || name == "shadow maps") {
+        if (const auto plan = graph.find_value<ShadowPlan>("shadow plan")) {
+            return ShadowDepths{*plan, cubes};
+        }
+    }
+    return {};
+}
+
+/// Terms of a projection with the depth near / metres.
+glm::vec4 perspective_terms(float near_plane) {
+    return {0.0F, near_plane, -1.0F, 0.0F};
+}
+
+/// Of one with the depth 1 - metres / reach.
+glm::vec4 linear_terms(float reach) {
+    return {1.0F / reach, 1.0F, 0.0F, 1.0F};
+}
+
+std::optional<glm::vec4> shadow_terms(const ShadowPlan& plan, bool cubes, std::uint32_t layer) {
+    constexpr std::uint32_t faces = 6;
+    const std::uint32_t map = cubes ? layer / faces : layer;
+    const auto found = std::ranges::find_if(plan.shadows, [&](const gpu::Shadow& shadow) {
+        return shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
+    });
+    if (found == plan.shadows.end()) {
+        return std::nullopt;
+    }
+    if (found->kind != SHADOW_ORTHOGRAPHIC) {
+        return perspective_terms(found->near_plane);
+    }
+    const glm::mat4& clip = found->from_world;
+    return linear_terms(1.0F / glm::length(glm::vec3(clip[0][2], clip[1][2], clip[2][2])));
+}
+
+std::optional<glm::vec4> depth_terms(const Execution& run, const DepthMeaning& depth, std::uint32_t layer) {
+    if (const auto* const camera = std::get_if<ValueHandle<CameraView>>(&depth)) {
+        const glm::mat4& clip = run.value(*camera).clip_from_view;
+        return glm::vec4(clip[2][2], clip[3][2], clip[2][3], clip[3][3]);
+    }
+    if (const auto* const shadows = std::get_if<ShadowDepths>(&depth)) {
+        return shadow_terms(run.value(shadows->plan), shadows->cubes, layer);
+    }
+    if (const auto* const atlas = std::get_if<ValueHandle<VplAtlas>>(&depth)) {
+        return linear_terms(run.value(*atlas).reach);
+    }
+    return std::nullopt;
+}
+
+Shown shown_texture(const TextureDesc& desc, const Inspection& wanted) {
+    Shown shown{.desc = desc,
+                .mip = std::min(wanted.mip, desc.mips - 1),
+                .layer = std::min(wanted.layer, desc.layers - 1),
+                .mips = desc.mips,
+                .layers = desc.layers};
+    shown.extent = shown.texels = part_desc(desc, {.mip = shown.mip}).size;
+    return shown;
+}
+
+Shown shown_lists(const CellGrid& grid, const Inspection& wanted) {
+    const bool all = wanted.layer == Inspection::all_slices;
+    return {.desc = {},
+            .layer = all ? 0 : std::min(wanted.layer, grid.slices - 1),
+            .slices = all ? grid.slices : 1,
+            .layers = grid.slices,
+            .extent = grid.size,
+            .texels = grid.tiles,
+            .texel_size = grid.tile_size};
+}
+
+Mapping mapping_of(const Inspected& inspected, Mapping wanted) {
+    if (wanted != Mapping::automatic) {
+        return wanted;
+    }
+    if (inspected.texture && is_depth(inspected.texture->desc.format)) {
+        return Mapping::depth;
+    }
+    const bool single = !inspected.texture || gl::format_info(inspected.texture->desc.format).components == 1;
+    return single ? Mapping::heat : Mapping::colour;
+}
+
+int channels_of(const Inspected& inspected, Channels wanted, Mapping mapping) {
+    if (wanted != Channels::rgb) {
+        return static_cast<int>(wanted);
+    }
+    if (!inspected.texture || gl::format_info(inspected.texture->desc.format).components == 1) {
+        return static_cast<int>(Channels::red);
+    }
+    return mapping == Mapping::colour ? static_cast<int>(Channels::rgb) : channels_luminance;
+}
+
+/// The size in this shape whose longer side is at most `longest`.
+glm::uvec2 fitted(glm::uvec2 size, std::uint32_t longest) {
+    const std::uint32_t side = std::max(size.x, size.y);
+    const std::uint32_t most = std::max(longest, 1U);
+    return side <= most ? size : glm::max(size * most / side, glm::uvec2(1));
+}
+
+bool is_integer(const Inspected& inspected) {
+    return inspected.texture && inspected.texture->desc.format == Format::r32ui;
+}
+
+}  // namespace
+
+std::optional<Inspected> find_inspected(const FrameGraph& graph, const ViewFrame& frame,
+                                        std::string_view name) {
+    if (const auto texture = graph.find_texture(name)) {
+        return Inspected{.texture = texture, .depth = meaning_of(graph, frame, name, texture->handle)};
+    }
+    const auto buffer = graph.find_buffer(name);
+    if (!buffer) {
+        return std::nullopt;
+    }
+    Inspected inspected{.buffer = buffer};
+    const std::string ending = view_ending(frame.index);
+    if (name.ends_with(" count" + ending)) {
+        inspected.grid = graph.find_value<CellGrid>("light grid" + ending);
+    }
+    return inspected;
+}
+
+void read_inspected(Pass& pass, const Inspected& inspected) {
+    if (inspected.texture) {
+        pass.read(inspected.texture->handle, Usage::sampled);
+    }
+    if (inspected.buffer) {
+        pass.read(inspected.buffer->handle, {Usage::storage, BINDING_LIST_COUNT});
+    }
+    if (inspected.grid) {
+        pass.read(*inspected.grid);
+    }
+    if (const auto* const camera = std::get_if<ValueHandle<CameraView>>(&inspected.depth)) {
+        pass.read(*camera);
+    }
+    if (const auto* const shadows = std::get_if<ShadowDepths>(&inspected.depth)) {
+        pass.read(shadows->plan);
+    }
+    if (const auto* const atlas = std::get_if<ValueHandle<VplAtlas>>(&inspected.depth)) {
+        pass.read(*atlas);
+    }
+}
+
+Shown shown_of(const Execution& run, const Inspected& inspected, const Inspection& wanted) {
+    Shown shown = inspected.grid ? shown_lists(run.value(*inspected.grid), wanted)
+                                 : shown_texture(run.desc(inspected.texture->handle), wanted);
+    shown.picture = fitted(shown.extent, wanted.longest);
+    shown.mapping = mapping_of(inspected, wanted.mapping);
+    shown.channels = channels_of(inspected, wanted.channels, shown.mapping);
+    shown.range = wanted.range;
+    if (shown.mapping != Mapping::colour) {
+        shown.depth_terms = depth_terms(run, inspected.depth, shown.layer);
+    }
+    return shown;
+}
+
+const gl::Program& inspecting_program(Gpu& gpu, std::string_view file, const Inspected& inspected) {
+    std::vector<std::string> defined;
+    if (inspected.grid) {
+        defined.emplace_back("LISTS");
+    } else if (is_integer(inspected)) {
+        defined.emplace_back("INTEGER");
+    }
+    return gpu.program({std::string(file)}, defined);
+}
+
+InspectedTexels::InspectedTexels(Gpu& gpu, const Execution& run, const gl::Program& program,
+                                 const Inspected& inspected, const Shown& shown) {
+    if (inspected.texture) {
+        view_ = gl::Texture(gpu.device(), "inspected", run.object(inspected.texture->handle), shown.desc,
+                            {.mip = shown.mip, .layer = shown.layer});
+        view_.bind(UNIT_INSPECTED);
+        gpu.nearest().bind(UNIT_INSPECTED);
+    } else {
+        program.set("first_slice", shown.layer);
+        program.set("end_slice", shown.layer + shown.slices);
+    }
+    program.set("texels", shown.texels);
+    program.set("channels", shown.channels);
+    program.set("has_metres", shown.depth_terms.has_value());
+    program.set("depth_terms", shown.depth_terms.value_or(glm::vec4(0.0F)));
+    program.use();
+}
+
+}  // namespace candela

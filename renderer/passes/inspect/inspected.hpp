@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include <candela/extension.hpp>
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/lights/light_bins.hpp"
+#include "renderer/passes/lights/shadow_maps.hpp"
+#include "renderer/passes/vpls/vpl_constants.hpp"
+
+namespace candela {
+
+/// How values become colours.
+enum class Mapping : std::uint8_t {
+    /// Depth for depth formats; heat for other formats of one channel and for light lists; colour otherwise.
+    automatic,
+    colour,  ///< black at the low end of the range, full colour at the high one, sRGB-encoded
+    depth,   ///< grey: white at the low end, black at the high one and where there is no surface
+    heat     ///< heat_colour; of RGB the luminance (Rec. 709)
+};
+
+enum class Channels : std::uint8_t { red, green, blue, alpha, rgb };
+
+/// The values at the two ends of a mapping. Values beyond are clamped; with high <= low, they are above
+/// `high` or not.
+struct ValueRange {
+    float low = 0.0F;
+    float high = 1.0F;
+    bool operator==(const ValueRange&) const = default;
+};
+
+/// What to see of a resource of the frame graph.
+struct Inspection {
+    static constexpr std::uint32_t all_slices = 0xffff'ffffU;
+
+    std::string resource;   ///< its name as in Renderer::describe, with the ending of the view
+    std::uint32_t mip = 0;  ///< the last one if there are fewer
+    /// Of an array; of a cube array the face, 6 a cube; the last one if there are fewer. Of light lists of
+    /// clusters the slice, 0 at the eye, or all_slices: the longest list of a tile.
+    std::uint32_t layer = 0;
+    Mapping mapping = Mapping::automatic;
+    Channels channels = Channels::rgb;  ///< rgb shows a format with a single channel as that
+    /// None: the least and the greatest finite value; for colours, with 0.
+    std::optional<ValueRange> range{};
+    std::uint32_t longest = 1024;  ///< texels along the longer side of the picture, at most
+    bool operator==(const Inspection&) const = default;
+};
+
+/// A texture with the depths of shadow maps.
+struct ShadowDepths {
+    ValueHandle<ShadowPlan> plan;
+    bool cubes = false;
+};
+
+/// What turns the depths of a texture into metres: those along the axis of the camera or of a shadow map, or
+/// the distance to a VPL. None: unknown.
+using DepthMeaning =
+    std::variant<std::monostate, ValueHandle<CameraView>, ShadowDepths, ValueHandle<VplAtlas>>;
+
+/// A resource of a graph: a texture or a buffer.
+struct Inspected {
+    std::optional<FoundTexture> texture{};
+    DepthMeaning depth{};
+    std::optional<FoundBuffer> buffer{};
+    std::optional<ValueHandle<CellGrid>> grid{};  ///< the buffer holds the lengths of light lists by cell
+
+    [[nodiscard]] bool has_picture() const { return texture || grid; }
+};
+
+/// The resource with this name, if passes of the graph have written one so far. `frame` is the view whose
+/// passes are being declared.
+[[nodiscard]] std::optional<Inspected> find_inspected(const FrameGraph& graph, const ViewFrame& frame,
+                                                      std::string_view name);
+
+/// Declares the reads of a pass that uses it.
+void read_inspected(Pass& pass, const Inspected& inspected);
+
+/// What is shown of a resource, now that its size is known.
+struct Shown {
+    TextureDesc desc;         ///< of textures
+    std::uint32_t mip = 0;    ///< as in Inspection, but existing
+    std::uint32_t layer = 0;  ///< the first slice of lists
+    std::uint32_t slices = 1;
+    std::uint32_t mips = 1;        ///< that could be shown
+    std::uint32_t layers = 1;      ///< or slices
+    glm::uvec2 extent{1};          ///< texels, or pixels that the tiles cover
+    glm::uvec2 texels{1};          ///< or tiles
+    std::uint32_t texel_size = 1;  ///< pixels along the edge of a tile; 1 for textures
+    glm::uvec2 picture{1};         ///< pixels of the picture
+    Mapping mapping = Mapping::colour;
+    int channels = 0;  ///< as in shaders/inspect/inspected.glsl
+    /// Elements [2][2], [3][2], [2][3] and [3][3] of the projection that made the depths, if they are shown
+    /// in metres.
+    std::optional<glm::vec4> depth_terms{};
+    std::optional<ValueRange> range{};
+};
+[[nodiscard]] Shown shown_of(const Execution& run, const Inspected& inspected, const Inspection& wanted);
+
+/// The program of this compute shader for the resource. It includes inspected.glsl.
+[[nodiscard]] const gl::Program& inspecting_program(Gpu& gpu, std::string_view file,
+                                                    const Inspected& inspected);
+/// Binds the texture and sets the uniforms of inspected.glsl.
+class InspectedTexels {
+ public:
+    InspectedTexels(Gpu& gpu, const Execution& run, const gl::Program& program, const Inspected& inspected,
+                    const Shown& shown);
+
+ private:
+    gl::Texture view_;  // of the mip and layer
+};
+
+}  // namespace candela

@@ -1,0 +1,209 @@
+#include "sandbox/editing/scene_rays.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <candela/scene/hierarchy.hpp>
+#include "engine/bvh/box.hpp"
+#include "engine/bvh/traverse.hpp"
+#include "engine/bvh/two_level.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+/// A hierarchy of this many triangles is built within a few hundredths of a second.
+constexpr std::size_t most_triangles = 1U << 16U;
+
+std::vector<Triangle> triangles_of(const Primitive& primitive, std::size_t first, std::size_t end) {
+    std::vector<Triangle> triangles;
+    triangles.reserve(end - first);
+    const auto corner = [&](std::size_t index) {
+        return primitive.vertices[primitive.indices[index]].position;
+    };
+    for (std::size_t i = first; i < end; ++i)
+        triangles.push_back({corner(3 * i), corner(3 * i + 1), corner(3 * i + 2)});
+    return triangles;
+}
+
+bool is_finite(const glm::mat4& matrix) {
+    float sum = 0.0F;
+    for (glm::length_t column = 0; column < 4; ++column) {
+        for (glm::length_t row = 0; row < 4; ++row) sum += matrix[column][row];
+    }
+    return std::isfinite(sum);
+}
+
+Box transformed(const Box& box, const glm::mat4& matrix) {
+    Box around;
+    for (unsigned corner = 0; corner < 8; ++corner)
+        around.grow(glm::vec3(matrix * glm::vec4(box.corner(corner), 1.0F)));
+    return around;
+}
+
+glm::vec3 front_of(const Triangle& triangle) {
+    return glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+}
+
+candela::Ray to_local(const candela::Ray& ray, const glm::mat4& local_from_world) {
+    return {glm::vec3(local_from_world * glm::vec4(ray.origin, 1.0F)),
+            glm::mat3(local_from_world) * ray.direction, ray.t_min, ray.t_max};
+}
+
+}  // namespace
+
+SceneRays::~SceneRays() {
+    stop_.request_stop();  // the future waits for its thread
+}
+
+SceneRays::Patches SceneRays::build_patches(const Mesh& mesh, const std::stop_token& stop) {
+    Patches patches;
+    for (const Primitive& primitive : mesh.primitives) {
+        const std::size_t count = primitive.indices.size() / 3;
+        for (std::size_t first = 0; first < count && !stop.stop_requested(); first += most_triangles) {
+            std::vector<Triangle> triangles =
+                triangles_of(primitive, first, std::min(first + most_triangles, count));
+            Bvh bvh = build_bvh(triangles);
+            patches.push_back({std::move(triangles), std::move(bvh), primitive.material->double_sided,
+                               primitive.material->alpha_mode == AlphaMode::blend});
+        }
+    }
+    return patches;
+}
+
+SceneRays::Meshes SceneRays::build(const std::vector<std::shared_ptr<const Mesh>>& meshes,
+                                   const std::stop_token& stop) {
+    Meshes built;
+    for (const auto& mesh : meshes)
+        built.emplace(mesh, std::make_shared<const Patches>(build_patches(*mesh, stop)));
+    return built;
+}
+
+void SceneRays::take_built() {
+    if (!building() || building_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    meshes_.merge(building_.get());
+    meshes_at_.reset();
+}
+
+/// Also drops what no entity uses any more.
+void SceneRays::build_missing(const World& world) {
+    std::set<std::shared_ptr<const Mesh>> used;
+    for (auto [entity, instance] : world.view<MeshInstance>()) used.insert(instance.mesh);
+    std::erase_if(meshes_, [&](const auto& mesh) { return !used.contains(mesh.first); });
+    std::vector<std::shared_ptr<const Mesh>> missing;
+    std::copy_if(used.begin(), used.end(), std::back_inserter(missing),
+                 [&](const auto& mesh) { return !meshes_.contains(mesh); });
+    if (!missing.empty())
+        building_ = std::async(std::launch::async, build, std::move(missing), stop_.get_token());
+}
+
+void SceneRays::place(const World& world) {
+    std::vector<Placed> placed;
+    for (auto [entity, instance] : world.view<MeshInstance>()) {
+        const auto mesh = meshes_.find(instance.mesh);
+        if (mesh == meshes_.end()) continue;
+        const glm::mat4 world_from_local = world_matrix(world, entity);
+        const glm::mat4 local_from_world = glm::inverse(world_from_local);
+        if (!is_finite(local_from_world)) continue;
+        for (const Patch& patch : *mesh->second)
+            placed.push_back({entity, &patch, world_from_local, local_from_world});
+    }
+    if (placed == placed_) return;
+    std::vector<Box> boxes;
+    boxes.reserve(placed.size());
+    for (const Placed& part : placed) {
+        const BvhNode& root = part.patch->bvh.nodes.front();
+        boxes.push_back(transformed({root.lower, root.upper}, part.world_from_local));
+    }
+    const bool same_parts = std::equal(
+        placed.begin(), placed.end(), placed_.begin(), placed_.end(),
+        [](const Placed& a, const Placed& b) { return a.patch == b.patch && a.entity == b.entity; });
+    if (same_parts) {
+        refit_box_bvh(top_, boxes);
+    } else {
+        top_ = build_box_bvh(boxes, bvh_max_depth);
+    }
+    placed_ = std::move(placed);
+}
+
+void SceneRays::update(const World& world) {
+    take_built();
+    const Tick meshes = world.revision<MeshInstance>();
+    const Tick transforms = world.revision<Transform>();
+    if (meshes == meshes_at_ && transforms == transforms_at_) return;
+    // A change of the meshes while others are being built is seen after that.
+    if (meshes != meshes_at_ && !building()) {
+        placed_.clear();  // refers to meshes that may be dropped
+        top_ = {};
+        build_missing(world);
+        meshes_at_ = meshes;
+    }
+    place(world);
+    transforms_at_ = transforms;
+}
+
+void SceneRays::update_and_wait(const World& world) {
+    update(world);
+    while (building()) {
+        building_.wait();
+        update(world);
+    }
+}
+
+/// The nearest triangle whose visible side faces the ray. `accepts(placed)` chooses among the parts.
+template <class Accepts>
+std::optional<SceneRays::Found> SceneRays::search(const candela::Ray& ray, Accepts&& accepts) const {
+    std::optional<Found> nearest;
+    candela::Ray rest = ray;
+    const auto visit_part = [&](std::uint32_t index) {
+        const Placed& part = placed_[index];
+        if (!accepts(part)) return rest.t_max;
+        const candela::Ray local = to_local(rest, part.local_from_world);
+        traverse(part.patch->bvh, local, [&](std::uint32_t at) {
+            const Triangle& triangle = part.patch->triangles[at];
+            const std::optional<Hit> hit = intersect(triangle, at, local);
+            const bool drawn =
+                part.patch->double_sided || glm::dot(front_of(triangle), local.direction) < 0.0F;
+            if (hit && drawn && hit->t < rest.t_max) {
+                nearest = Found{hit->t, &part, &triangle};
+                rest.t_max = hit->t;
+            }
+            return rest.t_max;
+        });
+        return rest.t_max;
+    };
+    traverse(top_, ray, visit_part);
+    return nearest;
+}
+
+std::optional<SurfaceHit> SceneRays::first_hit(const Ray& ray, std::span<const Entity> ignored,
+                                               float most) const {
+    const auto accepts = [&](const Placed& part) {
+        return !std::binary_search(ignored.begin(), ignored.end(), part.entity);
+    };
+    const std::optional<Found> found = search({ray.origin, ray.direction, 0.0F, most}, accepts);
+    if (!found) return std::nullopt;
+    const glm::mat3 normal_matrix = glm::transpose(glm::mat3(found->placed->local_from_world));
+    const glm::vec3 normal = glm::normalize(normal_matrix * front_of(*found->triangle));
+    return SurfaceHit{found->placed->entity, ray.origin + found->t * ray.direction,
+                      glm::dot(normal, ray.direction) > 0.0F ? -normal : normal, found->t};
+}
+
+bool SceneRays::blocked(const glm::vec3& from, const glm::vec3& to) const {
+    // A light is not hidden by the surface that it lies on.
+    constexpr float before_end = 0.999F;
+    const auto accepts = [](const Placed& part) { return !part.patch->blends; };
+    return search({from, to - from, 0.0F, before_end}, accepts).has_value();
+}
+
+}  // namespace candela::sandbox

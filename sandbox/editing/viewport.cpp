@@ -1,0 +1,57 @@
+#include "sandbox/editing/viewport.hpp"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
+#include "renderer/passes/view/view.hpp"
+
+namespace candela::sandbox {
+
+Viewport make_viewport(const World& world, Entity camera, glm::vec2 size, glm::vec2 origin) {
+    const glm::mat4 pose = world_matrix(world, camera);
+    const CameraView view =
+        make_view(world.get<Camera>(camera), pose, {.camera = camera, .size = glm::uvec2(size)});
+    return {view.clip_from_world, glm::inverse(glm::dmat4(view.clip_from_world)),
+            -glm::normalize(glm::vec3(pose[2])), size, origin};
+}
+
+std::optional<glm::vec2> project(const Viewport& viewport, const glm::vec3& point) {
+    const glm::vec4 clip = viewport.clip_from_world * glm::vec4(point, 1.0F);
+    if (clip.w <= 0.0F) return std::nullopt;
+    const glm::vec2 ndc = glm::vec2(clip) / clip.w;
+    return glm::vec2(0.5F + 0.5F * ndc.x, 0.5F - 0.5F * ndc.y) * viewport.size + viewport.origin;
+}
+
+float metres_per_unit(const Viewport& viewport, const glm::vec3& point) {
+    // The rows of clip space give y = (a·p) / (w·p): a metre upwards at the point changes y by |a| / w.
+    const glm::mat4& clip = viewport.clip_from_world;
+    const float w = (clip * glm::vec4(point, 1.0F)).w;
+    const float scale = glm::length(glm::vec3(clip[0][1], clip[1][1], clip[2][1]));
+    return 2.0F * w / (scale * viewport.size.y);
+}
+
+Ray ray_through(const Viewport& viewport, glm::vec2 position) {
+    const glm::vec2 inside = (position - viewport.origin) / viewport.size;
+    const glm::vec2 ndc = glm::vec2(2.0F, -2.0F) * inside + glm::vec2(-1.0F, 1.0F);
+    // Depth is reversed: 1 on the near plane. A depth of 0.5 is beyond it, whatever the projection.
+    const glm::dvec4 near = viewport.world_from_clip * glm::dvec4(ndc, 1.0, 1.0);
+    const glm::dvec4 beyond = viewport.world_from_clip * glm::dvec4(ndc, 0.5, 1.0);
+    const glm::dvec3 origin = glm::dvec3(near) / near.w;
+    return {origin, glm::normalize(glm::dvec3(beyond) / beyond.w - origin)};
+}
+
+std::optional<glm::vec3> intersect_plane(const Ray& ray, const glm::vec3& point, const glm::vec3& normal) {
+    constexpr float least_cosine = 1e-4F;
+    const float cosine = glm::dot(ray.direction, normal);
+    if (std::abs(cosine) < least_cosine) return std::nullopt;
+    const float distance = glm::dot(point - ray.origin, normal) / cosine;
+    if (distance < 0.0F) return std::nullopt;
+    return ray.origin + distance * ray.direction;
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,105 @@
+#include "sandbox/panels/controls.hpp"
+
+#include <utility>
+
+namespace candela::sandbox {
+
+namespace {
+
+ControlPlaces& places() {
+    static ControlPlaces drawn;
+    return drawn;
+}
+
+}  // namespace
+
+ControlPlaces take_control_places() {
+    return std::exchange(places(), {});
+}
+
+void note_control(std::string_view label, const char* tip) {
+    if (ImGui::IsItemVisible()) {
+        const ImVec2 from = ImGui::GetItemRectMin();
+        const ImVec2 to = ImGui::GetItemRectMax();
+        const std::string_view shown = label.substr(0, label.find("##"));
+        places()[std::string(shown)] = {{from.x, from.y}, {to.x - from.x, to.y - from.y}};
+    }
+    if (tip != nullptr && ImGui::IsItemHovered()) {
+        constexpr float lines_of = 24.0F;  // letters' heights
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(ImGui::GetFontSize() * lines_of);
+        ImGui::TextUnformatted(tip);
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+    }
+}
+
+void text(std::string_view line) {
+    ImGui::TextUnformatted(line.data(), line.data() + line.size());
+}
+
+bool button(const std::string& label, const char* tip) {
+    const bool pressed = ImGui::Button(label.c_str());
+    note_control(label, tip);
+    return pressed;
+}
+
+bool checkbox(const char* label, bool& value, const char* tip) {
+    const bool changed = ImGui::Checkbox(label, &value);
+    note_control(label, tip);
+    return changed;
+}
+
+bool choice(const std::string& label, bool chosen, const char* tip) {
+    if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    const bool pressed = ImGui::Button(label.c_str());
+    if (chosen) ImGui::PopStyleColor();
+    note_control(label, tip);
+    return pressed;
+}
+
+bool drag(const char* label, std::uint32_t& value, float speed, const char* tip) {
+    const bool changed = ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
+    note_control(label, tip);
+    return changed;
+}
+
+bool drag(const char* label, float& value, float speed, float least, float most, const char* tip) {
+    const bool changed =
+        ImGui::DragFloat(label, &value, speed, least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    note_control(label, tip);
+    return changed;
+}
+
+bool drag(const char* label, glm::vec3& value, float speed, float least, float most, const char* tip) {
+    const bool changed =
+        ImGui::DragFloat3(label, &value.x, speed, least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    note_control(label, tip);
+    return changed;
+}
+
+bool slide(const char* label, float& value, float least, float most, const char* tip) {
+    const bool changed = ImGui::SliderFloat(label, &value, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    note_control(label, tip);
+    return changed;
+}
+
+bool slide(const char* label, int& value, int least, int most, const char* tip) {
+    const bool changed = ImGui::SliderInt(label, &value, least, most, "%d", ImGuiSliderFlags_AlwaysClamp);
+    note_control(label, tip);
+    return changed;
+}
+
+bool colour(const char* label, glm::vec3& value, const char* tip) {
+    const bool changed = ImGui::ColorEdit3(label, &value.r, ImGuiColorEditFlags_Float);
+    note_control(label, tip);
+    return changed;
+}
+
+bool header(const char* label, bool open) {
+    const bool shown = ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    note_control(label, nullptr);
+    return shown;
+}
+
+}  // namespace candela::sandbox

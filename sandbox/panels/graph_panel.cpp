@@ -1,0 +1,158 @@
+#include "sandbox/panels/graph_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "sandbox/panels/controls.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr ImU32 arc_colour = IM_COL32(120, 120, 120, 70);
+constexpr ImU32 input_colour = IM_COL32(110, 190, 255, 255);
+constexpr ImU32 output_colour = IM_COL32(255, 170, 80, 255);
+
+/// From green to red with the share of the frame's time; grey for a pass that did not run.
+ImU32 cost_colour(const PassCost& cost, double frame_ms) {
+    if (!cost.ran) return IM_COL32(70, 70, 70, 255);
+    const double share = frame_ms > 0.0 ? std::min(cost.last_ms() / frame_ms, 1.0) : 0.0;
+    // The square root makes small shares visible.
+    const auto heat = static_cast<float>(std::sqrt(share));
+    return ImGui::ColorConvertFloat4ToU32({0.15F + 0.65F * heat, 0.5F - 0.3F * heat, 0.2F, 1.0F});
+}
+
+void draw_plot(const PassCost& cost) {
+    const std::string label =
+        fmt::format("{}: {:.2f} ms, mean {:.2f}", cost.name, cost.last_ms(), cost.mean_ms);
+    ImGui::PlotLines("##costs", cost.history.data(), static_cast<int>(cost.history.size()), 0, label.c_str(),
+                     0.0F, std::numeric_limits<float>::max(),
+                     {ImGui::GetContentRegionAvail().x, 3.5F * ImGui::GetFontSize()});
+    note_control("costs", "milliseconds of the last runs, the longer of CPU and GPU time");
+}
+
+const PassCost* cost_of(const PassCosts& costs, const std::string& pass) {
+    const auto found = std::ranges::find(costs.passes(), pass, &PassCost::name);
+    return found == costs.passes().end() ? nullptr : &*found;
+}
+
+void list_resources(const GraphPicture& graph, const std::vector<std::size_t>& resources,
+                    std::string_view verb, std::optional<std::string>& chosen) {
+    for (const std::size_t index : resources) {
+        const GraphResource& resource = graph.resources[index];
+        const bool can_be_shown = resource.kind != GraphResource::Kind::value;
+        const std::string label = fmt::format("{} {}", verb, resource.name);
+        if (!can_be_shown) {
+            ImGui::TextDisabled("%s", label.c_str());
+        } else if (ImGui::Selectable(label.c_str(), chosen == resource.name)) {
+            if (chosen == resource.name) {
+                chosen.reset();
+            } else {
+                chosen = resource.name;
+            }
+        }
+        note_control(resource.name, fmt::format("{}, {}", resource.storage, resource.lifetime).c_str());
+    }
+}
+
+/// The resources of the chosen pass.
+void list_resources_of(GraphSelection& selection, const GraphPicture& graph) {
+    if (!selection.pass) return;
+    const auto pass = std::ranges::find(graph.passes, *selection.pass, &GraphPass::name);
+    if (pass == graph.passes.end()) return;
+    list_resources(graph, pass->reads, "reads", selection.resource);
+    list_resources(graph, pass->writes, "writes", selection.resource);
+}
+
+/// A point at the left edge of each pass's line, in screen coordinates.
+using Anchors = std::vector<ImVec2>;
+
+void draw_arc(const Anchors& anchors, const GraphEdge& edge, float space, ImU32 colour, float thickness) {
+    const ImVec2 from = anchors[edge.from];
+    const ImVec2 to = anchors[edge.to];
+    // The further apart, the further out, up to the space at the left.
+    const float reach = space * (1.0F - 1.0F / (1.0F + 0.02F * std::abs(to.y - from.y)));
+    const float out = 4.0F / 3.0F * reach;  // a cubic curve reaches three quarters of its control points
+    ImGui::GetWindowDrawList()->AddBezierCubic(from, {from.x - out, from.y}, {to.x - out, to.y}, to, colour,
+                                               thickness);
+}
+
+void draw_arcs(const GraphPicture& graph, const Anchors& anchors, float space, std::size_t focus) {
+    for (const GraphEdge& edge : graph.edges) draw_arc(anchors, edge, space, arc_colour, 1.0F);
+    for (const GraphEdge& edge : graph.edges) {
+        if (edge.to == focus) draw_arc(anchors, edge, space, input_colour, 2.0F);
+        if (edge.from == focus) draw_arc(anchors, edge, space, output_colour, 2.0F);
+    }
+}
+
+/// Returns whether the line is under the pointer.
+bool draw_pass(const GraphPass& pass, const PassCost* cost, double frame_ms,
+               std::optional<std::string>& chosen) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    const float height = ImGui::GetTextLineHeight() + 2.0F;
+    if (ImGui::InvisibleButton(pass.name.c_str(), {std::max(width, 1.0F), height})) {
+        if (chosen == pass.name) {
+            chosen.reset();
+        } else {
+            chosen = pass.name;
+        }
+    }
+    const bool hovered = ImGui::IsItemHovered();
+    note_control(pass.name, nullptr);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 fill = cost != nullptr ? cost_colour(*cost, frame_ms) : IM_COL32(70, 70, 70, 255);
+    const float rounding = pass.gpu ? 0.0F : 0.5F * height;  // passes on the CPU have round ends
+    list->AddRectFilled(corner, {corner.x + width, corner.y + height}, fill, rounding);
+    if (hovered || chosen == pass.name)
+        list->AddRect(corner, {corner.x + width, corner.y + height}, IM_COL32_WHITE, rounding);
+    const float inset = 0.5F * ImGui::GetFontSize();
+    list->AddText({corner.x + inset, corner.y + 1.0F}, IM_COL32_WHITE, pass.name.c_str());
+    if (cost == nullptr || cost->history.empty()) return hovered;
+    const std::string times = fmt::format("{:.2f}  {:.2f}", cost->last_ms(), cost->mean_ms);
+    const float text = ImGui::CalcTextSize(times.c_str()).x;
+    list->AddText({corner.x + width - text - inset, corner.y + 1.0F}, IM_COL32_WHITE, times.c_str());
+    if (hovered) {
+        ImGui::SetTooltip("%s pass, %s in the last frame\nlast run: CPU %.3f ms, GPU %.3f ms; mean %.3f ms",
+                          pass.gpu ? "GPU" : "CPU", cost->ran ? "ran" : "did not run", cost->cpu_ms,
+                          cost->gpu_ms, cost->mean_ms);
+    }
+    return hovered;
+}
+
+}  // namespace
+
+void draw_graph_panel(GraphSelection& selection, const GraphPicture& graph, const PassCosts& costs) {
+    const PassCost* plotted = selection.pass ? cost_of(costs, *selection.pass) : nullptr;
+    draw_plot(plotted != nullptr ? *plotted : costs.frame());
+    list_resources_of(selection, graph);
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextDisabled("last and mean ms; round: CPU; blue: needs, orange: is needed by");
+    ImGui::PopTextWrapPos();
+
+    const float space = 4.0F * ImGui::GetFontSize();
+    Anchors anchors;
+    std::size_t focus = graph.passes.size();
+    ImGui::Indent(space);
+    for (std::size_t i = 0; i < graph.passes.size(); ++i) {
+        const GraphPass& pass = graph.passes[i];
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        anchors.emplace_back(corner.x, corner.y + 0.5F * ImGui::GetTextLineHeight());
+        const bool chosen = selection.pass == pass.name;
+        if (draw_pass(pass, cost_of(costs, pass.name), costs.frame().last_ms(), selection.pass) ||
+            (chosen && focus == graph.passes.size()))
+            focus = i;
+    }
+    ImGui::Unindent(space);
+    draw_arcs(graph, anchors, space, focus);
+
+    if (!header("all resources", false)) return;
+    std::vector<std::size_t> all(graph.resources.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    list_resources(graph, all, "", selection.resource);
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sandbox/editing/gizmo.hpp"
+#include "sandbox/editing/light_labels.hpp"
+#include "sandbox/window/app_state.hpp"
+#include "sandbox/window/layout.hpp"
+
+namespace candela::sandbox {
+
+/// Draws a ring at the position of each light, fainter where a surface hides it; the names of the selected
+/// light and of the one under the pointer.
+void draw_lights(const std::vector<LightLabel>& lights);
+
+/// Draws the handles of the selection; the active one is highlighted.
+void draw_gizmo(const Gizmo& gizmo, std::optional<std::size_t> active);
+
+/// Draws the line between two configurations; a drag moves it.
+void draw_divider(Comparison& comparison, const Rectangle& scene);
+
+/// Draws messages over the lower edge of the picture, also where there is no panel: what has failed, and what
+/// was done last.
+void draw_messages(const std::vector<std::string>& errors, const std::string& notice, const Rectangle& scene);
+
+}  // namespace candela::sandbox

@@ -1,0 +1,295 @@
+#include "sandbox/panels/scene_panel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <candela/scene/components.hpp>
+#include "sandbox/environment.hpp"
+#include "sandbox/panels/controls.hpp"
+#include "sandbox/report.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr float any = std::numeric_limits<float>::max();
+
+void draw_files(std::vector<Action>& wanted, const AppState& state) {
+    if (button("open", "Ctrl+O: another scene; or drop a file on the window"))
+        wanted.push_back(Action::open_scene);
+    ImGui::SameLine();
+    if (button("save", "Ctrl+S: the scene as glTF, in the current folder"))
+        wanted.push_back(Action::save_scene);
+    ImGui::SameLine();
+    if (button("screenshot", "F12: the picture as PNG, in the current folder"))
+        wanted.push_back(Action::screenshot);
+    ImGui::SameLine();
+    if (button(state.sequence ? "end sequence###sequence" : "sequence###sequence",
+               "Shift+F12: saves each new picture as a numbered PNG, in the current folder"))
+        wanted.push_back(Action::sequence);
+}
+
+void draw_history(Interaction& interaction) {
+    const auto offer = [&](const char* label, std::optional<std::string_view> name, Action action) {
+        ImGui::BeginDisabled(!name);
+        const std::string tip = name ? fmt::format("{} \"{}\"", label, *name) : std::string(label);
+        if (button(label, tip.c_str())) interaction.carry_out(action);
+        ImGui::EndDisabled();
+        ImGui::SameLine();
+    };
+    offer("undo", interaction.history().undo_name(), Action::undo);
+    offer("redo", interaction.history().redo_name(), Action::redo);
+    if (button("frame", "F: look at the selection, or at the whole scene"))
+        interaction.carry_out(Action::frame_selected);
+    ImGui::SameLine();
+    if (button("reset view", "Home: back to the scene's camera")) interaction.carry_out(Action::reset_view);
+}
+
+void draw_cameras(const World& world, Interaction& interaction) {
+    const bool open = ImGui::BeginCombo("camera", name_of(world, interaction.camera()).c_str());
+    note_control("camera", "the scene's camera that the view starts from");
+    if (!open) return;
+    for (const Entity camera : cameras(world)) {
+        if (camera == interaction.viewer()) continue;
+        ImGui::PushID(static_cast<int>(camera.index));
+        if (ImGui::Selectable(name_of(world, camera).c_str(), camera == interaction.camera()))
+            interaction.look_from_camera(camera);
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+}
+
+void list_entity(const World& world, Entity entity, std::optional<Entity>& selected) {
+    ImGui::PushID(static_cast<int>(entity.index));
+    if (ImGui::Selectable(name_of(world, entity).c_str(), selected == entity)) selected = entity;
+    note_control(name_of(world, entity), nullptr);
+    ImGui::PopID();
+}
+
+void draw_selection(const World& world, std::optional<Entity>& selected) {
+    const bool open = ImGui::BeginCombo("selected", selected ? name_of(world, *selected).c_str() : "nothing");
+    note_control("selected", "a light or an object; or click on it in the picture");
+    if (!open) return;
+    for (auto [entity, light] : world.view<PointLight>()) list_entity(world, entity, selected);
+    for (auto [entity, light] : world.view<SpotLight>()) list_entity(world, entity, selected);
+    for (auto [entity, light] : world.view<DirectionalLight>()) list_entity(world, entity, selected);
+    ImGui::Separator();
+    for (auto [entity, mesh] : world.view<MeshInstance>()) list_entity(world, entity, selected);
+    ImGui::EndCombo();
+}
+
+void draw_lights_to_add(Interaction& interaction) {
+    text("add a light:");
+    const auto offer = [&](const char* label, Action action, const char* tip) {
+        ImGui::SameLine();
+        if (button(label, tip)) interaction.carry_out(action);
+    };
+    offer("point", Action::add_point_light, "L: a point light over the surface in the middle of the picture");
+    offer("spot", Action::add_spot_light, "Shift+L: a spot light that shines on that surface");
+    offer("sun", Action::add_directional_light, "Ctrl+L: a directional light");
+}
+
+void draw_tools(Interaction& interaction) {
+    const auto offer = [&](const char* label, Tool tool, const char* tip) {
+        if (choice(label, interaction.tool == tool, tip)) interaction.tool = tool;
+        ImGui::SameLine();
+    };
+    offer("move", Tool::move, "G: drag it in the plane of the screen, or along an axis (X, Y, Z)");
+    offer("over surfaces", Tool::surface, "V: it follows the surface under the pointer");
+    offer("turn", Tool::turn, "R: around an axis; a spot light aims at what is under the pointer");
+    offer("scale", Tool::scale, "T");
+    ImGui::NewLine();
+    if (button("copy", "Ctrl+D")) interaction.carry_out(Action::copy);
+    ImGui::SameLine();
+    if (button("delete", "Delete")) interaction.carry_out(Action::remove);
+}
+
+/// Angles around x, y and z, in degrees.
+void draw_rotation(glm::quat& rotation) {
+    glm::vec3 degrees = glm::degrees(glm::eulerAngles(rotation));
+    if (drag("rotation, °", degrees, 0.5F, -360.0F, 360.0F, "degrees around x, then y, then z"))
+        rotation = glm::normalize(glm::quat(glm::radians(degrees)));
+}
+
+void draw_transform(World& world, Entity entity) {
+    if (!world.has<Transform>(entity)) return;
+    world.edit<Transform>(entity, [&](Transform& transform) {
+        drag("position, m", transform.translation, 0.01F, -any, any, "metres, relative to the parent");
+        draw_rotation(transform.rotation);
+        if (world.has<MeshInstance>(entity))
+            drag("scale", transform.scale, 0.01F, -any, any, "along the object's own axes");
+    });
+}
+
+/// Metres; a light without a limit has an infinite range.
+void draw_range(float& range) {
+    bool limited = std::isfinite(range);
+    if (checkbox("limited range", limited, "whether the light falls to zero at a distance"))
+        range = limited ? 10.0F : std::numeric_limits<float>::infinity();
+    if (limited) drag("range, m", range, 0.02F, 1e-3F, any, "metres; the light is zero from there on");
+}
+
+void draw_cones(SpotLight& light) {
+    constexpr float widest = 90.0F;
+    constexpr float narrowest = 0.1F;
+    float inner = glm::degrees(light.inner_cone);
+    float outer = glm::degrees(light.outer_cone);
+    const bool changed_inner =
+        slide("inner cone, °", inner, 0.0F, widest, "degrees from the axis; full intensity inside");
+    const bool changed_outer =
+        slide("outer cone, °", outer, narrowest, widest, "degrees from the axis; dark outside");
+    if (!changed_inner && !changed_outer) return;
+    // The cone that is changed pushes the other one.
+    if (changed_outer) inner = std::min(inner, 0.99F * outer);
+    if (changed_inner) outer = std::max(outer, std::min(inner / 0.99F, widest));
+    light.inner_cone = glm::radians(std::min(inner, 0.99F * outer));
+    light.outer_cone = glm::radians(outer);
+}
+
+/// What all kinds of lights have.
+template <class Light>
+void draw_emission(Light& light, float Light::*strength, const char* unit) {
+    drag(unit, light.*strength, 0.05F + 0.01F * light.*strength, 0.0F, any,
+         "of the light, in the middle of its cone");
+    colour("colour", light.colour, "linear RGB; multiplies the strength");
+    checkbox("casts shadow", light.casts_shadow, "whether surfaces block its light");
+}
+
+void draw_light(World& world, Entity entity) {
+    if (world.has<PointLight>(entity)) {
+        world.edit<PointLight>(entity, [](PointLight& light) {
+            draw_emission(light, &PointLight::intensity, "candela");
+            draw_range(light.range);
+        });
+    }
+    if (world.has<SpotLight>(entity)) {
+        world.edit<SpotLight>(entity, [](SpotLight& light) {
+            draw_emission(light, &SpotLight::intensity, "candela");
+            draw_range(light.range);
+            draw_cones(light);
+        });
+    }
+    if (world.has<DirectionalLight>(entity)) {
+        world.edit<DirectionalLight>(entity, [](DirectionalLight& light) {
+            draw_emission(light, &DirectionalLight::illuminance, "lux");
+        });
+    }
+}
+
+void draw_name(World& world, Entity entity) {
+    std::string name = world.has<Name>(entity) ? world.get<Name>(entity).value : "";
+    if (ImGui::InputText("name", &name)) world.set(entity, Name{name});
+    note_control("name", "scripts find a node by its name");
+}
+
+/// The fields change the world directly; the history takes note of it afterwards.
+void draw_fields(Document& document, Entity entity) {
+    World& world = document.scene.world;
+    EntityStates before = states_of(world, {entity});
+    draw_name(world, entity);
+    draw_transform(world, entity);
+    draw_light(world, entity);
+    History& history = document.interaction.history();
+    history.record(world, fmt::format("change {}", name_of(world, entity)), std::move(before));
+    if (!ImGui::IsAnyItemActive()) history.end_of_gesture();
+}
+
+void draw_selected(Document& document, std::vector<Action>& wanted) {
+    Interaction& interaction = document.interaction;
+    if (!interaction.selected) return;
+    draw_tools(interaction);
+    ImGui::SameLine();
+    if (button(document.recorder ? "end recording###record" : "record###record",
+               "Ctrl+R: records how it moves, as a script for --animate, in the current folder"))
+        wanted.push_back(Action::record_drag);
+    draw_fields(document, *interaction.selected);
+}
+
+void draw_sky(Document& document) {
+    World& world = document.scene.world;
+    const Entity entity = environment_entity(world);
+    if (entity == Entity{}) {
+        if (button("add a sky",
+                   "the same radiance from all directions; or drop a .hdr or .exr file on the window"))
+            set_environment(world, {.radiance = default_sky, .picture = nullptr});
+        return;
+    }
+    EntityStates before = states_of(world, {entity});
+    world.edit<Environment>(entity, [](Environment& environment) {
+        drag("sky", environment.radiance, 0.01F, 0.0F, any,
+             "radiance of the sky, cd/m²; multiplies its picture, if it has one");
+        float degrees = glm::degrees(environment.rotation);
+        if (environment.picture &&
+            slide("rotation of the sky, °", degrees, -180.0F, 180.0F, "degrees around the vertical"))
+            environment.rotation = glm::radians(degrees);
+    });
+    document.interaction.history().record(world, "change the sky", std::move(before));
+}
+
+void draw_playback(Playback& playback) {
+    int frame = playback.frame();
+    if (slide("frame", frame, 0, playback.frames() - 1, "of the script")) playback.seek(frame);
+    if (button(playback.playing() ? "pause" : "play", "space")) playback.toggle();
+    ImGui::SameLine();
+    if (button("step", "period")) playback.step();
+}
+
+void draw_light_counts(const LightReport& lights) {
+    text(fmt::format("shadow maps: {}, no room for {}", lights.with_shadow, lights.without_shadow));
+    if (lights.tile_max == 0) return;
+    text(fmt::format("a list: {:.1f} in the mean, {} at most", lights.tile_mean, lights.tile_max));
+    text(fmt::format("in all lists: {}", lights.global));
+}
+
+void draw_vpls(const VplReport& vpls) {
+    text(fmt::format("{} of {} VPLs alive", vpls.alive, vpls.requested));
+    for (const EnergyLine& line : energy_lines(vpls.flux)) {
+        text(fmt::format("{:<10}{:>9.3g}{:>9.3g}{:>9.3g}", line.name, line.value.r, line.value.g,
+                         line.value.b));
+    }
+    text(fmt::format("unaccounted for: {:.1e}", relative_residual(vpls.flux)));
+}
+
+void draw_warnings(const std::vector<std::string>& warnings) {
+    if (warnings.empty()) return;
+    if (!header("About this scene", true)) return;
+    for (const std::string& warning : warnings) ImGui::TextWrapped("%s", warning.c_str());
+}
+
+void draw_account(const Report& report) {
+    text(fmt::format("{} triangles, {} lights", report.triangles, report.lights.count));
+    draw_light_counts(report.lights);
+    if (report.vpls) draw_vpls(*report.vpls);
+}
+
+}  // namespace
+
+std::vector<Action> draw_scene_panel(Document& document, const AppState& state, const Report* report) {
+    std::vector<Action> wanted;
+    const World& world = document.scene.world;
+    draw_files(wanted, state);
+    draw_history(document.interaction);
+    draw_cameras(world, document.interaction);
+    ImGui::Separator();
+    draw_lights_to_add(document.interaction);
+    draw_selection(world, document.interaction.selected);
+    draw_selected(document, wanted);
+    ImGui::Separator();
+    draw_sky(document);
+    if (document.playback && header("Animation", true)) draw_playback(*document.playback);
+    if (report != nullptr && header("Energy: lights in, surfaces out", false)) draw_account(*report);
+    draw_warnings(state.warnings);
+    return wanted;
+}
+
+}  // namespace candela::sandbox

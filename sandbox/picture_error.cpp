@@ -1,0 +1,74 @@
+#include "sandbox/picture_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace candela::sandbox {
+
+namespace {
+
+// A tenth of the mean brightness, squared; prevents dark pixels from dominating the relative error.
+constexpr double floor_of_square = 0.01;
+
+void require_finite(const Picture& picture, std::string_view name) {
+    if (const auto pixel = first_not_finite(picture)) {
+        throw std::invalid_argument(
+            fmt::format("{}: pixel ({}, {}) is not finite", name, pixel->x, pixel->y));
+    }
+}
+
+}  // namespace
+
+double relative_mse(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
+    require_comparable(picture, reference, hit);
+    const double mean_square = square(mean_vector(reference, hit));
+    return mean_over(picture.pixels.size(), hit, [&](std::size_t i) {
+        return relative_square(picture.pixels[i], reference.pixels[i], mean_square);
+    });
+}
+
+void require_comparable(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
+    if (picture.size != reference.size || picture.pixels.size() != reference.pixels.size()) {
+        throw std::invalid_argument(fmt::format("a picture of {}x{} cannot be compared with one of {}x{}",
+                                                picture.size.x, picture.size.y, reference.size.x,
+                                                reference.size.y));
+    }
+    if (!hit.empty() && hit.size() != picture.pixels.size()) {
+        throw std::invalid_argument(fmt::format("a mask of {} pixels does not fit {}x{}", hit.size(),
+                                                picture.size.x, picture.size.y));
+    }
+    require_finite(picture, "the picture");
+    require_finite(reference, "the reference");
+    const bool any = hit.empty() ? !picture.pixels.empty()
+                                 : std::any_of(hit.begin(), hit.end(), [](std::uint8_t h) { return h != 0; });
+    if (!any) throw std::invalid_argument("no pixel counts");
+}
+
+std::optional<glm::ivec2> first_not_finite(const Picture& picture) {
+    const auto found = std::find_if(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& pixel) {
+        return !(std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b));
+    });
+    if (found == picture.pixels.end()) return std::nullopt;
+    const auto index = static_cast<int>(found - picture.pixels.begin());
+    return glm::ivec2(index % picture.size.x, index / picture.size.x);
+}
+
+double square(glm::dvec3 vector) {
+    return glm::dot(vector, vector);
+}
+
+double relative_square(glm::dvec3 a, glm::dvec3 r, double mean_square) {
+    return ratio(square(a - r), square(r) + floor_of_square * mean_square);
+}
+
+glm::dvec3 mean_vector(const Picture& picture, std::span<const std::uint8_t> hit) {
+    return mean_over(picture.pixels.size(), hit,
+                     [&](std::size_t i) { return glm::dvec3(picture.pixels[i]); });
+}
+
+}  // namespace candela::sandbox

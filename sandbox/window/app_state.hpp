@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <candela/configuration.hpp>
+
+namespace candela::sandbox {
+
+/// How two configurations are compared.
+enum class CompareMode : std::uint8_t {
+    off,
+    divider,    ///< the first left of a line that can be dragged, the second right of it
+    difference  ///< |first - second|, times a factor
+};
+
+/// The comparison of the configuration with a second one.
+struct Comparison {
+    CompareMode mode = CompareMode::off;
+    Configuration other;
+    bool with_reference = false;  ///< the second picture is the path tracer's, not that of `other`
+    float divider = 0.5F;         ///< position of the line, a fraction of the picture's width
+    float factor = 8.0F;          ///< of differences
+};
+
+/// What the user has chosen to see, and what the app has to say about it. Panels change it; the session acts
+/// on it.
+struct AppState {
+    Configuration configuration;  ///< wanted; a faulty one is not taken over: see errors
+    Comparison comparison;
+    bool panel = true;
+    bool help = false;
+    bool sequence = false;  ///< each new picture is saved
+    bool vpls = false;      ///< VPLs are shown as dots
+    /// The path tracer's picture of what is shown is refined in the background, and compared with it.
+    bool reference = false;
+    /// What the scene's file asks for and the picture lacks, and what the renderer left out.
+    std::vector<std::string> warnings;
+    std::vector<std::string> errors;  ///< of the last thing that failed
+    std::optional<double> error;      ///< relMSE of the picture over the reference
+    std::string notice;               ///< what was last done, for example which file was written
+};
+
+}  // namespace candela::sandbox

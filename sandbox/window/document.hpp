@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "sandbox/drag_recorder.hpp"
+#include "sandbox/editing/interaction.hpp"
+#include "sandbox/options.hpp"
+#include "sandbox/playback.hpp"
+#include "sandbox/scene.hpp"
+
+namespace candela::sandbox {
+
+/// An opened scene, and what the user does with it.
+struct Document {
+    Scene scene;
+    Interaction interaction;
+    std::optional<Playback> playback;
+    std::optional<DragRecorder> recorder;  ///< while the motion of an entity is recorded
+
+    /// `camera` names the camera to start from, as in Options; `aspect`: width / height of the picture.
+    Document(Scene opened, const std::optional<std::string>& camera, float aspect);
+    Document(const Document&) = delete;
+    Document& operator=(const Document&) = delete;
+
+    [[nodiscard]] bool is_playing() const { return playback && playback->playing(); }
+    /// Shows the next frame of the animation. The viewer follows the camera that it started from if the
+    /// animation moves it, even if the user has moved away. Returns whether the scene has jumped to another
+    /// place of the animation.
+    bool animate();
+
+    /// A copy of the world for another thread; the same one while nothing changes.
+    [[nodiscard]] std::shared_ptr<const World> copy_of_world();
+
+ private:
+    std::shared_ptr<const World> copy_;
+};
+
+}  // namespace candela::sandbox

@@ -1,0 +1,89 @@
+#include "sandbox/window/picture_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "sandbox/files/picture.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr std::size_t most_jobs = 16;
+
+/// 8 bits per channel, the top row first.
+std::vector<std::uint8_t> to_rgb(glm::uvec2 size, const std::vector<glm::vec4>& texels) {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(3 * texels.size());
+    for (std::uint32_t y = size.y; y-- > 0;) {
+        for (std::uint32_t x = 0; x < size.x; ++x) {
+            const glm::vec4& texel = texels[static_cast<std::size_t>(y) * size.x + x];
+            for (const float channel : {texel.r, texel.g, texel.b})
+                rgb.push_back(
+                    static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(channel, 0.0F, 1.0F))));
+        }
+    }
+    return rgb;
+}
+
+}  // namespace
+
+PictureWriter::PictureWriter(std::function<void()> notify)
+    : notify_(std::move(notify)), thread_([this] { work(); }) {}
+
+PictureWriter::~PictureWriter() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void PictureWriter::write(std::filesystem::path path, glm::uvec2 size, std::vector<glm::vec4> texels) {
+    {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return jobs_.size() < most_jobs; });
+        jobs_.push_back({std::move(path), size, std::move(texels)});
+    }
+    changed_.notify_all();
+}
+
+void PictureWriter::finish() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return jobs_.empty() && !writing_; });
+}
+
+std::vector<PictureWriter::Result> PictureWriter::take_results() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(results_, {});
+}
+
+void PictureWriter::work() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [&] { return stop_ || !jobs_.empty(); });
+        if (jobs_.empty()) return;
+        Job job = std::move(jobs_.front());
+        jobs_.pop_front();
+        writing_ = true;
+        lock.unlock();
+        Result result{job.path, ""};
+        try {
+            write_png(job.path, job.size, to_rgb(job.size, job.texels));
+        } catch (const std::exception& error) {
+            result.error = error.what();
+        }
+        lock.lock();
+        writing_ = false;
+        results_.push_back(std::move(result));
+        changed_.notify_all();
+        lock.unlock();
+        notify_();
+        lock.lock();
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,51 @@
+#include "sandbox/window/reference_view.hpp"
+
+#include <stdexcept>
+
+namespace candela::sandbox {
+
+namespace {
+
+bool same(const ReferenceRequest& a, const ReferenceRequest& b) {
+    return a.world == b.world && a.camera == b.camera && a.size == b.size && a.antialiased == b.antialiased;
+}
+
+}  // namespace
+
+void ReferenceView::follow(const std::optional<ReferenceRequest>& request) {
+    if (!tracer_) return;
+    const bool unchanged = request && request_ ? same(*request, *request_) : !request && !request_;
+    if (unchanged) return;
+    request_ = request;
+    picture_.reset();
+    radiance_.reset();
+    fault_.clear();
+    if (request_) {
+        tracer_->start(*request_);
+    } else {
+        tracer_->stop();
+    }
+}
+
+bool ReferenceView::update() {
+    if (!tracer_ || !request_) return false;
+    std::string fault = tracer_->fault();
+    const bool new_fault = fault != fault_;
+    fault_ = std::move(fault);
+    std::optional<ReferencePicture> newest = tracer_->newest();
+    if (!newest) return new_fault;
+    picture_ = std::move(newest);
+    radiance_ = std::make_shared<const Picture>(picture_->radiance);
+    return true;
+}
+
+std::optional<double> ReferenceView::error_of(const Picture& shown) const {
+    if (!picture_ || picture_->samples == 0 || shown.size != picture_->radiance.size) return std::nullopt;
+    try {
+        return relative_mse(shown, picture_->radiance, picture_->hit);
+    } catch (const std::invalid_argument&) {
+        return std::nullopt;  // no surface is seen, or the picture is not finite
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sandbox/live_reference.hpp"
+
+namespace candela::sandbox {
+
+/// Makes a reference, or null where the path tracer is not built in; see make_live_reference.
+using MakeReference = std::function<std::unique_ptr<LiveReference>(std::function<void()> notify)>;
+
+/// The reference of what the window shows: it is traced while nothing changes.
+class ReferenceView {
+ public:
+    explicit ReferenceView(std::unique_ptr<LiveReference> tracer) : tracer_(std::move(tracer)) {}
+
+    /// Whether the path tracer is built in.
+    [[nodiscard]] bool is_built_in() const { return tracer_ != nullptr; }
+
+    /// Starts over if the request is another one than before; stops without a request.
+    void follow(const std::optional<ReferenceRequest>& request);
+    /// Takes the newest picture; whether there is a new one, or news of a fault.
+    [[nodiscard]] bool update();
+
+    /// Null until the first picture.
+    [[nodiscard]] const ReferencePicture* picture() const { return picture_ ? &*picture_ : nullptr; }
+    /// The radiance of `picture`, for the render thread; null until the first picture.
+    [[nodiscard]] const std::shared_ptr<const Picture>& radiance() const { return radiance_; }
+    [[nodiscard]] const std::string& fault() const { return fault_; }
+    /// The relMSE of a picture over the reference; nullopt if they cannot be compared yet.
+    [[nodiscard]] std::optional<double> error_of(const Picture& shown) const;
+
+ private:
+    std::unique_ptr<LiveReference> tracer_;
+    std::optional<ReferenceRequest> request_;
+    std::optional<ReferencePicture> picture_;
+    std::shared_ptr<const Picture> radiance_;
+    std::string fault_;
+};
+
+}  // namespace candela::sandbox

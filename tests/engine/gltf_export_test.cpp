@@ -1,0 +1,659 @@
+#include <candela/scene/gltf_export.hpp>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <rapidcheck.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
+#include <candela/scene/gltf.hpp>
+#include "tests/engine/gltf_builder.hpp"
+#include "tests/engine/world_difference.hpp"
+
+using namespace candela;
+using namespace candela::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr Entity first_entity{0, 1};  // of any world
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+const fs::path scenes = fs::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes";
+
+World imported(const fs::path& path) {
+    World world;
+    CHECK(import_gltf(path, world).warnings.empty());
+    return world;
+}
+
+/// What differs after saving and opening in one format.
+std::string difference_after(const World& world, const fs::path& file) {
+    CHECK(export_gltf(world, file).empty());
+    return difference(world, imported(file));
+}
+
+/// In both formats.
+std::string difference_after(const World& world) {
+    const TemporaryDirectory folder;
+    const std::string found = difference_after(world, folder / "a.gltf");
+    return found.empty() ? difference_after(world, folder / "a.glb") : found;
+}
+
+std::string contents(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The content of each file of a folder, by name.
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+        files[file.path().filename().string()] = contents(file.path());
+    }
+    return files;
+}
+
+std::string error_of_export(const World& world, const fs::path& path) {
+    try {
+        static_cast<void>(export_gltf(world, path));
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "exported";
+}
+
+Entity add(World& world, const std::string& name, Entity parent = {}) {
+    const Entity entity = world.create();
+    world.set(entity, Name{name});
+    world.set(entity, Transform{.parent = parent});
+    return entity;
+}
+
+/// A triangle of any material.
+std::shared_ptr<const Mesh> triangle(std::shared_ptr<const Material> material) {
+    const glm::vec3 normal(0.0F, 0.0F, 1.0F);
+    Primitive primitive{
+        {{{0, 0, 0}, normal, {0, 0}}, {{1, 0, 0}, normal, {1, 0}}, {{0, 1, 0}, normal, {0, 1}}},
+        {0, 1, 2},
+        std::move(material)};
+    return std::make_shared<const Mesh>(Mesh{"triangle", {std::move(primitive)}});
+}
+
+/// A world with a mesh of this material.
+World with_material(const Material& material) {
+    World world;
+    world.set(add(world, "triangle"), MeshInstance{triangle(std::make_shared<const Material>(material))});
+    return world;
+}
+
+template <class Component>
+World with(const Component& component) {
+    World world;
+    world.set(add(world, "it"), component);
+    return world;
+}
+
+std::shared_ptr<const Image> image(std::uint32_t width, std::uint32_t height, unsigned int seed, Wrap u,
+                                   Wrap v) {
+    Image made{width, height, {}, u, v};
+    for (std::uint32_t i = 0; i < width * height; ++i) {
+        seed = seed * 1664525U + 1013904223U;  // Numerical Recipes' generator
+        made.texels.emplace_back(seed >> 24U, seed >> 16U & 255U, seed >> 8U & 255U, seed >> 20U & 255U);
+    }
+    return std::make_shared<const Image>(std::move(made));
+}
+
+/// A picture with texels of very different sizes, down to the smallest float.
+std::shared_ptr<const SkyPicture> sky_picture() {
+    SkyPicture picture{8, 4, {}};
+    for (int i = 0; i < 32; ++i) {
+        picture.texels.emplace_back(std::ldexp(1.1F, i * 4), 1.0F / float(i + 1),
+                                    i == 5 ? std::numeric_limits<float>::denorm_min() : 0.0F);
+    }
+    return std::make_shared<const SkyPicture>(std::move(picture));
+}
+
+/// Limits the size of files that this process writes, as a full disk does.
+class FullDisk {
+ public:
+    explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        REQUIRE(::setrlimit(RLIMIT_FSIZE, &limit) == 0);
+    }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+
+ private:
+    void (*handler_)(int);
+    rlimit before_{};
+};
+
+/// Any finite float, from its bits.
+float any_float() {
+    const auto bits = *rc::gen::arbitrary<std::uint32_t>();
+    float number = 0.0F;
+    std::memcpy(&number, &bits, sizeof number);
+    return std::isfinite(number) ? number : 0.0F;
+}
+
+float any_positive() {
+    return std::max(std::abs(any_float()), std::numeric_limits<float>::min());
+}
+
+/// In [0, 1].
+float any_fraction() {
+    return float(*rc::gen::inRange(0, 10'000'001)) / 1e7F;
+}
+
+/// Of a size at which the product of two is finite.
+float any_amount() {
+    return std::ldexp(any_fraction(), *rc::gen::inRange(-40, 40));
+}
+
+glm::vec3 any_colour() {
+    return {any_fraction(), any_fraction(), any_fraction()};
+}
+
+glm::vec3 any_direction() {
+    const glm::vec3 direction(any_fraction() - 0.5F, any_fraction() - 0.5F, any_fraction() + 0.01F);
+    return glm::normalize(direction);
+}
+
+bool any_bool() {
+    return *rc::gen::arbitrary<bool>();
+}
+
+float any_range() {
+    return any_bool() ? infinity : any_positive();
+}
+
+std::string any_name() {
+    return *rc::gen::element<std::string>("", "lamp", "lamp", "\"quoted\"", "back\\slash", "a\nb\tc", "Ärger",
+                                          "ランプ", "💡", std::string("nul\0nul", 7), "../a/b", " ", "%20");
+}
+
+glm::quat any_rotation() {
+    return glm::angleAxis(any_fraction() * 6.0F, any_direction());
+}
+
+glm::vec3 any_scale() {
+    const auto any = [] { return *rc::gen::element(1.0F, 0.0F, -1.0F, 0.1F, 1e-20F, any_float()); };
+    return {any(), any(), any()};
+}
+
+Camera any_camera() {
+    Camera camera;
+    camera.near_plane = any_fraction() + 0.001F;
+    camera.far_plane = camera.near_plane + 1.0F + any_amount();
+    if (any_bool()) {
+        camera.projection = Camera::Projection::orthographic;
+        camera.half_height = any_positive();
+        return camera;
+    }
+    camera.vertical_fov = 0.001F + 3.14F * any_fraction();
+    camera.far_plane = any_bool() ? infinity : camera.far_plane;
+    return camera;
+}
+
+SpotLight any_spot_light() {
+    SpotLight light{any_colour(), any_positive(), any_range(), 0.0F, 0.0F, any_bool()};
+    light.outer_cone = 0.01F + 1.56F * any_fraction();
+    light.inner_cone = light.outer_cone * 0.999F * any_fraction();
+    return light;
+}
+
+/// What instances, primitives and materials share.
+struct Stock {
+    std::vector<std::shared_ptr<const Image>> images{nullptr};
+    std::vector<std::shared_ptr<const Material>> materials;
+    std::vector<std::shared_ptr<const Mesh>> meshes;
+};
+
+template <class T>
+const T& any_of(const std::vector<T>& stock) {
+    return stock[*rc::gen::inRange<std::size_t>(0, stock.size())];
+}
+
+Material any_material(const Stock& stock) {
+    Material material;
+    material.name = any_name();
+    material.base_colour = glm::vec4(any_colour(), any_fraction());
+    material.base_colour_texture = any_of(stock.images);
+    if (any_bool()) {
+        material.emissive = glm::vec3(any_amount(), any_amount(), any_positive());
+        material.emissive_texture = any_of(stock.images);
+    }
+    material.double_sided = any_bool();
+    material.alpha_mode = *rc::gen::element(AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend);
+    material.alpha_cutoff = any_bool() ? 0.5F : any_amount();
+    return material;
+}
+
+Vertex any_vertex(bool is_white) {
+    Vertex vertex{{any_amount(), any_amount(), -any_amount()}, any_direction(), {any_float(), any_float()}};
+    if (!is_white) {
+        vertex.colour =
+            glm::u16vec4(*rc::gen::arbitrary<std::uint16_t>(), *rc::gen::arbitrary<std::uint16_t>(),
+                         *rc::gen::arbitrary<std::uint16_t>(), *rc::gen::arbitrary<std::uint16_t>());
+    }
+    return vertex;
+}
+
+/// Its triangles have areas, because the import drops those that have none.
+Primitive any_primitive(const Stock& stock) {
+    Primitive primitive;
+    const bool is_white = any_bool();
+    const auto triangles = *rc::gen::inRange<std::uint32_t>(1, 4);
+    for (std::uint32_t corner = 0; corner < 3 * triangles; ++corner) {
+        primitive.vertices.push_back(any_vertex(is_white));
+        primitive.vertices.back().position[static_cast<int>(corner % 3)] += 1e13F;
+        primitive.indices.push_back(corner);
+    }
+    primitive.vertices.push_back(any_vertex(is_white));  // one that no triangle uses
+    for (Vertex& vertex : primitive.vertices) {
+        vertex.position *= 1e-6F;  // at most 1e9 metres
+    }
+    primitive.material = any_of(stock.materials);
+    return primitive;
+}
+
+Stock any_stock() {
+    Stock stock;
+    const auto any_wrap = [] {
+        return *rc::gen::element(Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_edge);
+    };
+    for (std::uint32_t i = 1; i < 4; ++i) {
+        stock.images.push_back(image(3 * i, i, *rc::gen::arbitrary<unsigned int>(), any_wrap(), any_wrap()));
+    }
+    for (int i = 0; i < 3; ++i) {
+        stock.materials.push_back(std::make_shared<const Material>(any_material(stock)));
+    }
+    for (int i = 0; i < 2; ++i) {
+        Mesh mesh{any_name(), {}};
+        for (int k = 0; k <= i; ++k) {
+            mesh.primitives.push_back(any_primitive(stock));
+        }
+        stock.meshes.push_back(std::make_shared<const Mesh>(std::move(mesh)));
+    }
+    return stock;
+}
+
+void equip(World& world, Entity entity, const Stock& stock) {
+    if (any_bool()) {
+        world.set(entity, MeshInstance{any_of(stock.meshes)});
+    }
+    if (any_bool()) {
+        world.set(entity, any_camera());
+    }
+    switch (*rc::gen::inRange(0, 4)) {
+        case 0:
+            world.set(entity, PointLight{any_colour(), any_positive(), any_range(), any_bool()});
+            break;
+        case 1:
+            world.set(entity, any_spot_light());
+            break;
+        case 2:
+            world.set(entity, DirectionalLight{any_colour(), any_positive(), any_bool()});
+            break;
+        default:
+            break;
+    }
+}
+
+/// The order of the entities is that in which an import makes them: after an entity come all below it.
+World any_world() {
+    World world;
+    const Stock stock = any_stock();
+    std::vector<Entity> branch{Entity{}};  // from the null entity, parent of the roots, to the last entity
+    for (int i = *rc::gen::inRange(0, 8); i > 0; --i) {
+        branch.resize(*rc::gen::inRange<std::size_t>(1, branch.size() + 1));
+        const Entity entity = add(world, any_name(), branch.back());
+        world.edit<Transform>(entity, [](Transform& transform) {
+            transform.translation = {any_float(), any_float(), any_float()};
+            transform.rotation = any_rotation();
+            transform.scale = any_scale();
+        });
+        equip(world, entity, stock);
+        branch.push_back(entity);
+    }
+    if (any_bool()) {
+        const Entity sky = world.create();
+        world.set(sky, Name{any_name()});
+        world.set(sky, Environment{glm::vec3(any_amount(), any_amount(), any_positive()),
+                                   any_bool() ? sky_picture() : nullptr, any_amount()});
+    }
+    return world;
+}
+
+}  // namespace
+
+TEST_SUITE("glTF export") {
+    TEST_CASE("every shipped scene is the same after it was saved and opened") {
+        int count = 0;
+        for (const fs::directory_entry& file : fs::directory_iterator(scenes)) {
+            if (file.path().extension() == ".gltf") {
+                CAPTURE(file.path().string());
+                CHECK(difference_after(imported(file.path())) == "");
+                ++count;
+            }
+        }
+        CHECK(count >= 8);
+    }
+
+    TEST_CASE(
+        "the atrium, and a court with a picture of a sky, are the same after they were saved and opened") {
+        const TemporaryDirectory folder;
+        const std::string command = fmt::format("python3 '{}' --out '{}' atrium > /dev/null",
+                                                (scenes / "generate.py").string(), (folder / "").string());
+        REQUIRE(std::system(command.c_str()) == 0);
+        World world = imported(folder / "atrium.gltf");
+        CHECK(difference_after(world) == "");
+        const Entity sky = world.create();
+        world.set(sky, Name{"sky"});
+        world.set(sky, Environment{glm::vec3(0.1F, 0.2F, 3.0F), sky_picture(), 0.3F});
+        CHECK(difference_after(world) == "");
+    }
+
+    TEST_CASE("any world is the same after it was saved and opened" * doctest::test_suite("random")) {
+        CHECK(rc::check("worlds are equal", [] { RC_ASSERT(difference_after(any_world()) == ""); }));
+    }
+
+    TEST_CASE("an empty world is saved") {
+        CHECK(difference_after(World()) == "");
+    }
+
+    TEST_CASE("every bit of an emission is kept, however large") {
+        for (const float strength : {1e-40F, 0.1F, 1.0F, 1.0000001F, 17.3F, 3.4e38F}) {
+            Material material;
+            material.emissive = {strength, strength / 3.0F, strength * 0.7F};
+            CHECK(difference_after(with_material(material)) == "");
+        }
+    }
+
+    TEST_CASE("a surface that shows its colour unlit emits the same after it was saved and opened") {
+        GltfBuilder file = right_triangle();
+        file.document["extensionsUsed"] = {"KHR_materials_unlit"};
+        file.document["images"] = Json::parse(fmt::format(R"([{{"uri": "{}"}}])", sixteen_bit_png));
+        file.document["textures"] = Json::parse(R"([{"source": 0}])");
+        for (const char* colour : {"[0.3, 0.2, 0.1, 1]", "[0, 0, 0, 1]"}) {
+            file.document["materials"] = Json::parse(fmt::format(
+                R"([{{"extensions": {{"KHR_materials_unlit": {{}}}}, "pbrMetallicRoughness":
+                     {{"baseColorFactor": {}, "baseColorTexture": {{"index": 0}}}}}}])",
+                colour));
+            file.primitive()["material"] = 0;
+            CHECK(difference_after(Imported(file).world) == "");
+        }
+    }
+
+    TEST_CASE("numbers are written with as few digits as they need") {
+        const TemporaryDirectory folder;
+        World world;
+        world.set(add(world, "it"), Transform{.translation = {0.1F, 1e-7F, 16777216.0F}});
+        static_cast<void>(export_gltf(world, folder / "a.gltf"));
+        const Json document = Json::parse(contents(folder / "a.gltf"));
+        CHECK(document["nodes"][0]["translation"].dump() == "[0.1,1e-07,16777216.0]");
+        CHECK_FALSE(document["nodes"][0].contains("rotation"));
+        CHECK_FALSE(document["nodes"][0].contains("matrix"));
+    }
+
+    TEST_CASE("shared meshes, materials and images are written once, and surfaces are diffuse") {
+        const TemporaryDirectory folder;
+        Material material;
+        material.base_colour_texture = image(4, 2, 1, Wrap::repeat, Wrap::clamp_to_edge);
+        material.emissive = glm::vec3(1.0F);
+        material.emissive_texture = material.base_colour_texture;
+        const auto shared = std::make_shared<const Material>(material);
+        World world;
+        const auto mesh = triangle(shared);
+        for (const auto& instance : {mesh, mesh, triangle(shared)}) {
+            world.set(add(world, "triangle"), MeshInstance{instance});
+        }
+        static_cast<void>(export_gltf(world, folder / "a.gltf"));
+        const Json document = Json::parse(contents(folder / "a.gltf"));
+        CHECK(document["nodes"].size() == 3);
+        CHECK(document["meshes"].size() == 2);
+        CHECK(document["materials"].size() == 1);
+        CHECK(document["textures"].size() == 1);
+        CHECK(document["images"].size() == 1);
+        CHECK(document["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] == 0);
+        CHECK(files_of(folder / "").size() == 3);  // a.gltf, a.bin, a-0.png
+    }
+
+    TEST_CASE("equal worlds give equal files, also after they were saved and opened") {
+        const TemporaryDirectory folder;
+        for (const char* name : {"a.gltf", "a.glb"}) {
+            World world = imported(scenes / "glass.gltf");
+            static_cast<void>(export_gltf(world, folder / name));
+            const auto first = files_of(folder / "");
+            static_cast<void>(export_gltf(world, folder / name));
+            CHECK(files_of(folder / "") == first);
+            static_cast<void>(export_gltf(imported(folder / name), folder / name));
+            CHECK(files_of(folder / "") == first);
+        }
+    }
+
+    TEST_CASE("files beside the scene are found whatever its name is") {
+        const TemporaryDirectory folder;
+        Material material;
+        material.base_colour_texture = image(4, 2, 1, Wrap::repeat, Wrap::repeat);
+        World world = with_material(material);
+        const Entity sky = world.create();
+        world.set(sky, Name{"sky"});
+        world.set(sky, Environment{glm::vec3(1.0F), sky_picture(), 0.0F});
+        for (const char* name : {"a b.gltf", "100%25.gltf", "data:x.gltf", "Lämpchen?#.gltf", ".gltf.gltf",
+                                 "a.b.GLTF", "x.GLB"}) {
+            CAPTURE(name);
+            CHECK(difference_after(world, folder / name) == "");
+        }
+    }
+
+    TEST_CASE("a light that casts no shadow is one after it was saved and opened; by default it casts one") {
+        for (const bool casts_shadow : {false, true}) {
+            CHECK(difference_after(with(PointLight{.casts_shadow = casts_shadow})) == "");
+            CHECK(difference_after(with(SpotLight{.casts_shadow = casts_shadow})) == "");
+            CHECK(difference_after(with(DirectionalLight{.casts_shadow = casts_shadow})) == "");
+        }
+    }
+
+    TEST_CASE("an empty name is a name; without one, the import makes one up") {
+        const TemporaryDirectory folder;
+        World world;
+        world.set(add(world, ""), PointLight{});
+        world.set(world.create(), Transform{});
+        world.set(world.create(), PointLight{});
+        static_cast<void>(export_gltf(world, folder / "a.glb"));
+        const World opened = imported(folder / "a.glb");
+        std::vector<std::string> names;
+        for (const auto& [entity, name] : opened.view<Name>()) {
+            names.push_back(name.value);
+        }
+        CHECK(names == std::vector<std::string>{"", "node 1", "node 2"});
+        CHECK(opened.count<PointLight>() == 2);
+    }
+
+    TEST_CASE("a colour above 1 moves to the intensity; a range of zero becomes tiny") {
+        const TemporaryDirectory folder;
+        static_cast<void>(
+            export_gltf(with(PointLight{.colour = {3.0F, 1.0F, 0.0F}, .intensity = 0.7F, .range = 0.0F}),
+                        folder / "a.gltf"));
+        const World world = imported(folder / "a.gltf");
+        for (const auto& [entity, light] : world.view<PointLight>()) {
+            // Two roundings in single precision.
+            CHECK(glm::distance(light.colour * light.intensity, glm::vec3(2.1F, 0.7F, 0.0F)) < 1e-6F);
+            CHECK(light.range < 1e-30F);
+        }
+        CHECK(world.count<PointLight>() == 1);
+    }
+
+    TEST_CASE("entities are left out with all that is below them") {
+        const TemporaryDirectory folder;
+        World world;
+        const Entity viewer = add(world, "viewer");
+        world.set(viewer, Camera{});
+        world.set(add(world, "torch", viewer), PointLight{});
+        const Entity room = add(world, "room");
+        world.set(add(world, "lamp", room), PointLight{});
+        const Entity sky = world.create();
+        world.set(sky, Name{"sky"});
+        world.set(sky, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
+        const auto names = [&](const std::vector<Entity>& without) {
+            CHECK(export_gltf(world, folder / "a.glb", without).empty());
+            std::vector<std::string> left;
+            const World saved = imported(folder / "a.glb");
+            for (const auto& [entity, name] : saved.view<Name>()) {
+                left.push_back(name.value);
+            }
+            return left;
+        };
+        CHECK(names({}) == std::vector<std::string>{"viewer", "torch", "room", "lamp", "sky"});
+        CHECK(names({viewer}) == std::vector<std::string>{"room", "lamp", "sky"});
+        CHECK(names({viewer, room, sky}).empty());
+    }
+
+    TEST_CASE("what glTF cannot hold is named") {
+        const TemporaryDirectory folder;
+        const auto warnings = [&](const World& world) { return export_gltf(world, folder / "a.glb"); };
+        using Lines = std::vector<std::string>;
+
+        CHECK(warnings(with(Camera{.projection = Camera::Projection::custom})) ==
+              Lines{"entity \"it\": its camera is left out: glTF has no custom projections"});
+        CHECK(
+            warnings(with(SpotLight{.inner_cone = 1.0F, .outer_cone = 0.5F})) ==
+            Lines{"entity \"it\": its cones are narrowed: the outer one to 90 degrees, the inner one to the "
+                  "outer one"});
+        CHECK(warnings(with(Transform{.rotation = glm::quat(0.0F, 0.0F, 0.0F, 2.0F)})) ==
+              Lines{"entity \"it\": its rotation is not of unit length and will be normalised"});
+        CHECK(warnings(with(MeshInstance{std::make_shared<const Mesh>()})) ==
+              Lines{"entity \"it\": its mesh has no triangles and is left out"});
+
+        World deformed = with_material({});
+        deformed.set(first_entity, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>()});
+        CHECK(warnings(deformed) ==
+              Lines{"entity \"triangle\": its deformation is left out: its mesh will have its own shape"});
+
+        World skies;
+        for (const float radiance : {0.0F, 1.0F, 2.0F}) {
+            const Entity sky = skies.create();
+            skies.set(sky, Name{fmt::format("sky {}", radiance)});
+            skies.set(sky, Environment{.radiance = glm::vec3(radiance), .picture = nullptr});
+        }
+        CHECK(warnings(skies) ==
+              Lines{"entity \"sky 0\": its environment is left out: a glTF scene has one",
+                    "entity \"sky 2\": its environment is left out: a glTF scene has one"});
+        CHECK(environment_of(imported(folder / "a.glb")) == environment_of(skies));
+    }
+
+    TEST_CASE("what cannot be saved is an error that names it, and leaves the files as they were") {
+        const TemporaryDirectory folder;
+        const std::string file = (folder / "a.gltf").string();
+        static_cast<void>(export_gltf(with_material({}), file));
+        const auto before = files_of(folder / "");
+        const auto error = [&](const World& world) {
+            const std::string message = error_of_export(world, file);
+            CHECK(message.starts_with(file + ": "));
+            CHECK(files_of(folder / "") == before);
+            return message.substr(std::min(message.size(), file.size() + 2));
+        };
+        CHECK(error(with(Transform{.translation = {0.0F, infinity, 0.0F}})) ==
+              "entity \"it\": a number is not finite");
+        CHECK(error(with(PointLight{.intensity = -1.0F})) ==
+              "entity \"it\": the intensity is negative or not finite");
+        CHECK(error(with(Camera{.near_plane = 2.0F, .far_plane = 1.0F})) ==
+              "entity \"it\": the far plane at 1 is not beyond the near plane at 2");
+        CHECK(error(with(Environment{.radiance = glm::vec3(-1.0F), .picture = nullptr})) ==
+              "entity \"it\": the radiance is negative or not finite");
+        CHECK(error(with(MeshInstance{})) == "entity \"it\": it has no mesh");
+        CHECK(error(with(Name{"\xFF"})).ends_with("a name is not valid UTF-8"));
+        Material paint;
+        paint.name = "paint";
+        paint.base_colour = glm::vec4(2.0F);
+        CHECK(error(with_material(paint)) ==
+              "entity \"triangle\": material \"paint\": a channel of its base colour is above 1, which glTF "
+              "does not allow");
+        const auto odd = std::make_shared<const SkyPicture>(SkyPicture{1, 1, {glm::vec3(1.0F)}});
+        CHECK(error(with(Environment{glm::vec3(1.0F), odd, 0.0F})) ==
+              "entity \"it\": it has 1 × 1 pixels and is not twice as wide as high");
+
+        World two = with(PointLight{});
+        two.set(first_entity, SpotLight{});
+        CHECK(error(two) == "entity \"it\": it has several lights, but a node of glTF has only one");
+
+        World orphan;
+        const Entity parent = add(orphan, "parent");
+        add(orphan, "child", parent);
+        orphan.destroy(parent);
+        CHECK(error(orphan) == "entity \"child\": its parent no longer exists");
+        World cycle;
+        const Entity a = add(cycle, "a");
+        cycle.set(a, Transform{.parent = add(cycle, "b", a)});
+        CHECK(error(cycle) == "entity \"a\": its parents form a cycle");
+    }
+
+    TEST_CASE("a full disk or a folder that cannot be written leaves the files as they were") {
+        const TemporaryDirectory folder;
+        static_cast<void>(export_gltf(imported(scenes / "corner.gltf"), folder / "a.gltf"));
+        const auto before = files_of(folder / "");
+        const World other = imported(scenes / "glass.gltf");
+        {
+            const FullDisk disk(4096);
+            const std::string error = error_of_export(other, folder / "a.gltf");
+            CHECK(error.starts_with((folder / "a").string()));
+            CHECK(error.ends_with(": cannot be written: File too large"));
+        }
+        CHECK(files_of(folder / "") == before);
+        CHECK(error_of_export(other, folder / "none/a.glb")
+                  .ends_with("cannot be written: No such file or directory"));
+        CHECK(error_of_export(other, folder / "a.txt") ==
+              (folder / "a.txt").string() + ": the file's name ends neither in .gltf nor in .glb");
+        fs::create_directory(folder / "b.bin");
+        CHECK(error_of_export(other, folder / "b.gltf") ==
+              (folder / "b.bin").string() + ": cannot be written: Is a directory");
+        CHECK_FALSE(fs::exists(folder / "b.gltf"));
+    }
+
+    TEST_CASE("scenes can be opened and saved in several threads at once") {
+        const TemporaryDirectory folder;
+        const World expected = imported(scenes / "glass.gltf");
+        static_cast<void>(export_gltf(expected, folder / "a.glb"));
+        const auto open_and_save = [&](int number) {
+            World world;
+            for (int round = 0; round < 5; ++round) {
+                world = World();
+                static_cast<void>(import_gltf(folder / "a.glb", world));
+                static_cast<void>(export_gltf(world, folder / fmt::format("{}.glb", number).c_str()));
+            }
+            return world;
+        };
+        std::vector<std::future<World>> threads;
+        for (int number = 0; number < 3; ++number) {
+            threads.push_back(std::async(std::launch::async, open_and_save, number));
+        }
+        for (std::future<World>& thread : threads) {
+            CHECK(difference(expected, thread.get()) == "");
+        }
+        CHECK(contents(folder / "2.glb") == contents(folder / "a.glb"));
+    }
+}
