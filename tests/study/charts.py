@@ -294,6 +294,21 @@ def growth(rows: Sequence[Row], lights: Sequence[Row], out: pathlib.Path) -> Mad
     return {"growth": "Frame time as lights, pixels and triangles grow."}
 
 
+def scale(rows: Sequence[Row], out: pathlib.Path) -> None:
+    """Time and memory of large scenes, over the number of whatever grows."""
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2))
+    for kind, (colour, marker) in zip(dict.fromkeys(row["kind"] for row in rows), SERIES):
+        chosen = [row for row in rows if row["kind"] == kind]
+        counts = [row["count"] for row in chosen]
+        seconds = [row["load_s"] + row["frame_s"] for row in chosen]
+        axes[0].plot(counts, seconds, color=colour, marker=marker, markersize=4.5, label=kind)
+        axes[1].plot(counts, [row["peak_bytes"] / 2**20 for row in chosen], color=colour, marker=marker, markersize=4.5)
+    axes[0].set(xscale="log", yscale="log", xlabel="number", ylabel="s", title="loading and the first frame")
+    axes[1].set(xscale="log", yscale="log", xlabel="number", ylabel="MiB", title="largest memory")
+    legend_below(figure, axes[0], 5)
+    save(figure, out, "scale")
+
+
 def energy(rows: Sequence[Row], out: pathlib.Path) -> Made:
     """Shares of the emitted flux over the number of bounces, one panel per scene."""
     vpls = 1024

@@ -185,6 +185,18 @@ void add_edits(CLI::App& app, int& status) {
     part.callback([=, &status] { status = edits(*study); });
 }
 
+void add_scale(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("scale", "time and memory to load a scene and render its first frame");
+    const auto study = std::make_shared<ScaleStudy>();
+    const auto size = std::make_shared<std::string>("512x512");
+    add_scene(part, study->scene);
+    part.add_option("--size", *size, "WxH, pixels");
+    part.callback([=, &status] {
+        study->size = size_named(*size);
+        status = scale(*study);
+    });
+}
+
 void add_compare(CLI::App& app) {
     CLI::App& part =
         *app.add_subcommand("compare", "error of a picture against its reference, by every measure");
@@ -214,6 +226,7 @@ int run(int count, char** arguments) {
     add_animate(app, status);
     add_moves(app, status);
     add_edits(app, status);
+    add_scale(app, status);
     add_compare(app);
     try {
         app.parse(count, arguments);

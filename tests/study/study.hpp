@@ -109,4 +109,13 @@ struct EditsStudy {
 /// Prints the CPU time and the uploaded bytes of frames in which meshes come, go or move.
 int edits(const EditsStudy& study);
 
+/// The input of `scale`.
+struct ScaleStudy {
+    std::filesystem::path scene;
+    glm::uvec2 size{512, 512};
+};
+/// Prints, as a line of JSON, the time to load a scene, that of its first frame with clustered
+/// deferred shading, and the largest memory of the process.
+int scale(const ScaleStudy& study);
+
 }  // namespace candela::study

@@ -18,6 +18,7 @@ import machine
 import matrix
 import motion
 import results
+import scale
 import scenes
 from analysis import Row
 from matrix import Group
@@ -27,7 +28,7 @@ from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
 SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
-PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits"]
+PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits", "scale"]
 
 
 def names(text: str) -> list[str]:
@@ -96,8 +97,11 @@ def lights_rows(study: Study) -> list[Row]:
     return rows
 
 
-def run_program_part(part: str) -> None:
-    """The parts that only print a table."""
+def run_program_part(part: str, out: pathlib.Path) -> None:
+    """The parts that only print a table; `scale` also draws a chart into `out`."""
+    if part == "scale":
+        scale.run(STUDY, out)
+        return
     cornell, hall = scenes.SHIPPED / "cornell.gltf", scenes.SHIPPED / "hall-256.gltf"
     large = scenes.find("hall-4096", SCENES) if part == "paths" else hall
     commands = {
@@ -166,7 +170,7 @@ def main() -> int:
         report(study, groups, motions, lights_rows(study) if whole else [])
     for part in PROGRAM_PARTS:
         if not given.part or part in given.part:
-            run_program_part(part)
+            run_program_part(part, given.out)
     failed = [*results.rows_of(study, groups), *results.motion_rows(study, motions)] if measured else []
     failed = [row for row in failed if row["failed"]]
     for row in failed:
