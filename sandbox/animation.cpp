@@ -150,14 +150,21 @@ void Animation::apply(World& world, int frame) const {
     }
 }
 
-bool Animation::moves(const World& world, Entity entity) const {
+bool Animation::drives(Entity entity) const {
     for (std::size_t i = 0; i < driven_.size(); ++i) {
         const Track& track = script_.tracks[i];
         const bool transforms = !track.translation.empty() || !track.rotation.empty() || !track.scale.empty();
         if (transforms && driven_[i].entity == entity) return true;
     }
-    const auto* transform = world.find<Transform>(entity);
-    return transform != nullptr && transform->parent && moves(world, transform->parent);
+    return false;
+}
+
+bool Animation::moves(const World& world, Entity entity) const {
+    for (const auto* at = world.find<Transform>(entity); at != nullptr; at = world.find<Transform>(entity)) {
+        if (drives(entity)) return true;
+        entity = at->parent;
+    }
+    return false;
 }
 
 }  // namespace candela::sandbox

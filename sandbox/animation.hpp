@@ -89,6 +89,9 @@ class Animation {
     [[nodiscard]] bool moves(const World& world, Entity entity) const;
 
  private:
+    /// Whether a track moves the entity itself.
+    [[nodiscard]] bool drives(Entity entity) const;
+
     struct Driven {
         Entity entity;
         float strength = 0.0F;  ///< candela or lux at construction; 0 if it is not a light

@@ -99,8 +99,9 @@ std::optional<std::string> animation_of(const Scene& scene) {
 
 Bounds bounds(const World& world) {
     Box box;
+    WorldMatrices world_matrices(world);
     for (auto [entity, instance] : world.view<MeshInstance>()) {
-        const glm::mat4 to_world = world_matrix(world, entity);
+        const glm::mat4 to_world = world_matrices(entity);
         for (const Primitive& primitive : instance.mesh->primitives) {
             for (const Vertex& vertex : primitive.vertices)
                 box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));

@@ -1,7 +1,5 @@
 #include <candela/scene/hierarchy.hpp>
 
-#include <cstddef>
-
 #include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -19,26 +17,45 @@ std::string describe(const World& world, Entity entity) {
 }
 
 glm::mat4 world_matrix(const World& world, Entity entity) {
-    glm::mat4 matrix(1.0F);
-    const auto deepest = world.count<Transform>();
-    Entity at = entity;
-    for (std::size_t depth = 0;; ++depth) {
-        const auto* transform = world.find<Transform>(at);
-        if (!transform) {
-            return matrix;
-        }
-        if (depth == deepest) {
-            throw SceneError(fmt::format("{}: its parents form a cycle", describe(world, entity)));
-        }
-        matrix = local_matrix(*transform) * matrix;
-        if (!transform->parent) {
-            return matrix;
-        }
-        if (!world.alive(transform->parent)) {
-            throw SceneError(fmt::format("{}: its parent no longer exists", describe(world, at)));
-        }
-        at = transform->parent;
+    return WorldMatrices(world)(entity);
+}
+
+glm::mat4 WorldMatrices::operator()(Entity entity) {
+    const auto* const transform = world_->find<Transform>(entity);
+    if (!transform) {
+        return glm::mat4(1.0F);
     }
+    const glm::mat4 local = local_matrix(*transform);
+    return transform->parent ? of_parent(entity, *transform) * local : local;
+}
+
+/// Goes up to an ancestor whose matrix is known, or to the topmost one, and down again. `transform`: the
+/// entity's.
+glm::mat4 WorldMatrices::of_parent(Entity entity, const Transform& transform) {
+    ahead_.clear();
+    glm::mat4 matrix(1.0F);
+    Entity child = entity;
+    for (const Transform* at = &transform; at && at->parent; at = world_->find<Transform>(child)) {
+        if (!world_->alive(at->parent)) {
+            throw SceneError(fmt::format("{}: its parent no longer exists", describe(*world_, child)));
+        }
+        if (const auto known = parents_.find(at->parent.index); known != parents_.end()) {
+            matrix = known->second;
+            break;
+        }
+        if (ahead_.size() == world_->count<Transform>()) {
+            throw SceneError(fmt::format("{}: its parents form a cycle", describe(*world_, entity)));
+        }
+        child = at->parent;
+        ahead_.push_back(child);
+    }
+    for (; !ahead_.empty(); ahead_.pop_back()) {
+        if (const auto* const ancestor = world_->find<Transform>(ahead_.back())) {
+            matrix = matrix * local_matrix(*ancestor);
+        }
+        parents_.emplace(ahead_.back().index, matrix);
+    }
+    return matrix;
 }
 
 }  // namespace candela

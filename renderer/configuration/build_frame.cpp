@@ -162,9 +162,10 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
 
 WorldContents contents_of(const World& world, SceneCheck& check) {
     WorldContents contents;
+    WorldMatrices world_matrices(world);
     const auto is_placed = [&](Entity entity) {
         contents.depend_on_transforms = true;
-        return check.accepts_at(world, entity, world_matrix(world, entity));
+        return check.accepts_at(world, entity, world_matrices(entity));
     };
     FrameContents& of_frame = contents.of_frame;
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {

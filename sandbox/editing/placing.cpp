@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -30,17 +32,6 @@ void set_rotation(World& world, Entity entity, Transform transform, const glm::q
     if (!is_finite(rotation)) return;
     transform.rotation = glm::normalize(rotation);
     world.set(entity, transform);
-}
-
-bool descends(const World& world, Entity entity, Entity ancestor) {
-    for (std::size_t depth = world.count<Transform>(); depth > 0; --depth) {
-        if (entity == ancestor) return true;
-        if (!world.alive(entity)) return false;
-        const auto* transform = world.find<Transform>(entity);
-        if (transform == nullptr || !transform->parent) return false;
-        entity = transform->parent;
-    }
-    return false;
 }
 
 }  // namespace
@@ -87,9 +78,14 @@ glm::vec3 direction_of(const World& world, Entity entity) {
 }
 
 std::vector<Entity> family_of(const World& world, Entity entity) {
+    std::map<Entity, std::vector<Entity>> children;
+    for (auto [child, transform] : world.view<Transform>()) {
+        if (transform.parent && child != entity) children[transform.parent].push_back(child);
+    }
     std::vector<Entity> family{entity};
-    for (auto [candidate, transform] : world.view<Transform>()) {
-        if (candidate != entity && descends(world, candidate, entity)) family.push_back(candidate);
+    for (std::size_t i = 0; i < family.size(); ++i) {
+        const std::vector<Entity> more = std::exchange(children[family[i]], {});
+        family.insert(family.end(), more.begin(), more.end());
     }
     std::sort(family.begin(), family.end());
     return family;
@@ -97,10 +93,11 @@ std::vector<Entity> family_of(const World& world, Entity entity) {
 
 Box box_of(const World& world, const std::vector<Entity>& entities) {
     Box box;
+    WorldMatrices world_matrices(world);
     for (const Entity entity : entities) {
         const auto* instance = world.find<MeshInstance>(entity);
         if (instance == nullptr) continue;
-        const glm::mat4 to_world = world_matrix(world, entity);
+        const glm::mat4 to_world = world_matrices(entity);
         for (const Primitive& primitive : instance->mesh->primitives) {
             for (const Vertex& vertex : primitive.vertices)
                 box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));

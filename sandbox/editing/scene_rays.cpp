@@ -109,10 +109,11 @@ void SceneRays::build_missing(const World& world) {
 
 void SceneRays::place(const World& world) {
     std::vector<Placed> placed;
+    WorldMatrices world_matrices(world);
     for (auto [entity, instance] : world.view<MeshInstance>()) {
         const auto mesh = meshes_.find(instance.mesh);
         if (mesh == meshes_.end()) continue;
-        const glm::mat4 world_from_local = world_matrix(world, entity);
+        const glm::mat4 world_from_local = world_matrices(entity);
         const glm::mat4 local_from_world = glm::inverse(world_from_local);
         if (!is_finite(local_from_world)) continue;
         for (const Patch& patch : *mesh->second)

@@ -131,15 +131,41 @@ TEST_SUITE("hierarchy") {
         CHECK(message_of(world, self) == "entity \"ouroboros\": its parents form a cycle");
     }
 
-    TEST_CASE("a chain of 100,000 entities has a world matrix") {
+    TEST_CASE("a chain of 100,000 entities has world matrices") {
         World world;
-        Entity last{};
-        for (int i = 0; i < 100'000; ++i) {
-            const Entity next = world.create();
-            world.set(next, moved(0, 0, i % 2 == 0 ? 1.0F : -1.0F, last));
-            last = next;
+        std::vector<Entity> chain{Entity{}};
+        for (int i = 1; i <= 100'000; ++i) {
+            chain.push_back(world.create());
+            world.set(chain.back(), moved(0, 0, 1.0F, *(chain.end() - 2)));
         }
-        CHECK(world_matrix(world, last) == glm::mat4(1.0F));
+        CHECK(world_matrix(world, chain.back())[3].z == 100'000.0F);
+        // One after the other from the top takes milliseconds; if each climbed to the top again, minutes.
+        WorldMatrices world_matrices(world);
+        for (std::size_t i = 1; i < chain.size(); ++i) {
+            REQUIRE(world_matrices(chain[i])[3].z == static_cast<float>(i));
+        }
+    }
+
+    TEST_CASE("WorldMatrices gives the bits of world_matrix, in any order of entities") {
+        CHECK(rc::check([] {
+            World world;
+            std::vector<Entity> entities;
+            const auto count = *rc::gen::inRange<std::size_t>(1, 30);
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto parent = *rc::gen::inRange<std::size_t>(0, i + 1);
+                Transform transform = moved(0.1F * static_cast<float>(i), 0.3F, -0.7F);
+                transform.parent = parent < i ? entities[parent] : Entity{};
+                transform.scale = {1.1F, 0.9F, 1.3F};
+                transform.rotation = quarter_turn;
+                entities.push_back(world.create());
+                if (*rc::gen::inRange(0, 8) != 0) world.set(entities.back(), transform);
+            }
+            WorldMatrices world_matrices(world);
+            for (int i = 0; i < 40; ++i) {
+                const Entity entity = *rc::gen::elementOf(entities);
+                RC_ASSERT(world_matrices(entity) == world_matrix(world, entity));
+            }
+        }));
     }
 }
 

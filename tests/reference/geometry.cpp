@@ -105,9 +105,10 @@ Geometry::Geometry(const World& world) {
 
 void Geometry::gather(const World& world) {
     MaterialList materials;
+    WorldMatrices world_matrices(world);
     std::uint32_t part = 0;
     for (auto [entity, instance] : world.view<MeshInstance>()) {
-        const glm::mat4 to_world = world_matrix(world, entity);
+        const glm::mat4 to_world = world_matrices(entity);
         for (const Primitive& primitive : instance.mesh->primitives) {
             add(primitive, to_world, materials.index_of(primitive.material), part++);
         }

@@ -18,8 +18,8 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A point light with the entity's pose, which looks along its -Z. The callers fill in what differs.
-Light placed(const World& world, Entity entity, glm::vec3 intensity, bool casts_shadow) {
-    const glm::mat4 to_world = world_matrix(world, entity);
+Light placed(WorldMatrices& world_matrices, Entity entity, glm::vec3 intensity, bool casts_shadow) {
+    const glm::mat4 to_world = world_matrices(entity);
     return {.kind = Light::Kind::point,
             .position = glm::vec3(to_world[3]),
             .direction = glm::normalize(-glm::vec3(to_world[2])),
@@ -31,14 +31,14 @@ Light placed(const World& world, Entity entity, glm::vec3 intensity, bool casts_
             .casts_shadow = casts_shadow};
 }
 
-Light point(const World& world, Entity entity, const PointLight& source) {
-    Light light = placed(world, entity, source.colour * source.intensity, source.casts_shadow);
+Light point(WorldMatrices& world_matrices, Entity entity, const PointLight& source) {
+    Light light = placed(world_matrices, entity, source.colour * source.intensity, source.casts_shadow);
     light.range = source.range;
     return light;
 }
 
-Light spot(const World& world, Entity entity, const SpotLight& source) {
-    Light light = placed(world, entity, source.colour * source.intensity, source.casts_shadow);
+Light spot(WorldMatrices& world_matrices, Entity entity, const SpotLight& source) {
+    Light light = placed(world_matrices, entity, source.colour * source.intensity, source.casts_shadow);
     light.kind = Light::Kind::spot;
     light.range = source.range;
     // As in the reference code of KHR_lights_punctual, including its guard against equal cones.
@@ -49,8 +49,8 @@ Light spot(const World& world, Entity entity, const SpotLight& source) {
     return light;
 }
 
-Light directional(const World& world, Entity entity, const DirectionalLight& source) {
-    Light light = placed(world, entity, source.colour * source.illuminance, source.casts_shadow);
+Light directional(WorldMatrices& world_matrices, Entity entity, const DirectionalLight& source) {
+    Light light = placed(world_matrices, entity, source.colour * source.illuminance, source.casts_shadow);
     light.kind = Light::Kind::directional;
     return light;
 }
@@ -65,10 +65,13 @@ float cone(const Light& light, glm::vec3 to_light) {
 
 std::vector<Light> lights_of(const World& world) {
     std::vector<Light> lights;
-    for (auto [entity, source] : world.view<PointLight>()) lights.push_back(point(world, entity, source));
-    for (auto [entity, source] : world.view<SpotLight>()) lights.push_back(spot(world, entity, source));
+    WorldMatrices world_matrices(world);
+    for (auto [entity, source] : world.view<PointLight>())
+        lights.push_back(point(world_matrices, entity, source));
+    for (auto [entity, source] : world.view<SpotLight>())
+        lights.push_back(spot(world_matrices, entity, source));
     for (auto [entity, source] : world.view<DirectionalLight>())
-        lights.push_back(directional(world, entity, source));
+        lights.push_back(directional(world_matrices, entity, source));
     return lights;
 }
 

@@ -71,8 +71,9 @@ struct ParallelLight {
 template <class C, class Make>
 void gather_lights(const World& world, SceneCheck& check, std::vector<LightTable::Entry>& entries,
                    Make make) {
+    WorldMatrices world_matrices(world);
     for (const auto& [entity, light] : world.view<C>()) {
-        const glm::mat4 matrix = world_matrix(world, entity);
+        const glm::mat4 matrix = world_matrices(entity);
         if (check.accepts(world, entity, light) && check.accepts_at(world, entity, matrix)) {
             entries.push_back(make(entity, light, matrix));
         }

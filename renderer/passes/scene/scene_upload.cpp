@@ -51,9 +51,10 @@ Gathered add_scene_gather(FrameGraph& graph, SceneCheck& check) {
             const ScenePlacement* const last = run.previous(out.placement);
             SceneGeometry geometry;
             ScenePlacement placement;
+            WorldMatrices world_matrices(run.world());
             for (const auto& [entity, instance] : run.world().view<MeshInstance>()) {
                 const auto item = static_cast<std::uint32_t>(geometry.items.size());
-                const glm::mat4 world = world_matrix(run.world(), entity);
+                const glm::mat4 world = world_matrices(entity);
                 if (!check.accepts(run.world(), entity, instance) ||
                     !check.accepts_at(run.world(), entity, world)) {
                     continue;
