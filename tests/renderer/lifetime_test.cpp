@@ -1,37 +1,18 @@
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <array>
-#include <fstream>
 #include <memory>
 #include <vector>
 
 #include "renderer/device_of.hpp"
+#include "tests/memory.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;
 
 namespace {
 
-// GCC defines the macro, Clang has the feature.
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool is_sanitized = true;
-#elif !defined(__has_feature)
-constexpr bool is_sanitized = false;
-#elif __has_feature(address_sanitizer)
-constexpr bool is_sanitized = true;
-#else
-constexpr bool is_sanitized = false;
-#endif
-
 constexpr glm::uvec2 size{16, 12};
-
-/// Resident memory of this process, bytes.
-std::uint64_t resident_bytes() {
-    std::uint64_t total = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> total >> resident;
-    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
 
 /// One of 48 configurations.
 Configuration numbered_configuration(std::uint32_t i) {
@@ -79,12 +60,12 @@ TEST_SUITE("lifetime") {
         };
         round(240, 48);  // every configuration and every size once, to fill pools and the driver's caches
         const gl::ObjectCounts before = device_of(renderer).live();
-        const std::uint64_t memory_before = resident_bytes();
+        const std::uint64_t memory_before = test::resident_bytes();
         round(1000, 200);
         CHECK(device_of(renderer).live() == before);
         // Allows for fragmentation by the allocator. A leak of one small object per switch would not show
         // here, but is counted above. AddressSanitizer delays freeing memory, and finds leaks by itself.
-        if (!is_sanitized) CHECK(resident_bytes() < memory_before + (8U << 20U));
+        if (!test::is_sanitized) CHECK(test::resident_bytes() < memory_before + (8U << 20U));
     }
 
     TEST_CASE_FIXTURE(RenderFixture, "a sky, a sun and a lamp that come and go leak no objects") {
