@@ -56,20 +56,28 @@ class LargeScene:
 
     def grid(self, cells: int, side: float, height: float) -> int:
         """A hilly square of cells × cells quads that faces up, centred at the origin. Returns its mesh."""
-        positions, indices = array.array("f"), array.array("I")
+        positions, normals, indices = array.array("f"), array.array("f"), array.array("I")
         for row in range(cells + 1):
             z = (row / cells - 0.5) * side
             for column in range(cells + 1):
                 x = (column / cells - 0.5) * side
                 positions.extend((x, height * math.sin(2.1 * x) * math.cos(1.7 * z), z))
+                along_x = 2.1 * height * math.cos(2.1 * x) * math.cos(1.7 * z)
+                along_z = -1.7 * height * math.sin(2.1 * x) * math.sin(1.7 * z)
+                length = math.sqrt(along_x**2 + 1 + along_z**2)
+                normals.extend((-along_x / length, 1 / length, -along_z / length))
         for row in range(cells):
             for corner in range(row * (cells + 1), row * (cells + 1) + cells):
                 below = corner + cells + 1
                 indices.extend((corner, below, corner + 1, corner + 1, below, below + 1))
         bounds = {"min": [-side / 2, -height, -side / 2], "max": [side / 2, height, side / 2]}
-        vertices = self.accessor(positions, "VEC3", (cells + 1) ** 2, bounds)
-        primitive = {"attributes": {"POSITION": vertices}, "indices": self.accessor(indices, "SCALAR", len(indices), {})}
-        self.document["meshes"].append({"primitives": [primitive]})
+        count = (cells + 1) ** 2
+        vertices = {
+            "POSITION": self.accessor(positions, "VEC3", count, bounds),
+            "NORMAL": self.accessor(normals, "VEC3", count, {}),
+        }
+        corners = self.accessor(indices, "SCALAR", len(indices), {})
+        self.document["meshes"].append({"primitives": [{"attributes": vertices, "indices": corners}]})
         return len(self.document["meshes"]) - 1
 
     def write(self, folder: pathlib.Path) -> pathlib.Path:

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -54,6 +56,9 @@ template <class T, class Append>
 void upload_ranges(const Gpu& gpu, Execution& run, BufferHandle<T> buffer,
                    std::span<BufferRange* const> ranges, Append append) {
     std::vector<T> elements;
+    elements.reserve(std::transform_reduce(
+        ranges.begin(), ranges.end(), std::size_t{0}, std::plus<>(),
+        [](const BufferRange* range) { return range->uploaded ? std::size_t{0} : range->count; }));
     std::size_t first = 0;
     const auto flush = [&] {
         if (!elements.empty()) {

@@ -65,17 +65,17 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
                           nodes.push_back(placed(placed_bvhs[i], node));
                       }
                   });
-    upload_ranges(gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
-                  [&](std::size_t i, std::vector<gpu::TraceTriangle>& triangles) {
-                      const ObjectHierarchy& object = objects[i];
-                      const SceneLayout::Drawable& drawable = layout.drawables[i];
-                      const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
-                      const std::vector<gpu::TraceTriangle> traced =
-                          trace_triangles(layout, drawable, vertices,
-                                          place_triangles(layout, drawable, vertices, object.source.world),
-                                          object.bvh.order, object.first_id);
-                      triangles.insert(triangles.end(), traced.begin(), traced.end());
-                  });
+    upload_ranges(
+        gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
+        [&](std::size_t i, std::vector<gpu::TraceTriangle>& triangles) {
+            const ObjectHierarchy& object = objects[i];
+            const SceneLayout::Drawable& drawable = layout.drawables[i];
+            const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
+            for (const std::uint32_t triangle : object.bvh.order) {
+                triangles.push_back(trace_triangle(layout, drawable, vertices, triangle, object.source.world,
+                                                   object.first_id + triangle));
+            }
+        });
 }
 
 /// An empty scene gets one leaf with a triangle without area, which no ray hits.

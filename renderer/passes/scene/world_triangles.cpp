@@ -49,28 +49,23 @@ std::vector<Triangle> place_triangles(const SceneLayout& layout, const SceneLayo
     return triangles;
 }
 
-std::vector<gpu::TraceTriangle> trace_triangles(
-    const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::span<const Vertex> vertices,
-    std::span<const Triangle> triangles, std::span<const std::uint32_t> order, std::uint32_t first_id) {
+gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                                  std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world,
+                                  std::uint32_t id) {
     const bool is_masked = drawable.primitive->material->alpha_mode == AlphaMode::mask;
-    std::vector<gpu::TraceTriangle> traced;
-    traced.reserve(order.size());
-    for (const std::uint32_t i : order) {
-        const Triangle& triangle = triangles[i];
-        const glm::uvec3 corner = corners(layout, drawable, i);
-        traced.push_back({.a = triangle.a,
-                          .material = drawable.material,
-                          .edge_ab = triangle.b - triangle.a,
-                          .id = (first_id + i) | (is_masked ? TRIANGLE_MASKED : 0U),
-                          .edge_ac = triangle.c - triangle.a,
-                          .colour_a = packed_colour(vertices[corner.x].colour),
-                          .uv_a = vertices[corner.x].uv,
-                          .uv_b = vertices[corner.y].uv,
-                          .uv_c = vertices[corner.z].uv,
-                          .colour_b = packed_colour(vertices[corner.y].colour),
-                          .colour_c = packed_colour(vertices[corner.z].colour)});
-    }
-    return traced;
+    const Triangle triangle = place_triangle(layout, drawable, vertices, i, world);
+    const glm::uvec3 corner = corners(layout, drawable, i);
+    return {.a = triangle.a,
+            .material = drawable.material,
+            .edge_ab = triangle.b - triangle.a,
+            .id = id | (is_masked ? TRIANGLE_MASKED : 0U),
+            .edge_ac = triangle.c - triangle.a,
+            .colour_a = packed_colour(vertices[corner.x].colour),
+            .uv_a = vertices[corner.x].uv,
+            .uv_b = vertices[corner.y].uv,
+            .uv_c = vertices[corner.z].uv,
+            .colour_b = packed_colour(vertices[corner.y].colour),
+            .colour_c = packed_colour(vertices[corner.z].colour)};
 }
 
 }  // namespace candela

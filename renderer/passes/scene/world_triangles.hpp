@@ -19,10 +19,10 @@ namespace candela {
                                                     const SceneLayout::Drawable& drawable,
                                                     std::span<const Vertex> vertices, const glm::mat4& world);
 
-/// The same triangles in the form that shaders read, in the order of the indices in `order`. Triangle i gets
-/// the id `first_id` + i.
-[[nodiscard]] std::vector<gpu::TraceTriangle> trace_triangles(
-    const SceneLayout& layout, const SceneLayout::Drawable& drawable, std::span<const Vertex> vertices,
-    std::span<const Triangle> triangles, std::span<const std::uint32_t> order, std::uint32_t first_id);
+/// Triangle i in the form that shaders read, with this id.
+[[nodiscard]] gpu::TraceTriangle trace_triangle(const SceneLayout& layout,
+                                                const SceneLayout::Drawable& drawable,
+                                                std::span<const Vertex> vertices, std::uint32_t i,
+                                                const glm::mat4& world, std::uint32_t id);
 
 }  // namespace candela

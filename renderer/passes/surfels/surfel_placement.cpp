@@ -29,17 +29,21 @@ struct PlacedPoint : gpu::CellPoint {
     SurfacePoint place;
 };
 
-/// All sides that reflect light: both sides of double-sided triangles.
+/// Sides of triangles: both of double-sided ones.
 struct Sides {
     std::vector<Side> sides;
     std::vector<double> area_before;  // by side: area of all sides before it, m²; then the total
 };
 
-Sides sides_of(const SurfelGround& ground) {
+/// The sides of the triangles that emit light, or of those that do not.
+Sides sides_of(const SurfelGround& ground, bool emitting) {
     Sides all;
     double area = 0.0;
     for (std::size_t i = 0; i < ground.triangles.size(); ++i) {
         const gpu::TraceTriangle& triangle = ground.triangles[i];
+        if (ground.emits[triangle.material] != emitting) {
+            continue;
+        }
         const glm::vec3 cross = glm::cross(triangle.edge_ab, triangle.edge_ac);
         const float twice_area = glm::length(cross);
         if (!(twice_area > 0.0F)) {
@@ -271,9 +275,8 @@ SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t po
 }
 
 /// About `count` surfels with `points_a_surfel` points each on average.
-SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::uint32_t points_a_surfel,
+SurfelSet place_surfels(const Sides& all, std::uint32_t count, std::uint32_t points_a_surfel,
                         std::uint32_t seed) {
-    const Sides all = sides_of(ground);
     if (all.sides.empty() || count == 0) {
         return {};
     }
@@ -285,19 +288,6 @@ SurfelSet place_surfels(const SurfelGround& ground, std::uint32_t count, std::ui
         set = spread_surfels(all, std::max(wanted, 1U), points_a_surfel, seed);
     }
     return set;
-}
-
-/// The triangles that emit light, or those that do not.
-SurfelGround part_of(const SurfelGround& ground, bool emitting) {
-    SurfelGround part{
-        .triangles = {}, .item_of = {}, .double_sided = ground.double_sided, .emits = ground.emits};
-    for (std::size_t i = 0; i < ground.triangles.size(); ++i) {
-        if (ground.emits[ground.triangles[i].material] == emitting) {
-            part.triangles.push_back(ground.triangles[i]);
-            part.item_of.push_back(ground.item_of[i]);
-        }
-    }
-    return part;
 }
 
 /// Appends surfels that emit light. They get no depth maps.
@@ -323,8 +313,8 @@ void append_emitting(SurfelSet& set, const SurfelSet& more) {
 }  // namespace
 
 SurfelSet place_surfels(const SurfelGround& ground, const SurfelCounts& counts, std::uint32_t seed) {
-    SurfelSet set = place_surfels(part_of(ground, false), counts.reflecting, points_a_surfel, seed);
-    append_emitting(set, place_surfels(part_of(ground, true), counts.emitting, points_an_emitter, seed));
+    SurfelSet set = place_surfels(sides_of(ground, false), counts.reflecting, points_a_surfel, seed);
+    append_emitting(set, place_surfels(sides_of(ground, true), counts.emitting, points_an_emitter, seed));
     return set;
 }
 

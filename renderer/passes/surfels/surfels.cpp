@@ -7,7 +7,6 @@
 #include <glm/matrix.hpp>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include <candela/graph/execute.hpp>
@@ -57,14 +56,13 @@ SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& 
     SurfelGround ground;
     for (const SceneLayout::Drawable& drawable : layout.solids()) {
         const std::vector<Vertex>& vertices = drawable.primitive->vertices;
-        const std::vector<Triangle> placed =
-            place_triangles(layout, drawable, vertices, glm::mat4(shapes[drawable.item]));
-        std::vector<std::uint32_t> order(placed.size());
-        std::iota(order.begin(), order.end(), 0U);
-        const auto first_id = static_cast<std::uint32_t>(ground.triangles.size());
-        const auto triangles = trace_triangles(layout, drawable, vertices, placed, order, first_id);
-        ground.triangles.insert(ground.triangles.end(), triangles.begin(), triangles.end());
-        ground.item_of.insert(ground.item_of.end(), triangles.size(), drawable.item);
+        const glm::mat4 shape(shapes[drawable.item]);
+        const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const auto id = static_cast<std::uint32_t>(ground.triangles.size());
+            ground.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
+        }
+        ground.item_of.insert(ground.item_of.end(), count, drawable.item);
     }
     for (const auto& material : layout.materials) {
         ground.double_sided.push_back(material && material->double_sided);
