@@ -29,7 +29,18 @@ std::uint64_t count_triangles(const Mesh& mesh) {
     return triangles;
 }
 
-ImportReport create_entities(std::vector<gltf::StagedEntity> staged, World& world) {
+std::vector<bool> used_meshes(const gltf::Document& document, const std::vector<gltf::StagedEntity>& staged) {
+    std::vector<bool> used(document.model.meshes.size());
+    for (const gltf::StagedEntity& entity : staged) {
+        if (entity.mesh >= 0) {
+            used[static_cast<std::size_t>(entity.mesh)] = true;
+        }
+    }
+    return used;
+}
+
+ImportReport create_entities(std::vector<gltf::StagedEntity> staged,
+                             const std::vector<std::shared_ptr<const Mesh>>& meshes, World& world) {
     ImportReport report;
     for (gltf::StagedEntity& source : staged) {
         const Entity entity = world.create();
@@ -38,9 +49,9 @@ ImportReport create_entities(std::vector<gltf::StagedEntity> staged, World& worl
         }
         world.set(entity, Name{std::move(source.name)});
         world.set(entity, source.transform);
-        if (source.mesh) {
-            report.triangles += count_triangles(*source.mesh);
-            world.set(entity, MeshInstance{std::move(source.mesh)});
+        if (const auto mesh = source.mesh < 0 ? nullptr : meshes[static_cast<std::size_t>(source.mesh)]) {
+            report.triangles += count_triangles(*mesh);
+            world.set(entity, MeshInstance{mesh});
         }
         if (source.camera) {
             world.set(entity, *source.camera);
@@ -51,13 +62,20 @@ ImportReport create_entities(std::vector<gltf::StagedEntity> staged, World& worl
     return report;
 }
 
-ImportReport import_document(gltf::Document document, const std::filesystem::path& base_directory,
-                             World& into) {
-    const auto materials = gltf::read_materials(document, base_directory);
-    const auto meshes = gltf::read_meshes(document, materials);
-    const auto environment = gltf::read_environment(document.model, base_directory);
+ImportReport import_document(gltf::Bytes bytes, const std::filesystem::path& base_directory, World& into,
+                             gltf::ImportBudget& budget, const ImportOptions& options) {
+    const gltf::Progress progress(options);
+    progress("reading files", 0, 1);
+    gltf::ImportFiles files(base_directory, options.root.empty() ? base_directory : options.root, budget);
+    gltf::Document document = gltf::read_document(bytes, files, budget);
+    std::vector<gltf::StagedEntity> staged = gltf::read_nodes(document, budget, progress);
+    const std::vector<bool> used = used_meshes(document, staged);
+    const auto materials = gltf::read_materials(document, used, files, budget, progress);
+    const auto meshes = gltf::read_meshes(document, used, materials, budget, progress);
+    const auto environment = gltf::read_environment(document, files, budget);
+    progress("creating entities", 0, 1);
     World grown = into;  // a copy, so that running out of memory halfway leaves the world as it was
-    ImportReport report = create_entities(gltf::read_nodes(document, meshes), grown);
+    ImportReport report = create_entities(std::move(staged), meshes, grown);
     if (environment) {
         report.entities.push_back(grown.create());
         grown.set(report.entities.back(), Name{environment->name});
@@ -70,18 +88,20 @@ ImportReport import_document(gltf::Document document, const std::filesystem::pat
 
 }  // namespace
 
-ImportReport import_gltf(const std::filesystem::path& path, World& into) {
+ImportReport import_gltf(const std::filesystem::path& path, World& into, const ImportOptions& options) {
     return gltf::naming_file(path.string(), [&] {
-        const std::filesystem::path directory = path.parent_path();
-        return import_document(gltf::read_document(gltf::read_file(path, "the file"), directory), directory,
-                               into);
+        gltf::ImportBudget budget(options.limits);
+        const std::vector<unsigned char> bytes = gltf::read_file(path, "the file", budget);
+        return import_document(bytes, path.parent_path(), into, budget, options);
     });
 }
 
 ImportReport import_gltf(std::span<const unsigned char> bytes, const std::filesystem::path& base_directory,
-                         std::string_view name, World& into) {
+                         std::string_view name, World& into, const ImportOptions& options) {
     return gltf::naming_file(name, [&] {
-        return import_document(gltf::read_document(bytes, base_directory), base_directory, into);
+        gltf::ImportBudget budget(options.limits);
+        budget.add_file(bytes.size());
+        return import_document(bytes, base_directory, into, budget, options);
     });
 }
 

@@ -1,8 +1,8 @@
 #include "engine/import/gltf_accessors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,8 +13,6 @@
 namespace candela::gltf {
 
 namespace {
-
-using Bytes = std::span<const unsigned char>;
 
 template <class T>
 T load(const unsigned char* bytes) {
@@ -41,9 +39,9 @@ struct Run {
     std::size_t element_size;
 };
 
-Elements locate(const tinygltf::Model& model, const Run& run) {
-    const Bytes bytes = buffer_view_bytes(model, run.buffer_view);
-    const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(run.buffer_view)];
+Elements locate(const Document& document, const Run& run) {
+    const Bytes bytes = buffer_view_bytes(document, run.buffer_view);
+    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(run.buffer_view)];
     const std::size_t stride = view.byteStride != 0 ? view.byteStride : run.element_size;
     if (stride < run.element_size) {
         throw SceneError(
@@ -90,24 +88,15 @@ bool is_unsigned(int component_type) {
            component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-/// An accessor without a buffer view is all zeros, and the file stores only their number. Limits that number
-/// to the bytes of data in the file, so that a small file cannot request gigabytes of memory.
-void check_zeros(const tinygltf::Model& model, const tinygltf::Accessor& accessor, int index) {
-    const std::size_t bytes = std::accumulate(
-        model.buffers.begin(), model.buffers.end(), std::size_t{0},
-        [](std::size_t sum, const tinygltf::Buffer& buffer) { return sum + buffer.data.size(); });
-    if (accessor.count > bytes) {
-        throw SceneError(
-            fmt::format("accessor {} has no buffer view but {} elements, more than the {} bytes of data",
-                        index, accessor.count, bytes));
-    }
+const tinygltf::Accessor& accessor_at(const Document& document, int index) {
+    return document.model.accessors[static_cast<std::size_t>(index)];
 }
 
-/// Replaces the elements that the sparse part of the accessor lists.
+/// Replaces the selected elements that the sparse part of the accessor lists.
 template <class Element, class Decode>
-void apply_sparse(const tinygltf::Model& model, int index, Decode decode, std::size_t element_size,
-                  std::vector<Element>& elements) {
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+void apply_sparse(const Document& document, int index, const Selection& selection, Decode decode,
+                  std::size_t element_size, std::vector<Element>& elements) {
+    const tinygltf::Accessor& accessor = accessor_at(document, index);
     const auto& sparse = accessor.sparse;
     const int index_type = sparse.indices.componentType;
     if (!is_unsigned(index_type)) {
@@ -115,27 +104,30 @@ void apply_sparse(const tinygltf::Model& model, int index, Decode decode, std::s
     }
     const auto count = static_cast<std::size_t>(sparse.count);
     const Elements indices =
-        locate(model, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.bufferView,
-                       static_cast<std::size_t>(sparse.indices.byteOffset), count, component_size(index_type),
-                       component_size(index_type)});
+        locate(document, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.bufferView,
+                          static_cast<std::size_t>(sparse.indices.byteOffset), count,
+                          component_size(index_type), component_size(index_type)});
     const Elements values =
-        locate(model, {fmt::format("accessor {} (its sparse values)", index), sparse.values.bufferView,
-                       static_cast<std::size_t>(sparse.values.byteOffset), count,
-                       component_size(accessor.componentType), element_size});
+        locate(document, {fmt::format("accessor {} (its sparse values)", index), sparse.values.bufferView,
+                          static_cast<std::size_t>(sparse.values.byteOffset), count,
+                          component_size(accessor.componentType), element_size});
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t at = load_unsigned(indices[i], index_type);
-        if (at >= elements.size()) {
-            throw SceneError(fmt::format("accessor {} has a sparse index {}, but {} elements", index, at,
-                                         elements.size()));
+        if (at >= accessor.count) {
+            throw SceneError(
+                fmt::format("accessor {} has a sparse index out of its {} elements", index, accessor.count));
         }
-        elements[at] = decode(values[i]);
+        if (const std::size_t place = selection.place(at); place < selection.count()) {
+            elements[place] = decode(values[i]);
+        }
     }
 }
 
-/// All elements, each converted from its bytes by `decode`. The caller has checked the accessor's types.
+/// The selected elements, each converted from its bytes by `decode`. The caller has checked the accessor's
+/// types. An accessor without a buffer view is all zeros.
 template <class Element, class Decode>
-std::vector<Element> read(const tinygltf::Model& model, int index, Decode decode) {
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+std::vector<Element> read(const Document& document, int index, const Selection& selection, Decode decode) {
+    const tinygltf::Accessor& accessor = accessor_at(document, index);
     const std::size_t component = component_size(accessor.componentType);
     const auto components =
         static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
@@ -143,18 +135,17 @@ std::vector<Element> read(const tinygltf::Model& model, int index, Decode decode
 
     std::vector<Element> elements{};
     if (accessor.bufferView < 0) {
-        check_zeros(model, accessor, index);
-        elements.resize(accessor.count, Element{});
+        elements.resize(selection.count(), Element{});
     } else {
-        const Elements source = locate(model, {fmt::format("accessor {}", index), accessor.bufferView,
-                                               accessor.byteOffset, accessor.count, component, size});
-        elements.reserve(accessor.count);
-        for (std::size_t i = 0; i < accessor.count; ++i) {
-            elements.push_back(decode(source[i]));
+        const Elements source = locate(document, {fmt::format("accessor {}", index), accessor.bufferView,
+                                                  accessor.byteOffset, accessor.count, component, size});
+        elements.reserve(selection.count());
+        for (std::size_t i = 0; i < selection.count(); ++i) {
+            elements.push_back(decode(source[selection[i]]));
         }
     }
     if (accessor.sparse.isSparse) {
-        apply_sparse(model, index, decode, size, elements);
+        apply_sparse(document, index, selection, decode, size, elements);
     }
     return elements;
 }
@@ -169,11 +160,12 @@ Vector load_floats(const unsigned char* bytes) {
 }
 
 template <class Vector>
-void check_finite(const std::vector<Vector>& elements, int index) {
+void check_finite(const std::vector<Vector>& elements, int index, const Selection& selection) {
     for (std::size_t i = 0; i < elements.size(); ++i) {
         for (int k = 0; k < Vector::length(); ++k) {
             if (!std::isfinite(elements[i][k])) {
-                throw SceneError(fmt::format("accessor {} has a NaN or infinity in element {}", index, i));
+                throw SceneError(
+                    fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
             }
         }
     }
@@ -199,45 +191,59 @@ float real_component(const unsigned char* element, std::size_t i, int type) {
 
 }  // namespace
 
-Bytes buffer_view_bytes(const tinygltf::Model& model, int buffer_view) {
-    const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(buffer_view)];
-    const std::vector<unsigned char>& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-    if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
+std::size_t Selection::place(std::size_t element) const {
+    if (indices_.empty()) {
+        return element;
+    }
+    const auto found = std::ranges::lower_bound(indices_, element);
+    const bool is_selected = found != indices_.end() && *found == element;
+    return is_selected ? static_cast<std::size_t>(found - indices_.begin()) : count_;
+}
+
+Bytes buffer_view_bytes(const Document& document, int buffer_view) {
+    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(buffer_view)];
+    const Bytes bytes = document.buffers[static_cast<std::size_t>(view.buffer)].bytes;
+    if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
         throw SceneError(
             fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, view.buffer));
     }
-    return Bytes(data).subspan(view.byteOffset, view.byteLength);
+    return bytes.subspan(view.byteOffset, view.byteLength);
 }
 
-std::vector<glm::vec3> read_vectors(const tinygltf::Model& model, int index) {
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+std::size_t element_count(const Document& document, int accessor) {
+    return accessor_at(document, accessor).count;
+}
+
+std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
+    const tinygltf::Accessor& accessor = accessor_at(document, index);
     if (accessor.type != TINYGLTF_TYPE_VEC3 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
         throw SceneError(
             fmt::format("accessor {} holds positions or normals, but is not VEC3 of FLOAT", index));
     }
-    auto vectors = read<glm::vec3>(model, index, load_floats<glm::vec3>);
-    check_finite(vectors, index);
+    auto vectors = read<glm::vec3>(document, index, selection, load_floats<glm::vec3>);
+    check_finite(vectors, index, selection);
     return vectors;
 }
 
-std::vector<glm::vec2> read_texture_coordinates(const tinygltf::Model& model, int index) {
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
+                                                const Selection& selection) {
+    const tinygltf::Accessor& accessor = accessor_at(document, index);
     if (accessor.type != TINYGLTF_TYPE_VEC2 || !has_real_components(accessor)) {
         throw SceneError(
             fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
                         "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
                         index));
     }
-    auto coordinates =
-        read<glm::vec2>(model, index, [type = accessor.componentType](const unsigned char* bytes) {
+    auto coordinates = read<glm::vec2>(
+        document, index, selection, [type = accessor.componentType](const unsigned char* bytes) {
             return glm::vec2(real_component(bytes, 0, type), real_component(bytes, 1, type));
         });
-    check_finite(coordinates, index);
+    check_finite(coordinates, index, selection);
     return coordinates;
 }
 
-std::vector<glm::u16vec4> read_colours(const tinygltf::Model& model, int index) {
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+std::vector<glm::u16vec4> read_colours(const Document& document, int index, const Selection& selection) {
+    const tinygltf::Accessor& accessor = accessor_at(document, index);
     const bool has_alpha = accessor.type == TINYGLTF_TYPE_VEC4;
     if ((accessor.type != TINYGLTF_TYPE_VEC3 && !has_alpha) || !has_real_components(accessor)) {
         throw SceneError(
@@ -245,13 +251,13 @@ std::vector<glm::u16vec4> read_colours(const tinygltf::Model& model, int index) 
                         "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
                         index));
     }
-    const auto colours =
-        read<glm::vec4>(model, index, [type = accessor.componentType, has_alpha](const unsigned char* bytes) {
+    const auto colours = read<glm::vec4>(
+        document, index, selection, [type = accessor.componentType, has_alpha](const unsigned char* bytes) {
             return glm::vec4(real_component(bytes, 0, type), real_component(bytes, 1, type),
                              real_component(bytes, 2, type),
                              has_alpha ? real_component(bytes, 3, type) : 1.0F);
         });
-    check_finite(colours, index);
+    check_finite(colours, index, selection);
     std::vector<glm::u16vec4> rounded;
     rounded.reserve(colours.size());
     for (const glm::vec4& colour : colours) {
@@ -260,20 +266,20 @@ std::vector<glm::u16vec4> read_colours(const tinygltf::Model& model, int index) 
     return rounded;
 }
 
-std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int index, std::size_t vertex_count) {
-    const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
+std::vector<std::uint32_t> read_indices(const Document& document, int index, std::size_t vertex_count) {
+    const tinygltf::Accessor& accessor = accessor_at(document, index);
     const int type = accessor.componentType;
     if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_unsigned(type)) {
         throw SceneError(
             fmt::format("accessor {} holds indices, but is not SCALAR of an unsigned integer", index));
     }
-    auto indices = read<std::uint32_t>(
-        model, index, [type](const unsigned char* bytes) { return load_unsigned(bytes, type); });
-    for (const std::uint32_t vertex : indices) {
-        if (vertex >= vertex_count) {
-            throw SceneError(fmt::format("accessor {} has index {}, but there are {} vertices", index, vertex,
-                                         vertex_count));
-        }
+    auto indices =
+        read<std::uint32_t>(document, index, Selection(accessor.count),
+                            [type](const unsigned char* bytes) { return load_unsigned(bytes, type); });
+    const auto outside = std::ranges::find_if(indices, [&](std::uint32_t i) { return i >= vertex_count; });
+    if (outside != indices.end()) {
+        throw SceneError(fmt::format("accessor {} has an index beyond the {} vertices in element {}", index,
+                                     vertex_count, outside - indices.begin()));
     }
     return indices;
 }

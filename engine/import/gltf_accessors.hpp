@@ -1,35 +1,62 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include <tiny_gltf.h>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "engine/import/gltf_document.hpp"
+
 namespace candela::gltf {
 
-// Reading of accessors, including strided and sparse ones. Every range is checked against the loaded buffers
-// before memory is allocated for it. All functions throw SceneError, which names the accessor or the buffer
-// view and the problem.
+// Reading of accessors, including strided and sparse ones. Every range is checked against the loaded buffers,
+// and its memory is counted, before memory is allocated for it. All functions throw SceneError, which names
+// the accessor or the buffer view and the problem.
+
+/// The elements of an accessor to read, in this order: all, or those of a list.
+class Selection {
+ public:
+    /// The first `count` elements.
+    explicit Selection(std::size_t count) : count_(count) {}
+    /// Ascending indices. `indices` must outlive the selection.
+    explicit Selection(std::span<const std::uint32_t> indices) : count_(indices.size()), indices_(indices) {}
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+    /// The element that comes at place i.
+    [[nodiscard]] std::size_t operator[](std::size_t i) const { return indices_.empty() ? i : indices_[i]; }
+    /// The place of an element; `count()` or more if it is not selected.
+    [[nodiscard]] std::size_t place(std::size_t element) const;
+
+ private:
+    std::size_t count_;
+    std::span<const std::uint32_t> indices_;
+};
 
 /// The bytes of a buffer view.
-[[nodiscard]] std::span<const unsigned char> buffer_view_bytes(const tinygltf::Model& model, int buffer_view);
+[[nodiscard]] Bytes buffer_view_bytes(const Document& document, int buffer_view);
+
+/// The number of elements.
+[[nodiscard]] std::size_t element_count(const Document& document, int accessor);
 
 /// Positions or normals: VEC3 of finite FLOAT.
-[[nodiscard]] std::vector<glm::vec3> read_vectors(const tinygltf::Model& model, int accessor);
+[[nodiscard]] std::vector<glm::vec3> read_vectors(const Document& document, int accessor,
+                                                  const Selection& selection);
 
 /// Texture coordinates: VEC2 of finite FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
-[[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const tinygltf::Model& model, int accessor);
+[[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const Document& document, int accessor,
+                                                              const Selection& selection);
 
 /// Vertex colours: VEC3, whose alpha is 1, or VEC4, with channels in [0, 1], as FLOAT or as normalised
 /// UNSIGNED_BYTE or UNSIGNED_SHORT. Floats outside [0, 1] are clamped. 65535 is 1.
-[[nodiscard]] std::vector<glm::u16vec4> read_colours(const tinygltf::Model& model, int accessor);
+[[nodiscard]] std::vector<glm::u16vec4> read_colours(const Document& document, int accessor,
+                                                     const Selection& selection);
 
 /// Vertex indices: SCALAR of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT, each below `vertex_count`.
-[[nodiscard]] std::vector<std::uint32_t> read_indices(const tinygltf::Model& model, int accessor,
+[[nodiscard]] std::vector<std::uint32_t> read_indices(const Document& document, int accessor,
                                                       std::size_t vertex_count);
 
 }  // namespace candela::gltf

@@ -2,28 +2,24 @@
 #include "engine/json_fault.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_schema.hpp"
+#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
 namespace {
 
-using Bytes = std::span<const unsigned char>;
 using Json = nlohmann::json;
 
 // TinyGLTF parses extensions and extras recursively, so deep nesting could overflow the stack. glTF's own
@@ -127,58 +123,66 @@ bool is_supported(std::string_view extension) {
     return std::ranges::find(supported_extensions, extension) != supported_extensions.end();
 }
 
+/// The array of this name; empty if there is none.
+const Json& list(const Json& document, const char* name) {
+    static const Json none = Json::array();
+    const auto found = document.find(name);
+    return found == document.end() ? none : *found;
+}
+
 /// Throws for required extensions that are not supported; returns a warning for each other unsupported one.
 std::vector<std::string> check_extensions(const Json& document) {
     const auto names = [&](const char* member) { return document.value(member, std::set<std::string>{}); };
     for (const std::string& name : names("extensionsRequired")) {
         if (!is_supported(name)) {
-            throw SceneError(fmt::format("it requires the extension {}, which is not supported", name));
+            throw SceneError(
+                fmt::format("it requires the extension {}, which is not supported", readable(name)));
         }
     }
     std::vector<std::string> warnings;
     for (const std::string& name : names("extensionsUsed")) {
         if (!is_supported(name)) {
-            warnings.push_back(fmt::format("the extension {} is not supported and is ignored", name));
+            warnings.push_back(
+                fmt::format("the extension {} is not supported and is ignored", readable(name)));
         }
     }
     return warnings;
 }
 
-std::vector<unsigned char> load_buffer(const Json& buffer, std::size_t index,
-                                       const std::optional<Bytes>& binary,
-                                       const std::filesystem::path& base_directory) {
+Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<Bytes>& binary,
+                   ImportFiles& files) {
     const auto length = buffer.at("byteLength").get<std::size_t>();
-    std::vector<unsigned char> data;
+    Buffer loaded;
     if (buffer.contains("uri")) {
-        data = read_uri(buffer.at("uri").get_ref<const std::string&>(), base_directory);
+        loaded.content = files.read(buffer.at("uri").get_ref<const std::string&>());
+        loaded.bytes = *loaded.content;
     } else if (index == 0 && binary) {
-        data.assign(binary->begin(), binary->end());
+        loaded.bytes = *binary;
     } else {
         throw SceneError("it has neither a \"uri\" nor a binary chunk");
     }
-    if (data.size() < length) {
-        throw SceneError(fmt::format("it has {} of the {} bytes it declares", data.size(), length));
+    if (loaded.bytes.size() < length) {
+        throw SceneError(fmt::format("it has {} of the {} bytes it declares", loaded.bytes.size(), length));
     }
-    data.resize(length);
-    return data;
+    loaded.bytes = loaded.bytes.first(length);
+    return loaded;
 }
 
-std::vector<tinygltf::Buffer> load_buffers(const Json& document, const std::optional<Bytes>& binary,
-                                           const std::filesystem::path& base_directory) {
-    const Json descriptions = document.value("buffers", Json::array());
-    std::vector<tinygltf::Buffer> buffers(descriptions.size());
-    for (std::size_t i = 0; i < buffers.size(); ++i) {
+std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes>& binary,
+                                 ImportFiles& files) {
+    std::vector<Buffer> buffers;
+    for (const Json& description : list(document, "buffers")) {
         try {
-            buffers[i].data = load_buffer(descriptions[i], i, binary, base_directory);
+            buffers.push_back(load_buffer(description, buffers.size(), binary, files));
         } catch (const SceneError& error) {
-            throw SceneError(fmt::format("buffer {}: {}", i, error.what()));
+            throw SceneError(fmt::format("buffer {}: {}", buffers.size(), error.what()));
         }
     }
     return buffers;
 }
 
 std::vector<tinygltf::Image> describe_images(const Json& document) {
-    const Json descriptions = document.value("images", Json::array());
+    const Json& descriptions = list(document, "images");
     std::vector<tinygltf::Image> images(descriptions.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
         images[i].name = descriptions[i].value("name", "");
@@ -189,14 +193,6 @@ std::vector<tinygltf::Image> describe_images(const Json& document) {
         }
     }
     return images;
-}
-
-std::vector<bool> find_named_nodes(const Json& document) {
-    std::vector<bool> named;
-    for (const Json& node : document.value("nodes", Json::array())) {
-        named.push_back(node.contains("name"));
-    }
-    return named;
 }
 
 /// Adds two defaults that TinyGLTF 2.5 does not handle: byte offsets that a sparse accessor leaves out, and
@@ -218,11 +214,61 @@ std::size_t write_defaults(Json& document) {
     return none;
 }
 
-/// Parses everything but buffers and images. Those are read here, with stricter checks than TinyGLTF's.
+/// Removes extras and extensions that are not supported, for each of which TinyGLTF would make objects.
+void remove_unread(Json& value) {
+    if (value.is_object()) {
+        value.erase("extras");
+        if (const auto extensions = value.find("extensions");
+            extensions != value.end() && extensions->is_object()) {
+            for (auto each = extensions->begin(); each != extensions->end();) {
+                each = is_supported(each.key()) ? std::next(each) : extensions->erase(each);
+            }
+        }
+    }
+    for (Json& member : value) {
+        if (member.is_structured()) {
+            remove_unread(member);
+        }
+    }
+}
+
+/// Counts the memory of TinyGLTF's objects, which is a multiple of that of the shortest JSON for them.
+void count_objects(const Json& document, ImportBudget& budget) {
+    const auto count = [&](const char* name, std::size_t bytes) {
+        budget.add_memory(list(document, name).size() * bytes);
+    };
+    count("accessors", sizeof(tinygltf::Accessor));
+    count("bufferViews", sizeof(tinygltf::BufferView));
+    count("cameras", sizeof(tinygltf::Camera));
+    count("images", sizeof(tinygltf::Image));
+    count("materials", sizeof(tinygltf::Material));
+    count("meshes", sizeof(tinygltf::Mesh));
+    count("samplers", sizeof(tinygltf::Sampler));
+    count("scenes", sizeof(tinygltf::Scene));
+    count("textures", sizeof(tinygltf::Texture));
+    for (const Json& mesh : list(document, "meshes")) {
+        budget.add_memory(list(mesh, "primitives").size() * sizeof(tinygltf::Primitive));
+    }
+    const Json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+    if (document.contains(lights)) {
+        budget.add_memory(document.at(lights).size() * sizeof(tinygltf::Light));
+    }
+}
+
+/// The parser's messages, one per line, as one line.
+std::string joined(std::string messages) {
+    std::ranges::replace(messages, '\n', ' ');
+    messages.erase(messages.find_last_not_of(" .") + 1);
+    return messages;
+}
+
+/// Parses everything but buffers, images and nodes. Those are read here, with stricter checks than
+/// TinyGLTF's.
 tinygltf::Model parse_model(Json document) {
-    for (const char* member : {"buffers", "images", "animations", "skins"}) {
+    for (const char* member : {"buffers", "images", "nodes", "animations", "skins"}) {
         document.erase(member);
     }
+    remove_unread(document);
     const std::size_t no_view = write_defaults(document);
     const std::string text = document.dump();
     if (text.size() > std::numeric_limits<unsigned int>::max()) {
@@ -236,7 +282,7 @@ tinygltf::Model parse_model(Json document) {
     const bool parsed = parser.LoadASCIIFromString(&model, &errors, &warnings, text.data(),
                                                    static_cast<unsigned int>(text.size()), {});
     if (!parsed || !errors.empty()) {
-        throw SceneError(errors.empty() ? "it is not valid glTF" : errors);
+        throw SceneError(errors.empty() ? "it is not valid glTF" : joined(errors));
     }
     model.bufferViews.pop_back();
     for (tinygltf::Accessor& accessor : model.accessors) {
@@ -247,63 +293,10 @@ tinygltf::Model parse_model(Json document) {
     return model;
 }
 
-std::string percent_decoded(std::string_view uri) {
-    std::string decoded;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        unsigned char code = 0;
-        const char* digits = uri.data() + i + 1;
-        if (uri[i] == '%' && uri.size() - i > 2 &&
-            std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2) {
-            decoded += static_cast<char>(code);
-            i += 2;
-        } else {
-            decoded += uri[i];
-        }
-    }
-    return decoded;
-}
-
-}  // namespace
-
-bool starts_with(Bytes bytes, std::string_view prefix) {
-    return bytes.size() >= prefix.size() && std::memcmp(bytes.data(), prefix.data(), prefix.size()) == 0;
-}
-
-std::vector<unsigned char> read_file(const std::filesystem::path& path, std::string_view called) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-        throw SceneError(fmt::format("{} does not exist", called));
-    }
-    if (!std::filesystem::is_regular_file(path, ignored)) {
-        throw SceneError(fmt::format("{} is not a file", called));
-    }
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    std::vector<unsigned char> bytes(file ? static_cast<std::size_t>(file.tellg()) : 0);
-    file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (!file) {
-        throw SceneError(fmt::format("{} cannot be read", called));
-    }
-    return bytes;
-}
-
-std::vector<unsigned char> read_uri(const std::string& uri, const std::filesystem::path& base_directory) {
-    if (!uri.starts_with("data:")) {
-        return read_file(base_directory / percent_decoded(uri), uri);
-    }
-    std::vector<unsigned char> bytes;
-    std::string media_type;
-    if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) {
-        throw SceneError(fmt::format("the data URI {:.40}... is empty or of an unknown kind", uri));
-    }
-    return bytes;
-}
-
 /// Whether any material has the member at `path`, with a value for which `counts` holds.
 bool any_material(const Json& document, const char* path, bool (*counts)(const Json& value)) {
     const Json::json_pointer pointer(path);
-    const Json none = Json::array();
-    const Json& materials = document.contains("materials") ? document.at("materials") : none;
-    return std::ranges::any_of(materials, [&](const Json& material) {
+    return std::ranges::any_of(list(document, "materials"), [&](const Json& material) {
         return material.contains(pointer) && counts(material.at(pointer));
     });
 }
@@ -335,18 +328,24 @@ std::vector<std::string> omissions(const Json& document) {
     return warnings;
 }
 
-Document read_document(Bytes bytes, const std::filesystem::path& base_directory) {
+}  // namespace
+
+Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     const Container container = split(bytes);
     Json json = parse_json(container.json);
     check_schema(json);
+    budget.check_nodes(list(json, "nodes").size());
+    count_objects(json, budget);
     Document document;
     document.warnings = check_extensions(json);
-    std::vector<tinygltf::Buffer> buffers = load_buffers(json, container.binary, base_directory);
+    document.buffers = load_buffers(json, container.binary, files);
     std::vector<tinygltf::Image> images = describe_images(json);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
-    document.node_has_name = find_named_nodes(json);
+    document.nodes = std::move(json["nodes"]);
+    if (document.nodes.is_null()) {
+        document.nodes = Json::array();
+    }
     document.model = parse_model(std::move(json));
-    document.model.buffers = std::move(buffers);
     document.model.images = std::move(images);
     return document;
 }

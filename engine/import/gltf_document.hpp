@@ -1,14 +1,15 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <filesystem>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/import/import_budget.hpp"
+#include "engine/import/import_files.hpp"
 
 namespace candela::gltf {
 
@@ -23,30 +24,25 @@ inline constexpr std::array<std::string_view, 6> supported_extensions{
     lights_extension, emissive_strength_extension, texture_transform_extension,
     unlit_extension,  environment_extension,       light_extension};
 
-/// A checked glTF document with its buffers loaded (`model.buffers[i].data`). Images stay encoded:
-/// `model.images[i]` has a name and either `uri` or `bufferView`. Animations and skins are left out.
+/// A part of a file, which it keeps in memory.
+struct Buffer {
+    Content content;
+    Bytes bytes;
+};
+
+/// A checked glTF document with its buffers loaded. Nodes stay as JSON, of which there may be millions.
+/// Images stay encoded: `model.images[i]` has a name and either `uri` or `bufferView`. Animations and skins
+/// are left out.
 struct Document {
-    tinygltf::Model model;
-    std::vector<bool> node_has_name;  ///< per node: whether the file names it, if only with an empty name
+    tinygltf::Model model;  ///< without buffers and nodes
+    std::vector<Buffer> buffers;
+    nlohmann::json nodes;  ///< array
     std::vector<std::string> warnings;
 };
 
-using Bytes = std::span<const unsigned char>;
-
-/// Whether a file of these bytes begins with `prefix`, which tells what kind of file it is.
-[[nodiscard]] bool starts_with(Bytes bytes, std::string_view prefix);
-
-/// Reads a whole regular file. Throws SceneError, which names the file as `called`.
-[[nodiscard]] std::vector<unsigned char> read_file(const std::filesystem::path& path,
-                                                   std::string_view called);
-
-/// The bytes behind a URI: a base64 data URI, or a percent-encoded file path relative to `base_directory`.
-/// Throws SceneError, which names the URI.
-[[nodiscard]] std::vector<unsigned char> read_uri(const std::string& uri,
-                                                  const std::filesystem::path& base_directory);
-
 /// Parses and checks .gltf or .glb, distinguished by their first bytes, and loads the buffers. Throws
-/// SceneError for malformed data and for required extensions that are not supported.
-[[nodiscard]] Document read_document(Bytes bytes, const std::filesystem::path& base_directory);
+/// SceneError for malformed data and for required extensions that are not supported. The document refers to
+/// `bytes`.
+[[nodiscard]] Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget);
 
 }  // namespace candela::gltf

@@ -7,20 +7,27 @@
 #include <candela/scene/sky_picture.hpp>
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_nodes.hpp"
+#include "engine/import/sky_picture_size.hpp"
 
 namespace candela::gltf {
 
 namespace {
 
+std::shared_ptr<const SkyPicture> decode(Bytes bytes, ImportBudget& budget) {
+    const PictureSize size = sky_picture_size(bytes);
+    budget.add_picture(static_cast<std::uint64_t>(size.width), static_cast<std::uint64_t>(size.height));
+    return decode_sky_picture(bytes);
+}
+
 /// Null if there is none.
-std::shared_ptr<const SkyPicture> read_picture(const tinygltf::Model& model, const tinygltf::Value& source,
-                                               const std::filesystem::path& base_directory) {
+std::shared_ptr<const SkyPicture> read_picture(const Document& document, const tinygltf::Value& source,
+                                               ImportFiles& files, ImportBudget& budget) {
     try {
         if (source.Has("bufferView")) {
-            return decode_sky_picture(buffer_view_bytes(model, source.Get("bufferView").GetNumberAsInt()));
+            return decode(buffer_view_bytes(document, source.Get("bufferView").GetNumberAsInt()), budget);
         }
         if (source.Has("uri")) {
-            return decode_sky_picture(read_uri(source.Get("uri").Get<std::string>(), base_directory));
+            return decode(*files.read(source.Get("uri").Get<std::string>()), budget);
         }
         return nullptr;
     } catch (const SceneError& error) {
@@ -30,9 +37,9 @@ std::shared_ptr<const SkyPicture> read_picture(const tinygltf::Model& model, con
 
 }  // namespace
 
-std::optional<NamedEnvironment> read_environment(const tinygltf::Model& model,
-                                                 const std::filesystem::path& base_directory) {
-    const tinygltf::ExtensionMap& extensions = default_scene(model).extensions;
+std::optional<NamedEnvironment> read_environment(const Document& document, ImportFiles& files,
+                                                 ImportBudget& budget) {
+    const tinygltf::ExtensionMap& extensions = default_scene(document.model).extensions;
     const auto found = extensions.find(environment_extension);
     if (found == extensions.end()) {
         return std::nullopt;
@@ -45,7 +52,7 @@ std::optional<NamedEnvironment> read_environment(const tinygltf::Model& model,
     if (source.Has("rotation")) {
         environment.rotation = static_cast<float>(source.Get("rotation").GetNumberAsDouble());
     }
-    environment.picture = read_picture(model, source, base_directory);
+    environment.picture = read_picture(document, source, files, budget);
     const bool is_named = source.Has("name");
     return NamedEnvironment{is_named ? source.Get("name").Get<std::string>() : "environment", environment};
 }

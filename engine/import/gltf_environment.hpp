@@ -18,7 +18,7 @@ struct NamedEnvironment {
 /// "environment"), `radiance` (three numbers; default 1), `uri` or `bufferView` (a picture, see
 /// load_sky_picture; default none) and `rotation` (radians; default 0). Throws SceneError if the picture
 /// cannot be read.
-[[nodiscard]] std::optional<NamedEnvironment> read_environment(const tinygltf::Model& model,
-                                                               const std::filesystem::path& base_directory);
+[[nodiscard]] std::optional<NamedEnvironment> read_environment(const Document& document, ImportFiles& files,
+                                                               ImportBudget& budget);
 
 }  // namespace candela::gltf

@@ -18,10 +18,9 @@ namespace candela::gltf {
 
 namespace {
 
-using ImageKey = std::tuple<int, Wrap, Wrap>;  // index, wrap_u, wrap_v
-using Images = std::map<ImageKey, std::shared_ptr<const Image>>;
+using ImageKey = std::tuple<const unsigned char*, Wrap, Wrap>;  // encoded bytes, wrap_u, wrap_v
 
-Image decode(Bytes encoded) {
+Image decode(Bytes encoded, ImportBudget& budget) {
     // Upper bound of pixels per encoded byte, to reject headers with impossible sizes. Deflate compresses at
     // most 1,032 : 1 (zlib's documentation), and an uncompressed PNG byte holds at most 8 pixels. A JPEG uses
     // at least 1 bit for 64 pixels, which gives fewer pixels per byte.
@@ -39,9 +38,11 @@ Image decode(Bytes encoded) {
     if (stbi_info_from_memory(encoded.data(), size, &width, &height, nullptr) == 0) {
         throw SceneError("it cannot be decoded");
     }
-    if (std::uint64_t(width) * std::uint64_t(height) > most_pixels_in_a_byte * encoded.size()) {
+    const auto pixel_count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (pixel_count > most_pixels_in_a_byte * encoded.size()) {
         throw SceneError(fmt::format("its {} bytes cannot hold {} x {} pixels", size, width, height));
     }
+    budget.add_picture(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
         stbi_image_free);
@@ -57,21 +58,6 @@ Image decode(Bytes encoded) {
     return image;
 }
 
-std::shared_ptr<const Image> load_image(const tinygltf::Model& model, const ImageKey& key,
-                                        const std::filesystem::path& base_directory) {
-    const auto& [index, wrap_u, wrap_v] = key;
-    const tinygltf::Image& source = model.images[static_cast<std::size_t>(index)];
-    try {
-        Image image = source.bufferView >= 0 ? decode(buffer_view_bytes(model, source.bufferView))
-                                             : decode(read_uri(source.uri, base_directory));
-        image.wrap_u = wrap_u;
-        image.wrap_v = wrap_v;
-        return std::make_shared<const Image>(std::move(image));
-    } catch (const SceneError& error) {
-        throw SceneError(fmt::format("image {}: {}", index, error.what()));
-    }
-}
-
 Wrap to_wrap(int mode, int sampler) {
     switch (mode) {
         case TINYGLTF_TEXTURE_WRAP_REPEAT:
@@ -85,13 +71,18 @@ Wrap to_wrap(int mode, int sampler) {
     }
 }
 
-/// The image of a base colour and the wrapping modes of its sampler.
-ImageKey image_key(const tinygltf::Model& model, const tinygltf::Texture& texture) {
+/// How a texture repeats along u and v.
+struct Wraps {
+    Wrap u = Wrap::repeat;
+    Wrap v = Wrap::repeat;
+};
+
+Wraps wraps_of(const tinygltf::Model& model, const tinygltf::Texture& texture) {
     if (texture.sampler < 0) {
-        return {texture.source, Wrap::repeat, Wrap::repeat};
+        return {};
     }
     const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
-    return {texture.source, to_wrap(sampler.wrapS, texture.sampler), to_wrap(sampler.wrapT, texture.sampler)};
+    return {to_wrap(sampler.wrapS, texture.sampler), to_wrap(sampler.wrapT, texture.sampler)};
 }
 
 /// How a material uses a texture: the members of glTF's textureInfo and of its extension
@@ -132,11 +123,11 @@ TextureUse texture_use(const tinygltf::TextureInfo& info) {
     return use;
 }
 
-/// Reads the images of materials. Textures with the same image and wrapping share one.
+/// Reads the images of materials. Textures with the same bytes and wrapping share one.
 class ImageReader {
  public:
-    ImageReader(Document& document, const std::filesystem::path& base_directory)
-        : document_(document), base_directory_(base_directory) {}
+    ImageReader(Document& document, ImportFiles& files, ImportBudget& budget)
+        : document_(document), files_(files), budget_(budget) {}
 
     /// The image of a texture; null, with a warning that starts with `label`, if it cannot be used.
     std::shared_ptr<const Image> read(const TextureUse& use, const std::string& label) {
@@ -145,28 +136,54 @@ class ImageReader {
         }
         const tinygltf::Texture& texture = document_.model.textures[static_cast<std::size_t>(use.index)];
         if (texture.source < 0) {
-            document_.warnings.push_back(fmt::format("{} has no PNG or JPEG image; ignored", label));
+            warn(fmt::format("{} has no PNG or JPEG image; ignored", label));
             return nullptr;
         }
         if (use.coordinate_set != 0) {
-            document_.warnings.push_back(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored",
-                                                     label, use.coordinate_set));
+            warn(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label,
+                             use.coordinate_set));
             return nullptr;
         }
-        const ImageKey key = image_key(document_.model, texture);
-        std::shared_ptr<const Image>& image = images_[key];
-        if (!image) {
-            image = load_image(document_.model, key, base_directory_);
+        const Wraps wraps = wraps_of(document_.model, texture);
+        try {
+            return load(texture.source, wraps);
+        } catch (const SceneError& error) {
+            throw SceneError(fmt::format("image {}: {}", texture.source, error.what()));
         }
-        return image;
     }
 
     void warn(std::string warning) { document_.warnings.push_back(std::move(warning)); }
 
  private:
+    std::shared_ptr<const Image> load(int index, const Wraps& wraps) {
+        const Bytes encoded = encoded_image(index);
+        std::shared_ptr<const Image>& image = images_[{encoded.data(), wraps.u, wraps.v}];
+        if (!image) {
+            Image decoded = decode(encoded, budget_);
+            decoded.wrap_u = wraps.u;
+            decoded.wrap_v = wraps.v;
+            image = std::make_shared<const Image>(std::move(decoded));
+        }
+        return image;
+    }
+
+    Bytes encoded_image(int index) {
+        const tinygltf::Image& source = document_.model.images[static_cast<std::size_t>(index)];
+        if (source.bufferView >= 0) {
+            return buffer_view_bytes(document_, source.bufferView);
+        }
+        Content& content = contents_[index];
+        if (!content) {
+            content = files_.read(source.uri);
+        }
+        return *content;
+    }
+
     Document& document_;
-    const std::filesystem::path& base_directory_;
-    Images images_;
+    ImportFiles& files_;
+    ImportBudget& budget_;
+    std::map<int, Content> contents_;  // by image; keeps their bytes, whose addresses identify images
+    std::map<ImageKey, std::shared_ptr<const Image>> images_;
 };
 
 /// KHR_materials_emissive_strength; check_schema has checked the value.
@@ -227,13 +244,30 @@ ReadMaterial read_material(const tinygltf::Material& source, const std::string& 
     return {std::make_shared<const Material>(std::move(material)), transform};
 }
 
+std::vector<bool> used_materials(const tinygltf::Model& model, const std::vector<bool>& used_meshes) {
+    std::vector<bool> used(model.materials.size());
+    for (std::size_t i = 0; i < model.meshes.size(); ++i) {
+        for (const tinygltf::Primitive& primitive : model.meshes[i].primitives) {
+            if (used_meshes[i] && primitive.material >= 0) {
+                used[static_cast<std::size_t>(primitive.material)] = true;
+            }
+        }
+    }
+    return used;
+}
+
 }  // namespace
 
-std::vector<ReadMaterial> read_materials(Document& document, const std::filesystem::path& base_directory) {
-    ImageReader images(document, base_directory);
-    std::vector<ReadMaterial> materials;
-    for (const tinygltf::Material& source : document.model.materials) {
-        materials.push_back(read_material(source, fmt::format("material {}", materials.size()), images));
+std::vector<ReadMaterial> read_materials(Document& document, const std::vector<bool>& used_meshes,
+                                         ImportFiles& files, ImportBudget& budget, const Progress& progress) {
+    ImageReader images(document, files, budget);
+    const std::vector<bool> used = used_materials(document.model, used_meshes);
+    std::vector<ReadMaterial> materials(used.size());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (used[i]) {
+            progress("reading materials and images", i, used.size());
+            materials[i] = read_material(document.model.materials[i], fmt::format("material {}", i), images);
+        }
     }
     materials.push_back({std::make_shared<const Material>()});
     return materials;

@@ -1,5 +1,6 @@
 #include "engine/import/gltf_meshes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 #include <optional>
@@ -33,22 +34,28 @@ std::optional<int> find_attribute(const tinygltf::Primitive& source, const char*
     return found == source.attributes.end() ? std::nullopt : std::optional(found->second);
 }
 
-void check_count(std::string_view attribute, std::size_t count, std::size_t positions) {
+/// The accessor of an attribute, which must have one element for each position.
+int checked_attribute(const Document& document, int accessor, std::string_view attribute,
+                      std::size_t positions) {
+    const std::size_t count = element_count(document, accessor);
     if (count != positions) {
         throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, attribute));
     }
+    return accessor;
 }
 
-/// A missing normal is zero until the faces provide one.
-std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::Primitive& source,
-                                  int positions) {
+/// The selected vertices. A missing normal is zero until the faces provide one.
+std::vector<Vertex> read_vertices(const Document& document, const tinygltf::Primitive& source, int positions,
+                                  const Selection& selection) {
+    const std::size_t all = element_count(document, positions);
     std::vector<Vertex> vertices;
-    for (const glm::vec3& position : read_vectors(model, positions)) {
+    vertices.reserve(selection.count());
+    for (const glm::vec3& position : read_vectors(document, positions, selection)) {
         vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
     }
-    if (const auto accessor = find_attribute(source, "NORMAL")) {
-        const std::vector<glm::vec3> normals = read_vectors(model, *accessor);
-        check_count("normals", normals.size(), vertices.size());
+    if (const auto found = find_attribute(source, "NORMAL")) {
+        const int accessor = checked_attribute(document, *found, "normals", all);
+        const std::vector<glm::vec3> normals = read_vectors(document, accessor, selection);
         for (std::size_t i = 0; i < normals.size(); ++i) {
             // In double precision, the square of a float neither underflows nor overflows.
             const glm::dvec3 normal(normals[i]);
@@ -58,16 +65,16 @@ std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::
             }
         }
     }
-    if (const auto accessor = find_attribute(source, "TEXCOORD_0")) {
-        const std::vector<glm::vec2> coordinates = read_texture_coordinates(model, *accessor);
-        check_count("texture coordinates", coordinates.size(), vertices.size());
+    if (const auto found = find_attribute(source, "TEXCOORD_0")) {
+        const int accessor = checked_attribute(document, *found, "texture coordinates", all);
+        const std::vector<glm::vec2> coordinates = read_texture_coordinates(document, accessor, selection);
         for (std::size_t i = 0; i < coordinates.size(); ++i) {
             vertices[i].uv = coordinates[i];
         }
     }
-    if (const auto accessor = find_attribute(source, "COLOR_0")) {
-        const std::vector<glm::u16vec4> colours = read_colours(model, *accessor);
-        check_count("colours", colours.size(), vertices.size());
+    if (const auto found = find_attribute(source, "COLOR_0")) {
+        const int accessor = checked_attribute(document, *found, "colours", all);
+        const std::vector<glm::u16vec4> colours = read_colours(document, accessor, selection);
         for (std::size_t i = 0; i < colours.size(); ++i) {
             vertices[i].colour = colours[i];
         }
@@ -75,22 +82,29 @@ std::vector<Vertex> read_vertices(const tinygltf::Model& model, const tinygltf::
     return vertices;
 }
 
-std::vector<std::uint32_t> read_order(const tinygltf::Model& model, const tinygltf::Primitive& source,
+std::vector<std::uint32_t> read_order(const Document& document, const tinygltf::Primitive& source,
                                       std::size_t vertex_count) {
     if (source.indices >= 0) {
-        return read_indices(model, source.indices, vertex_count);
+        return read_indices(document, source.indices, vertex_count);
     }
     std::vector<std::uint32_t> order(vertex_count);
     std::iota(order.begin(), order.end(), 0U);
     return order;
 }
 
+/// The vertices that the indices in `order` use, ascending. Makes `order` refer to this list.
+std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& order) {
+    std::vector<std::uint32_t> used(order);
+    std::ranges::sort(used);
+    used.erase(std::ranges::unique(used).begin(), used.end());
+    for (std::uint32_t& vertex : order) {
+        vertex = static_cast<std::uint32_t>(std::ranges::lower_bound(used, vertex) - used.begin());
+    }
+    return used;
+}
+
 /// The triangles of a list, strip or fan, with the winding order of glTF 2.0 (section 3.7.2.1).
 std::vector<Corners> assemble(std::span<const std::uint32_t> order, int mode) {
-    if (order.size() < 3 || (mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0)) {
-        throw SceneError(fmt::format("it has {} indices or vertices, which make no whole number of triangles",
-                                     order.size()));
-    }
     std::vector<Corners> triangles;
     if (mode == TINYGLTF_MODE_TRIANGLES) {
         for (std::size_t i = 0; i < order.size(); i += 3) {
@@ -156,12 +170,42 @@ bool is_drawn(const tinygltf::Primitive& source, Omissions& omissions) {
     return triangles && positions;
 }
 
+/// The triangles of so many indices or vertices.
+std::uint64_t triangle_count(std::uint64_t order, int mode) {
+    if (order < 3 || (mode == TINYGLTF_MODE_TRIANGLES && order % 3 != 0)) {
+        throw SceneError(
+            fmt::format("it has {} indices or vertices, which make no whole number of triangles", order));
+    }
+    return mode == TINYGLTF_MODE_TRIANGLES ? order / 3 : order - 2;
+}
+
+/// Counts what read_primitive needs, without the vertices that it selects.
+void count_triangles(const Document& document, const tinygltf::Primitive& source, ImportBudget& budget) {
+    const std::uint64_t order =
+        element_count(document, source.indices >= 0 ? source.indices : *find_attribute(source, "POSITION"));
+    const std::uint64_t triangles = triangle_count(order, source.mode);
+    budget.add_triangles(triangles);
+    budget.add_memory(order * sizeof(std::uint32_t) + triangles * sizeof(Corners));
+    if (!find_attribute(source, "NORMAL")) {
+        budget.add_memory(triangles * 3 * sizeof(Vertex));
+    }
+}
+
 /// Without indices if no triangle has an area.
-Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive& source) {
+Primitive read_primitive(const Document& document, const tinygltf::Primitive& source, ImportBudget& budget) {
+    const int positions = *find_attribute(source, "POSITION");
+    const std::size_t vertex_count = element_count(document, positions);
+    count_triangles(document, source, budget);
+    std::vector<std::uint32_t> order = read_order(document, source, vertex_count);
+    // Many primitives may share the vertices of one accessor, of which each uses a few.
+    const bool uses_few = order.size() < vertex_count / 2;
+    const std::vector<std::uint32_t> used = uses_few ? compact(order) : std::vector<std::uint32_t>{};
+    const Selection selection = uses_few ? Selection(used) : Selection(vertex_count);
+    budget.add_memory(selection.count() * sizeof(Vertex));
+
     Primitive primitive;
-    primitive.vertices = read_vertices(model, source, *find_attribute(source, "POSITION"));
-    std::vector<Corners> triangles =
-        assemble(read_order(model, source, primitive.vertices.size()), source.mode);
+    primitive.vertices = read_vertices(document, source, positions, selection);
+    std::vector<Corners> triangles = assemble(order, source.mode);
     std::erase_if(triangles, [&](const Corners& corners) {
         return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
     });
@@ -169,21 +213,22 @@ Primitive read_primitive(const tinygltf::Model& model, const tinygltf::Primitive
         primitive.vertices = unshare(primitive.vertices, triangles);
     }
     fill_normals(primitive.vertices, triangles);
+    primitive.indices.reserve(3 * triangles.size());
     for (const Corners& corners : triangles) {
         primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
     }
     return primitive;
 }
 
-Mesh read_mesh(const tinygltf::Model& model, const tinygltf::Mesh& source,
-               const std::vector<ReadMaterial>& materials, Omissions& omissions) {
+Mesh read_mesh(const Document& document, const tinygltf::Mesh& source,
+               const std::vector<ReadMaterial>& materials, Omissions& omissions, ImportBudget& budget) {
     Mesh mesh;
     mesh.name = source.name;
     for (const tinygltf::Primitive& part : source.primitives) {
         if (!is_drawn(part, omissions)) {
             continue;
         }
-        Primitive primitive = read_primitive(model, part);
+        Primitive primitive = read_primitive(document, part, budget);
         if (primitive.indices.empty()) {
             continue;
         }
@@ -215,17 +260,21 @@ void report(const Omissions& omissions, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document,
-                                                     const std::vector<ReadMaterial>& materials) {
+std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const std::vector<bool>& used,
+                                                     const std::vector<ReadMaterial>& materials,
+                                                     ImportBudget& budget, const Progress& progress) {
     Omissions omissions;
-    std::vector<std::shared_ptr<const Mesh>> meshes;
-    for (const tinygltf::Mesh& source : document.model.meshes) {
+    std::vector<std::shared_ptr<const Mesh>> meshes(document.model.meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (!used[i]) {
+            continue;
+        }
+        progress("reading meshes", i, meshes.size());
         try {
-            Mesh mesh = read_mesh(document.model, source, materials, omissions);
-            meshes.push_back(mesh.primitives.empty() ? nullptr
-                                                     : std::make_shared<const Mesh>(std::move(mesh)));
+            Mesh mesh = read_mesh(document, document.model.meshes[i], materials, omissions, budget);
+            meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
         } catch (const SceneError& error) {
-            throw SceneError(fmt::format("mesh {}: {}", meshes.size(), error.what()));
+            throw SceneError(fmt::format("mesh {}: {}", i, error.what()));
         }
     }
     report(omissions, document.warnings);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "engine/import/decompose.hpp"
 #include "engine/import/gltf_document.hpp"
 #include "engine/import/unit_length.hpp"
+#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
@@ -20,25 +21,39 @@ namespace {
 
 constexpr float half_pi = 1.57079632679489662F;
 
-/// A node to convert, and the index of its parent's entity.
+using Json = nlohmann::json;
+
+/// A node to convert, its level in the hierarchy, and the index of its parent's entity.
 struct Visit {
     int node;
+    std::uint64_t level;
     std::optional<std::size_t> parent;
 };
 
-const tinygltf::Node& node_at(const tinygltf::Model& model, int index) {
-    return model.nodes[static_cast<std::size_t>(index)];
+const Json& node_at(const Document& document, int index) {
+    return document.nodes[static_cast<std::size_t>(index)];
+}
+
+/// Empty if the node has no such member.
+const Json& array_of(const Json& node, const char* member) {
+    static const Json none = Json::array();
+    const auto found = node.find(member);
+    return found == node.end() ? none : *found;
+}
+
+const Json& children_of(const Document& document, int node) {
+    return array_of(node_at(document, node), "children");
 }
 
 /// The parent of each node; -1 for a root.
-std::vector<int> find_parents(const tinygltf::Model& model) {
-    std::vector<int> parents(model.nodes.size(), -1);
-    for (int node = 0; node < static_cast<int>(model.nodes.size()); ++node) {
-        for (const int child : node_at(model, node).children) {
-            int& parent = parents[static_cast<std::size_t>(child)];
+std::vector<int> find_parents(const Document& document) {
+    std::vector<int> parents(document.nodes.size(), -1);
+    for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
+        for (const Json& child : children_of(document, node)) {
+            int& parent = parents[child.get<std::size_t>()];
             if (parent >= 0) {
                 throw SceneError(
-                    fmt::format("node {} has two parents, nodes {} and {}", child, parent, node));
+                    fmt::format("node {} has two parents, nodes {} and {}", child.get<int>(), parent, node));
             }
             parent = node;
         }
@@ -47,8 +62,8 @@ std::vector<int> find_parents(const tinygltf::Model& model) {
 }
 
 /// Checks that every node is a root or below one, and that the scene lists only roots, each once.
-void check_hierarchy(const tinygltf::Model& model) {
-    const std::vector<int> parents = find_parents(model);
+void check_hierarchy(const Document& document) {
+    const std::vector<int> parents = find_parents(document);
     std::vector<int> reached;
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
         if (parents[static_cast<std::size_t>(node)] < 0) {
@@ -60,7 +75,9 @@ void check_hierarchy(const tinygltf::Model& model) {
         const int node = reached.back();
         reached.pop_back();
         below_a_root[static_cast<std::size_t>(node)] = true;
-        std::ranges::copy(node_at(model, node).children, std::back_inserter(reached));
+        for (const Json& child : children_of(document, node)) {
+            reached.push_back(child.get<int>());
+        }
     }
     if (const auto lost = std::ranges::find(below_a_root, false); lost != below_a_root.end()) {
         throw SceneError(
@@ -68,7 +85,7 @@ void check_hierarchy(const tinygltf::Model& model) {
     }
 
     std::vector<bool> listed(parents.size(), false);
-    for (const int node : default_scene(model).nodes) {
+    for (const int node : default_scene(document.model).nodes) {
         const auto i = static_cast<std::size_t>(node);
         if (parents[i] >= 0) {
             throw SceneError(fmt::format("node {} is a root of the scene but has a parent", node));
@@ -77,6 +94,13 @@ void check_hierarchy(const tinygltf::Model& model) {
             throw SceneError(fmt::format("node {} is a root of the scene twice", node));
         }
         listed[i] = true;
+    }
+}
+
+template <class Vector>
+void assign(Vector& vector, const Json& numbers) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        vector[static_cast<typename Vector::length_type>(i)] = numbers[i].get<float>();
     }
 }
 
@@ -98,10 +122,10 @@ bool is_finite(const Transform& transform) {
            finite(transform.rotation.z);
 }
 
-std::vector<Transform> read_matrix(const std::vector<double>& numbers) {
+std::vector<Transform> read_matrix(const Json& numbers) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) {
-        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)];
+        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)].get<double>();
     }
     if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
         throw SceneError("its matrix does not end in a row of 0 0 0 1");
@@ -109,14 +133,16 @@ std::vector<Transform> read_matrix(const std::vector<double>& numbers) {
     return decompose(matrix);
 }
 
-Transform read_translation_rotation_scale(const tinygltf::Node& node) {
+Transform read_translation_rotation_scale(const Json& node) {
     Transform transform;
-    assign(transform.translation, node.translation);
-    assign(transform.scale, node.scale);
-    if (node.rotation.empty()) {
+    assign(transform.translation, array_of(node, "translation"));
+    assign(transform.scale, array_of(node, "scale"));
+    const Json& numbers = array_of(node, "rotation");
+    if (numbers.empty()) {
         return transform;
     }
-    const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    const auto part = [&](std::size_t i) { return numbers[i].get<double>(); };
+    const glm::dquat rotation(part(3), part(0), part(1), part(2));
     const double length = glm::length(rotation);
     if (length == 0.0) {
         throw SceneError("its rotation is zero");
@@ -126,11 +152,11 @@ Transform read_translation_rotation_scale(const tinygltf::Node& node) {
 }
 
 /// Outermost first; more than one if the node is sheared.
-std::vector<Transform> read_transforms(const tinygltf::Node& node, int index) {
+std::vector<Transform> read_transforms(const Json& node, int index) {
     try {
-        std::vector<Transform> transforms = node.matrix.empty()
-                                                ? std::vector{read_translation_rotation_scale(node)}
-                                                : read_matrix(node.matrix);
+        const Json& matrix = array_of(node, "matrix");
+        std::vector<Transform> transforms =
+            matrix.empty() ? std::vector{read_translation_rotation_scale(node)} : read_matrix(matrix);
         if (!std::ranges::all_of(transforms, is_finite)) {
             throw SceneError("its transform overflows");
         }
@@ -180,7 +206,9 @@ bool casts_shadow(const tinygltf::Light& source) {
 
 decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int index) {
     glm::vec3 colour(1.0F);
-    assign(colour, source.color);
+    for (std::size_t i = 0; i < source.color.size(); ++i) {
+        colour[static_cast<glm::length_t>(i)] = static_cast<float>(source.color[i]);
+    }
     const auto intensity = static_cast<float>(source.intensity);
     const float range =
         source.range > 0.0 ? static_cast<float>(source.range) : std::numeric_limits<float>::infinity();
@@ -192,7 +220,7 @@ decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int inde
         return PointLight{colour, intensity, range, casts_shadow(source)};
     }
     if (source.type != "spot") {
-        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, source.type));
+        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(source.type)));
     }
     SpotLight light = read_cones(source.spot, index);
     light.colour = colour;
@@ -202,23 +230,29 @@ decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int inde
     return light;
 }
 
+/// An index that the node holds; -1 for none.
+int index_of(const Json& node, const char* member) {
+    return node.value(member, -1);
+}
+
 /// Index of the node's light; -1 for none.
-int light_of(const tinygltf::Node& node) {
-    const auto extension = node.extensions.find(lights_extension);
-    return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
+int light_of(const Json& node) {
+    static const Json::json_pointer light(fmt::format("/extensions/{}/light", lights_extension));
+    return node.contains(light) ? node.at(light).get<int>() : -1;
 }
 
 std::string name_of(const Document& document, int index) {
-    const tinygltf::Model& model = document.model;
-    const tinygltf::Node& node = node_at(model, index);
-    if (document.node_has_name[static_cast<std::size_t>(index)]) {
-        return node.name;
+    const Json& node = node_at(document, index);
+    if (node.contains("name")) {
+        return node.at("name").get<std::string>();
     }
     const auto name_in = [](const auto& list, int i) {
         return i < 0 ? std::string() : list[static_cast<std::size_t>(i)].name;
     };
-    for (std::string name : {name_in(model.cameras, node.camera), name_in(model.lights, light_of(node)),
-                             name_in(model.meshes, node.mesh)}) {
+    const tinygltf::Model& model = document.model;
+    for (std::string name :
+         {name_in(model.cameras, index_of(node, "camera")), name_in(model.lights, light_of(node)),
+          name_in(model.meshes, index_of(node, "mesh"))}) {
         if (!name.empty()) {
             return name;
         }
@@ -227,23 +261,15 @@ std::string name_of(const Document& document, int index) {
 }
 
 /// Adds the node's mesh, camera and light to its (innermost) entity.
-void equip(StagedEntity& entity, const tinygltf::Model& model, int index,
-           const std::vector<std::shared_ptr<const Mesh>>& meshes) {
-    const tinygltf::Node& node = node_at(model, index);
-    if (node.mesh >= 0) {
-        entity.mesh = meshes[static_cast<std::size_t>(node.mesh)];
-    }
-    if (node.camera >= 0) {
-        entity.camera = read_camera(model.cameras[static_cast<std::size_t>(node.camera)], node.camera);
+void equip(StagedEntity& entity, const Document& document, const Json& node) {
+    const tinygltf::Model& model = document.model;
+    entity.mesh = index_of(node, "mesh");
+    if (const int camera = index_of(node, "camera"); camera >= 0) {
+        entity.camera = read_camera(model.cameras[static_cast<std::size_t>(camera)], camera);
     }
     if (const int light = light_of(node); light >= 0) {
         entity.light = read_light(model.lights[static_cast<std::size_t>(light)], light);
     }
-}
-
-/// Pushes the nodes onto the stack `ahead` so that the first of them is visited next.
-void put_ahead(const std::vector<int>& nodes, std::optional<std::size_t> parent, std::vector<Visit>& ahead) {
-    std::for_each(nodes.rbegin(), nodes.rend(), [&](int node) { ahead.push_back({node, parent}); });
 }
 
 }  // namespace
@@ -255,25 +281,32 @@ const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
     return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
 }
 
-std::vector<StagedEntity> read_nodes(const Document& document,
-                                     const std::vector<std::shared_ptr<const Mesh>>& meshes) {
-    const tinygltf::Model& model = document.model;
-    check_hierarchy(model);
+std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
+                                     const Progress& progress) {
+    check_hierarchy(document);
     std::vector<StagedEntity> entities;
-    std::vector<Visit> ahead;
-    put_ahead(default_scene(model).nodes, {}, ahead);
+    std::vector<Visit> ahead;  // the next one last
+    const std::vector<int>& roots = default_scene(document.model).nodes;
+    std::for_each(roots.rbegin(), roots.rend(), [&](int node) { ahead.push_back({node, 1, {}}); });
     while (!ahead.empty()) {
-        auto [node, parent] = ahead.back();
+        auto [node, level, parent] = ahead.back();
         ahead.pop_back();
-        for (const Transform& transform : read_transforms(node_at(model, node), node)) {
+        budget.check_depth(level);
+        if (entities.size() % 4096 == 0) {
+            progress("reading nodes", entities.size(), document.nodes.size());
+        }
+        for (const Transform& transform : read_transforms(node_at(document, node), node)) {
             StagedEntity& entity = entities.emplace_back();
             entity.parent = parent;
             entity.name = name_of(document, node);
             entity.transform = transform;
             parent = entities.size() - 1;
         }
-        equip(entities.back(), model, node, meshes);
-        put_ahead(node_at(model, node).children, parent, ahead);
+        equip(entities.back(), document, node_at(document, node));
+        const Json& children = children_of(document, node);
+        for (std::size_t i = children.size(); i-- > 0;) {
+            ahead.push_back({children[i].get<int>(), level + 1, parent});
+        }
     }
     return entities;
 }

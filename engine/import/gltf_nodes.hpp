@@ -1,16 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include <tiny_gltf.h>
-
 #include <candela/scene/components.hpp>
 #include "engine/import/gltf_document.hpp"
+#include "engine/import/progress.hpp"
 
 namespace candela::gltf {
 
@@ -19,7 +17,7 @@ struct StagedEntity {
     std::optional<std::size_t> parent;
     std::string name;
     Transform transform;  ///< `parent` is null
-    std::shared_ptr<const Mesh> mesh;
+    int mesh = -1;        ///< index into the document's meshes; -1 for none
     std::variant<std::monostate, PointLight, SpotLight, DirectionalLight> light;
     std::optional<Camera> camera;
 };
@@ -33,7 +31,7 @@ struct StagedEntity {
 /// `node N`.
 /// Throws SceneError, which names the node, camera or light and the problem, such as two parents, a cycle or
 /// no scene.
-[[nodiscard]] std::vector<StagedEntity> read_nodes(const Document& document,
-                                                   const std::vector<std::shared_ptr<const Mesh>>& meshes);
+[[nodiscard]] std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
+                                                   const Progress& progress);
 
 }  // namespace candela::gltf

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
@@ -133,7 +134,8 @@ Check version() {
             return "is not a string";
         }
         const auto& number = value.get_ref<const std::string&>();
-        return number.starts_with("2.") ? Problem{} : fmt::format("is \"{}\"; only 2.0 is read", number);
+        return number.starts_with("2.") ? Problem{}
+                                        : fmt::format("is \"{}\"; only 2.0 is read", readable(number));
     };
 }
 
@@ -144,7 +146,8 @@ Check one_of(std::vector<std::string_view> names) {
         }
         const auto& name = value.get_ref<const std::string&>();
         const bool known = std::ranges::find(names, name) != names.end();
-        return known ? Problem{} : fmt::format("is \"{}\", not one of {}", name, fmt::join(names, ", "));
+        return known ? Problem{}
+                     : fmt::format("is \"{}\", not one of {}", readable(name), fmt::join(names, ", "));
     };
 }
 
@@ -302,12 +305,30 @@ std::vector<Rule> rules() {
     };
 }
 
+/// Where a value is in the document. Names are made only for messages: there may be millions of values.
+struct Place {
+    const Place* parent = nullptr;  // null for the document
+    std::string_view member{};      // empty for an item of an array
+    std::size_t item = 0;
+
+    [[nodiscard]] std::string name() const {
+        if (!parent) {
+            return {};
+        }
+        const std::string before = parent->name();
+        if (member.empty()) {
+            return fmt::format("{}[{}]", before, item);
+        }
+        return before.empty() ? readable(member) : fmt::format("{}.{}", before, readable(member));
+    }
+};
+
 /// Applies the rule's check to each value that `path`, the rest of the rule's path, leads to from `value`.
-void apply(const Rule& rule, std::string_view path, const Json& value, const std::string& name,
+void apply(const Rule& rule, std::string_view path, const Json& value, const Place& place,
            const Json& document) {
     if (path.empty()) {
         if (const Problem error = rule.check(value, document)) {
-            throw SceneError(name + ' ' + *error);
+            throw SceneError(place.name() + ' ' + *error);
         }
         return;
     }
@@ -317,19 +338,18 @@ void apply(const Rule& rule, std::string_view path, const Json& value, const std
 
     const bool items = step == "[]";
     if (items != value.is_array() || (!items && !value.is_object())) {
-        throw SceneError(fmt::format("{} is not an {}", name, items ? "array" : "object"));
+        throw SceneError(fmt::format("{} is not an {}", place.name(), items ? "array" : "object"));
     }
     if (items) {
         for (std::size_t i = 0; i < value.size(); ++i) {
-            apply(rule, rest, value[i], fmt::format("{}[{}]", name, i), document);
+            apply(rule, rest, value[i], {.parent = &place, .item = i}, document);
         }
     } else if (step == "{}") {
         for (const auto& [key, member] : value.items()) {
-            apply(rule, rest, member, fmt::format("{}.{}", name, key), document);
+            apply(rule, rest, member, {.parent = &place, .member = key}, document);
         }
     } else if (const auto member = value.find(step); member != value.end()) {
-        apply(rule, rest, *member, name.empty() ? std::string(step) : fmt::format("{}.{}", name, step),
-              document);
+        apply(rule, rest, *member, {.parent = &place, .member = step}, document);
     }
 }
 
@@ -343,7 +363,7 @@ void check_schema(const Json& document) {
         throw SceneError("it has no \"asset\", so it is not glTF 2.0");
     }
     for (const Rule& rule : rules()) {
-        apply(rule, rule.path, document, {}, document);
+        apply(rule, rule.path, document, Place{}, document);
     }
 }
 

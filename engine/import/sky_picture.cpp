@@ -12,7 +12,7 @@
 #include <stb/stb_image.h>
 #include <tinyexr.h>
 
-#include "engine/import/gltf_document.hpp"
+#include "engine/import/import_files.hpp"
 #include "engine/import/sky_picture_size.hpp"
 #include "engine/scene/check.hpp"
 
@@ -39,19 +39,30 @@ SkyPicture to_picture(int width, int height, const Texels& texels, std::size_t c
     return picture;
 }
 
-SkyPicture read_hdr(gltf::Bytes bytes) {
+bool is_exr(gltf::Bytes bytes) {
+    return gltf::starts_with(bytes, "\x76\x2f\x31\x01");
+}
+
+PictureSize hdr_size(gltf::Bytes bytes) {
     if (bytes.size() > std::numeric_limits<int>::max()) {
         throw SceneError("it exceeds 2 GiB");
     }
-    const int size = static_cast<int>(bytes.size());
     int width = 0;
     int height = 0;
     int channels = 0;
-    if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
+    if (stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels) ==
+        0) {
         throw SceneError("it is not a readable Radiance picture");
     }
-    check_sky_size(width, height);
-    const Texels texels(stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3));
+    return {width, height};
+}
+
+SkyPicture read_hdr(gltf::Bytes bytes) {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    const Texels texels(
+        stbi_loadf_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 3));
     if (texels == nullptr) {
         throw SceneError(fmt::format("it cannot be decoded: {}", stbi_failure_reason()));
     }
@@ -69,7 +80,7 @@ void check_exr(int result, const char* message) {
     throw SceneError(fmt::format("it is not a readable OpenEXR picture: {}", reason));
 }
 
-SkyPicture read_exr(gltf::Bytes bytes) {
+PictureSize exr_size(gltf::Bytes bytes) {
     EXRVersion version{};
     check_exr(ParseEXRVersionFromMemory(&version, bytes.data(), bytes.size()), nullptr);
     EXRHeader header{};
@@ -78,7 +89,11 @@ SkyPicture read_exr(gltf::Bytes bytes) {
     check_exr(ParseEXRHeaderFromMemory(&header, &version, bytes.data(), bytes.size(), &message), message);
     const EXRBox2i window = header.data_window;
     FreeEXRHeader(&header);
-    check_sky_size(window.max_x - window.min_x + 1, window.max_y - window.min_y + 1);
+    return {std::int64_t{window.max_x} - window.min_x + 1, std::int64_t{window.max_y} - window.min_y + 1};
+}
+
+SkyPicture read_exr(gltf::Bytes bytes) {
+    const char* message = nullptr;
     float* loaded = nullptr;
     int width = 0;
     int height = 0;
@@ -107,19 +122,24 @@ void check_sky_size(std::int64_t width, std::int64_t height) {
     }
 }
 
+PictureSize sky_picture_size(gltf::Bytes bytes) {
+    if (!is_exr(bytes) && !gltf::starts_with(bytes, "#?")) {
+        throw SceneError("it is neither a Radiance (.hdr) nor an OpenEXR (.exr) picture");
+    }
+    const PictureSize size = is_exr(bytes) ? exr_size(bytes) : hdr_size(bytes);
+    check_sky_size(size.width, size.height);
+    return size;
+}
+
 std::shared_ptr<const SkyPicture> decode_sky_picture(gltf::Bytes bytes) {
-    if (gltf::starts_with(bytes, "\x76\x2f\x31\x01")) {
-        return checked(read_exr(bytes));
-    }
-    if (gltf::starts_with(bytes, "#?")) {
-        return checked(read_hdr(bytes));
-    }
-    throw SceneError("it is neither a Radiance (.hdr) nor an OpenEXR (.exr) picture");
+    static_cast<void>(sky_picture_size(bytes));  // checks it
+    return checked(is_exr(bytes) ? read_exr(bytes) : read_hdr(bytes));
 }
 
 std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path) {
     try {
-        return decode_sky_picture(gltf::read_file(path, "the file"));
+        gltf::ImportBudget budget({});
+        return decode_sky_picture(gltf::read_file(path, "the file", budget));
     } catch (const std::bad_alloc&) {
         throw SceneError(fmt::format("{}: it does not fit into memory", path.string()));
     } catch (const std::exception& error) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -53,9 +55,10 @@ inline std::string resource_name(std::size_t resource) {
     return "r" + std::to_string(resource);
 }
 
-inline std::size_t choose(std::size_t count) {
+/// A number below `count`: rapidcheck's, unless a fuzzer provides the choices.
+inline std::function<std::size_t(std::size_t)> choose = [](std::size_t count) {
     return *rc::gen::inRange<std::size_t>(0, count);
-}
+};
 inline bool one_in(std::size_t count) {
     return choose(count) == 0;
 }

@@ -81,7 +81,7 @@ TEST_SUITE("malformed glTF") {
     TEST_CASE("accessors and buffer views that do not fit") {
         check({
             {"/accessors/1/byteOffset", "2", "mesh 0: accessor 1 reads past the end of buffer view 1"},
-            {"/accessors/1/count", "4", "mesh 0: accessor 1 reads past the end of buffer view 1"},
+            {"/accessors/1/count", "6", "mesh 0: accessor 1 reads past the end of buffer view 1"},
             {"/accessors/0/count", "4000000000", "mesh 0: accessor 0 reads past the end of buffer view 0"},
             {"/accessors/0/count", "18446744073709551615",
              "accessors[0].count is 18446744073709551615, which is out of range"},
@@ -110,8 +110,7 @@ TEST_SUITE("malformed glTF") {
             {"/accessors/0/sparse/indices/componentType", "5126",
              "mesh 0: accessor 0 has sparse indices that are not unsigned integers"},
             {"/accessors/0/sparse/indices/bufferView", "5",
-             "mesh 0: accessor 0 has a sparse index"
-             " 1073741824, but 3 elements"},
+             "mesh 0: accessor 0 has a sparse index out of its 3 elements"},
         });
     }
 
@@ -119,9 +118,15 @@ TEST_SUITE("malformed glTF") {
         GltfBuilder file = complete_scene();
         file.document["accessors"][0].erase("bufferView");
         file.document["accessors"][0]["count"] = 4'000'000'000;
-        CHECK(error_of(file) == fmt::format("mesh 0: accessor 0 has no buffer view but 4000000000 elements, "
-                                            "more than the {} bytes of data",
-                                            file.data.size()));
+        file.primitive()["attributes"].erase("NORMAL");
+        CHECK(error_of(file) == "mesh 0: it has 4000000000 positions, but 3 texture coordinates");
+        file.primitive().erase("indices");
+        CHECK(error_of(file) ==
+              "mesh 0: it has 4000000000 indices or vertices, which make no whole number of triangles");
+        file.document["accessors"][0]["count"] = 3'999'999'999;
+        CHECK(error_of(file) ==
+              "mesh 0: the triangles of its meshes are 1,333,333,333, above the limit of 16,777,216 "
+              "(triangles)");
     }
 
     TEST_CASE("types that geometry cannot have") {
@@ -157,7 +162,7 @@ TEST_SUITE("malformed glTF") {
     TEST_CASE("an index beyond the vertices") {
         GltfBuilder file = right_triangle();
         file.primitive()["indices"] = file.add_indices({0, 1, 3});
-        CHECK(error_of(file) == "mesh 0: accessor 1 has index 3, but there are 3 vertices");
+        CHECK(error_of(file) == "mesh 0: accessor 1 has an index beyond the 3 vertices in element 2");
     }
 
     TEST_CASE("four vertices without indices") {
@@ -339,8 +344,7 @@ TEST_SUITE("malformed glTF") {
         };
         CHECK(with_buffer({{"byteLength", 36}, {"uri", "nowhere.bin"}}) ==
               "buffer 0: nowhere.bin does not exist");
-        CHECK(with_buffer({{"byteLength", 36}, {"uri", "/"}}) == "buffer 0: / is not a file");
-        CHECK(with_buffer({{"byteLength", 36}, {"uri", "/dev/zero"}}) == "buffer 0: /dev/zero is not a file");
+        CHECK(with_buffer({{"byteLength", 36}, {"uri", "."}}) == "buffer 0: . is not a file");
         CHECK(with_buffer({{"byteLength", 36}}) == "buffer 0: it has neither a \"uri\" nor a binary chunk");
         CHECK(with_buffer({{"byteLength", 37},
                            {"uri", "data:application/octet-stream;base64," + base64(file.data)}}) ==

@@ -9,22 +9,23 @@ namespace candela::study {
 namespace {
 
 /// Adds the length first, so that moving bytes from one content to the next changes the hash.
-std::uint64_t add(std::uint64_t state, const std::vector<unsigned char>& content) {
+std::uint64_t add(std::uint64_t state, gltf::Bytes content) {
     state = fnv1a(fmt::format("{};", content.size()), state);
     return fnv1a({reinterpret_cast<const char*>(content.data()), content.size()}, state);
 }
 
 std::uint64_t hash_contents(const std::filesystem::path& scene) {
-    const std::vector<unsigned char> bytes = gltf::read_file(scene, "the file");
-    const std::filesystem::path folder = scene.parent_path();
-    const gltf::Document document = gltf::read_document(bytes, folder);
+    gltf::ImportBudget budget({});
+    const std::vector<unsigned char> bytes = gltf::read_file(scene, "the file", budget);
+    gltf::ImportFiles files(scene.parent_path(), scene.parent_path(), budget);
+    const gltf::Document document = gltf::read_document(bytes, files, budget);
     std::uint64_t state = add(fnv1a_basis, bytes);
-    for (const tinygltf::Buffer& buffer : document.model.buffers) {
-        state = add(state, buffer.data);
+    for (const gltf::Buffer& buffer : document.buffers) {
+        state = add(state, buffer.bytes);
     }
     for (const tinygltf::Image& image : document.model.images) {
         if (!image.uri.empty()) {
-            state = add(state, gltf::read_uri(image.uri, folder));
+            state = add(state, *files.read(image.uri));
         }
     }
     return state;

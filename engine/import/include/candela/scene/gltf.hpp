@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,10 +23,46 @@ struct ImportReport {
     std::vector<std::string> warnings;  ///< what the import has left out, one line each
 };
 
+/// Upper limits of an import, so that a small hostile file cannot use up memory or time. What exceeds one is
+/// refused before memory is allocated for it, with a message that names the limit.
+struct ImportLimits {
+    std::uint64_t bytes = std::uint64_t{2} << 30U;  ///< of all files together, the scene's own included
+    /// Memory for everything but pixels, as a multiple of the bytes of all files. 64 MiB are always allowed.
+    std::uint64_t growth = 32;
+    std::uint64_t image_pixels = std::uint64_t{1} << 26U;  ///< of one image, or of the picture of the sky
+    std::uint64_t pixels = std::uint64_t{1} << 28U;        ///< of all of them; each image is decoded once
+    std::uint64_t nodes = std::uint64_t{1} << 22U;         ///< of the document
+    std::uint64_t depth = std::uint64_t{1} << 20U;         ///< levels of the hierarchy of nodes
+    std::uint64_t triangles = std::uint64_t{1} << 24U;     ///< of all meshes; instances do not count
+};
+
+/// How far an import is.
+struct ImportProgress {
+    std::string_view doing;  ///< for example "reading meshes"; has static storage duration
+    double share = 0.0;      ///< of that which is done, from 0 to 1
+};
+
+/// Thrown by an import whose `progress` has asked it to stop. The world is unchanged.
+class CANDELA_API ImportCancelled : public Error {
+ public:
+    using Error::Error;
+};
+
+struct ImportOptions {
+    ImportLimits limits;
+    /// Only files in this folder, or below it, are read; links are followed first. Empty: the folder of the
+    /// scene's file. "/" allows all files.
+    std::filesystem::path root;
+    /// Called between parts of the work, on the same thread. If it returns false, the import ends with
+    /// ImportCancelled.
+    std::function<bool(const ImportProgress&)> progress;
+};
+
 /// Adds the default scene of a glTF 2.0 file, .gltf or .glb, to the world. Each node becomes an entity with
 /// Name and Transform and, if the node has them, MeshInstance, one of the lights, and Camera. Meshes,
 /// materials and images are shared between instances. Buffers and images may be embedded or in files relative
-/// to this one; images are PNG or JPEG, reduced to 8 bits per channel.
+/// to this one, within `options.root`; images are PNG or JPEG, reduced to 8 bits per channel. Meshes,
+/// materials and images that the scene does not use are not read.
 ///
 /// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
 /// surface emits its base colour, without that of its vertices), KHR_texture_transform, and
@@ -37,13 +74,14 @@ struct ImportReport {
 /// with a sheared matrix, which a Transform cannot represent, becomes two entities, one the parent of the
 /// other (see decompose).
 ///
-/// Throws SceneError, whose message is one line that names the file, the object and the problem. The world is
-/// then unchanged.
-CANDELA_API ImportReport import_gltf(const std::filesystem::path& path, World& into);
+/// Throws SceneError, whose message is one line that names the file, the object and the problem, or
+/// ImportCancelled. The world is then unchanged. Messages contain nothing of other files than this one.
+CANDELA_API ImportReport import_gltf(const std::filesystem::path& path, World& into,
+                                     const ImportOptions& options = {});
 
 /// The same from memory. `name` is the file's name in messages; URIs are relative to `base_directory`.
 CANDELA_API ImportReport import_gltf(std::span<const unsigned char> bytes,
                                      const std::filesystem::path& base_directory, std::string_view name,
-                                     World& into);
+                                     World& into, const ImportOptions& options = {});
 
 }  // namespace candela
