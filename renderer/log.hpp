@@ -1,25 +1,49 @@
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "engine/readable.hpp"
+
 namespace candela {
 
-/// Passes warnings on to the host, each line once. Without a receiver, it does nothing.
+/// Passes warnings on to the host, each line once. Without a receiver, it does nothing. Of warnings of the
+/// same kind, which differ in what they are about, the first ten are passed on, and the tenth says so.
 class Log {
  public:
     using Receiver = std::function<void(std::string_view line)>;
 
     explicit Log(Receiver receiver) : receiver_(std::move(receiver)) {}
 
-    /// Line breaks and other control characters in `line` become spaces.
-    void warn(std::string line) {
-        std::ranges::replace_if(
-            line, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    void warn(std::string_view line) { pass_on(readable(line, longest_line)); }
+
+    /// A warning about one of many things: "entity 3: left out, because ..." is of the kind "left out,
+    /// because ...".
+    void warn(std::string_view what, std::string_view kind) {
+        const std::string line = fmt::format("{}: {}", readable(what), readable(kind, longest_line));
+        if (known_.contains(line)) {
+            return;
+        }
+        std::size_t& count = kinds_[readable(kind, longest_line)];
+        if (count < most_of_a_kind) {
+            ++count;
+            pass_on(count < most_of_a_kind ? line : line + " (further warnings of this kind are not shown)");
+            known_.insert(line);
+        }
+    }
+
+ private:
+    static constexpr std::size_t longest_line = 2000;
+    static constexpr std::size_t most_of_a_kind = 10;
+
+    void pass_on(std::string line) {
         line.erase(line.find_last_not_of(' ') + 1);
         const auto [known, is_new] = known_.insert(std::move(line));
         if (receiver_ && is_new) {
@@ -27,9 +51,9 @@ class Log {
         }
     }
 
- private:
     Receiver receiver_;
     std::unordered_set<std::string> known_;
+    std::map<std::string, std::size_t> kinds_;  // how many of each have been passed on
 };
 
 }  // namespace candela

@@ -46,6 +46,18 @@ bool SceneCheck::accepts(const World& world, Entity entity, const MeshInstance& 
            judge(world, entity, component_name<DeformedMesh>(), fault_in(*deformed, *instance.mesh));
 }
 
+bool SceneCheck::accepts_at(const World& world, Entity entity, const MeshInstance& instance,
+                            const glm::mat4& matrix) {
+    if (!accepts_at(world, entity, matrix)) {
+        return false;
+    }
+    Finding& finding = findings_.at(instance.mesh.get());
+    if (!finding.reach) {
+        finding.reach = reach_of(*instance.mesh);
+    }
+    return judge(world, entity, {}, fault_of_extent(matrix, *finding.reach));
+}
+
 Fault SceneCheck::fault_in(const Environment& environment) {
     Fault fault = fault_of(environment);
     if (fault || !environment.picture) {
@@ -70,7 +82,7 @@ bool SceneCheck::judge(const World& world, Entity entity, std::string_view part,
     if (strictness_ == Strictness::strict) {
         throw SceneError(fmt::format("{}: {}", whose, *fault));
     }
-    log_->warn(fmt::format("{}: left out, because {}", whose, *fault));
+    log_->warn(whose, fmt::format("left out, because {}", *fault));
     return false;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 
@@ -34,12 +35,16 @@ class SceneCheck {
     [[nodiscard]] bool accepts_at(const World& world, Entity entity, const glm::mat4& matrix) {
         return judge(world, entity, {}, fault_of(matrix));
     }
+    /// The same for a MeshInstance, which has been accepted.
+    [[nodiscard]] bool accepts_at(const World& world, Entity entity, const MeshInstance& instance,
+                                  const glm::mat4& matrix);
 
  private:
     /// What was found in a mesh, vertices or a picture; void if that no longer exists.
     struct Finding {
         std::weak_ptr<const void> of;
         Fault fault;
+        std::optional<float> reach{};  // of a mesh: see reach_of; nullopt if it was not needed yet
     };
 
     template <class Light>

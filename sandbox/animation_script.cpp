@@ -1,5 +1,6 @@
 #include "sandbox/animation_script.hpp"
 #include "engine/json_fault.hpp"
+#include "engine/readable.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,7 @@ void check_object(const Json& json, const std::string& place, std::initializer_l
     if (!json.is_object()) fail(place, "is not an object");
     for (const auto& [member, value] : json.items()) {
         if (std::find(known.begin(), known.end(), member) == known.end())
-            fail(member_of(place, member), "is unknown");
+            fail(member_of(place, readable(member)), "is unknown");
     }
 }
 
@@ -190,7 +191,7 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
         tracks.push_back(read_track(track, place, frames));
         const std::string& node = tracks.back().node;
         if (!nodes.insert(node).second)
-            fail(member_of(place, "node"), fmt::format("'{}' has a track already", node));
+            fail(member_of(place, "node"), fmt::format("'{}' has a track already", readable(node)));
     }
     return tracks;
 }
@@ -199,7 +200,7 @@ Json parse(std::string_view text) {
     try {
         return Json::parse(text);
     } catch (const Json::exception& error) {
-        throw std::runtime_error(json_fault(error));
+        throw std::runtime_error(readable(json_fault(error)));
     }
 }
 

@@ -65,6 +65,7 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
         run.frames.push_back(std::move(captured.frame));
         run.state = std::move(captured.state);
         if (out && is_written(*out, frame, frames)) capture.write(numbered(*out, frame), picture);
+        check_finite(picture, frame);
     }
     run.environment = environment_of(scene.world);
     write_documents(options, run, renderer);

@@ -21,7 +21,8 @@ namespace candela::sandbox {
 
 /// Renders the frames, applies the scene's animation, writes what the options ask for and prints a table of
 /// the last frame. `context` must be current. Throws std::runtime_error for outputs that cannot be written,
-/// gl::GlError for unsupported sizes, and EnergyError if the light of the last frame does not add up.
+/// gl::GlError for unsupported sizes, and PictureError if a picture is not finite or if the light of the last
+/// frame does not add up.
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size);
 

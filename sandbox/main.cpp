@@ -1,19 +1,31 @@
 #include <cstdio>
 #include <variant>
 
-#include <fmt/format.h>
-
 #include "sandbox/live_reference.hpp"
 #include "sandbox/options.hpp"
 #include "sandbox/session.hpp"
 
 using namespace candela::sandbox;
 
-int main(int count, char** arguments) {
+namespace {
+
+int run_app(int count, char** arguments) {
     const auto parsed = parse_options(count, arguments);
     if (const auto* exit = std::get_if<EarlyExit>(&parsed)) {
-        fmt::print(exit->status == 0 ? stdout : stderr, "{}", exit->text);
+        std::fputs(exit->text.c_str(), exit->status == 0 ? stdout : stderr);
         return exit->status;
     }
     return run(std::get<Options>(parsed), make_live_reference);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const int status = run_app(count, arguments);
+    const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+    if (status == 0 && !is_written) {
+        std::fputs("candela: the output cannot be written\n", stderr);
+        return 2;
+    }
+    return status;
 }

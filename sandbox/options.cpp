@@ -17,6 +17,7 @@
 #include <candela/version.hpp>
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/files/output_file.hpp"
+#include "sandbox/scene.hpp"
 
 namespace candela::sandbox {
 
@@ -83,6 +84,39 @@ glm::ivec2 parse_size(const std::string& text) {
     fail("--size", text, fmt::format("is no size from 1x1 to {0}x{0}", largest_side));
 }
 
+struct NamedLimit {
+    std::string_view name;
+    std::uint64_t ImportLimits::*limit;
+};
+constexpr std::array limits{NamedLimit{"bytes", &ImportLimits::bytes},
+                            NamedLimit{"growth", &ImportLimits::growth},
+                            NamedLimit{"image_pixels", &ImportLimits::image_pixels},
+                            NamedLimit{"pixels", &ImportLimits::pixels},
+                            NamedLimit{"nodes", &ImportLimits::nodes},
+                            NamedLimit{"depth", &ImportLimits::depth},
+                            NamedLimit{"triangles", &ImportLimits::triangles}};
+
+/// The limits with their defaults, as on the command line.
+std::string default_limits() {
+    std::vector<std::string> lines;
+    for (const NamedLimit& each : limits) {
+        lines.push_back(fmt::format("{}={}", each.name, ImportLimits{}.*each.limit));
+    }
+    return fmt::format("{}", fmt::join(lines, ", "));
+}
+
+/// "NAME=N".
+void set_limit(ImportLimits& target, const std::string& text) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const auto named = std::ranges::find(limits, std::string_view(text).substr(0, equals), &NamedLimit::name);
+    const std::string_view after = std::string_view(text).substr(std::min(equals + 1, text.size()));
+    const auto number = parse_number<std::uint64_t>(after, 0);
+    if (named == limits.end() || !number) {
+        fail("--limit", text, fmt::format("is not one of {}", default_limits()));
+    }
+    target.*(named->limit) = *number;
+}
+
 /// "R,G,B", or else the name of a file.
 SkyChoice parse_sky(const std::string& text) {
     std::vector<float> channels;
@@ -139,6 +173,14 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("SCENE", options.scene,
                    "default: the one that the script is for, else the shipped Cornell box")
         ->type_name("FILE.gltf|.glb");
+    app.add_flag("--confine", options.confine, "scenes may only name files in their own folder, or below it");
+    app.add_option_function<std::vector<std::string>>(
+           "--limit",
+           [&options](const std::vector<std::string>& given) {
+               for (const std::string& each : given) set_limit(options.limits, each);
+           },
+           "an upper limit of scenes, see ImportLimits; default: " + default_limits())
+        ->type_name("NAME=N");
     app.add_flag("--headless", options.headless, "no window: render, write, exit");
     add_choice<ContextChoice, ContextChoice>(app, "--context", options.context,
                                              {{"auto", ContextChoice::automatic},
@@ -245,6 +287,13 @@ std::variant<Options, EarlyExit> parse_options(int count, const char* const* arg
     } catch (const CLI::ParseError& error) {
         return EarlyExit{2, fmt::format("candela: {}\n", one_line(error.what()))};
     }
+}
+
+ImportOptions import_options(const Options& options) {
+    ImportOptions import = unconfined();
+    import.limits = options.limits;
+    if (options.confine) import.root.clear();
+    return import;
 }
 
 fs::path numbered(const fs::path& out, int frame) {

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 
 #include <candela/configuration.hpp>
+#include <candela/scene/gltf.hpp>
 #include "sandbox/environment.hpp"
 
 namespace candela::sandbox {
@@ -19,6 +20,8 @@ enum class ContextChoice : std::uint8_t { automatic, window, egl, osmesa };
 /// The command line. Options that a configuration file can also set are nullopt if not given, so that only
 /// flags that were given override the file.
 struct Options {
+    ImportLimits limits;   ///< of scenes
+    bool confine = false;  ///< scenes may only refer to files in their own folder, or below it
     std::optional<std::filesystem::path> scene;  ///< default: the script's, else the shipped Cornell box
     bool headless = false;                       ///< also set by a `context` without windows
     ContextChoice context = ContextChoice::automatic;
@@ -59,6 +62,9 @@ struct EarlyExit {
 /// Parses the command line; `arguments[0]` is the program. Of the files it checks only whether the
 /// configuration file and the folders of output files exist. Errors have exit status 2.
 [[nodiscard]] std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments);
+
+/// How scenes are imported.
+[[nodiscard]] ImportOptions import_options(const Options& options);
 
 /// The picture's file name for frame `frame`: every "%d" in the name is replaced by the number. Without "%d"
 /// all frames have the same name, and only the last one is written.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <candela/version.hpp>
+#include "sandbox/picture_error.hpp"
 
 namespace candela::sandbox {
 
@@ -143,6 +145,17 @@ double relative_residual(const EnergyAccount& flux) {
     return largest;
 }
 
+void check_finite(const Picture& picture, int frame) {
+    const auto is_finite = [](const glm::vec3& pixel) {
+        return std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b);
+    };
+    const auto wrong = std::ranges::count_if(picture.pixels, std::not_fn(is_finite));
+    if (wrong == 0) return;
+    const glm::ivec2 first = *first_not_finite(picture);
+    throw PictureError(fmt::format("frame {}: {} pixels are not finite, the first in column {} of row {}",
+                                   frame, wrong, first.x, first.y));
+}
+
 void check_energy(const std::string& scene, const Report& state) {
     // The account of surfels is only as accurate as they are dense: a residual with few surfels is not an
     // error.
@@ -150,7 +163,7 @@ void check_energy(const std::string& scene, const Report& state) {
     const double most = is_traced ? 0.01 : std::numeric_limits<double>::max();
     const double residual = state.vpls ? relative_residual(state.vpls->flux) : 0.0;
     if (residual > most)
-        throw EnergyError(
+        throw PictureError(
             fmt::format("{}: {:.3g} % of the emitted flux is unaccounted for: the picture is wrong", scene,
                         100.0 * residual));
 }

@@ -10,6 +10,7 @@
 
 #include <candela/renderer.hpp>
 #include <candela/scene/components.hpp>
+#include "sandbox/files/picture.hpp"
 
 namespace candela::sandbox {
 
@@ -35,12 +36,15 @@ struct RunReport {
 /// channels; infinite if a channel is not finite.
 [[nodiscard]] double relative_residual(const EnergyAccount& flux);
 
-/// The light in a picture does not add up.
-struct EnergyError : std::runtime_error {
+/// A picture was rendered, but is wrong: its light does not add up, or pixels are not finite.
+struct PictureError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Throws EnergyError, which names the scene, if more than 1 % of the emitted flux is unaccounted for. With
+/// Throws PictureError if the picture of this frame has pixels that are not finite.
+void check_finite(const Picture& picture, int frame);
+
+/// Throws PictureError, which names the scene, if more than 1 % of the emitted flux is unaccounted for. With
 /// surfels it throws only if the account is not finite.
 void check_energy(const std::string& scene, const Report& state);
 

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/ecs/world.hpp>
+#include <candela/scene/gltf.hpp>
 #include "sandbox/animation.hpp"
 
 namespace candela::sandbox {
@@ -31,8 +32,13 @@ struct Scene {
 /// The shipped scenes, sorted by name.
 [[nodiscard]] std::vector<std::filesystem::path> shipped_scenes();
 
-/// Imports a glTF file, without an animation. Throws SceneError that names the file and the error.
-[[nodiscard]] Scene load_scene(const std::filesystem::path& path);
+/// What the app allows files to be: all that its user may read.
+[[nodiscard]] ImportOptions unconfined();
+
+/// Imports a glTF file, without an animation. Throws SceneError that names the file and the error, and what
+/// import_gltf throws besides.
+[[nodiscard]] Scene load_scene(const std::filesystem::path& path,
+                               const ImportOptions& options = unconfined());
 
 /// Saves a world as .gltf or .glb so that load_scene opens the same. `of_app` are entities that the app has
 /// added for itself, such as the camera of its view: they are not saved. Returns what glTF cannot hold, one

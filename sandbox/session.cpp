@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include <candela/headless_context.hpp>
+#include "engine/readable.hpp"
 #include "sandbox/animation_script.hpp"
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/config_watch.hpp"
@@ -34,9 +36,8 @@ constexpr int wrong_picture = 4;
 constexpr glm::ivec2 window_size{1280, 720};
 constexpr glm::ivec2 headless_size{512, 512};
 
-/// Prints the exception's message on one line.
-int report_error(const std::exception& error, int status) {
-    std::string line = error.what();
+/// Prints the message on one line.
+int report_error(std::string line, int status) {
     for (char& c : line) c = c == '\n' ? ' ' : c;
     fmt::print(stderr, "candela: {}\n", line);
     return status;
@@ -104,12 +105,14 @@ float aspect(glm::ivec2 size) {
 
 /// The scene given by the options, else by the script, else the default scene; with the chosen sky and the
 /// script's animation.
-Scene open_scene(const Options& options) {
+Scene open_scene(const Options& options, const TellProgress& tell) {
     std::optional<Script> script;
     if (options.animate) script = load_script(*options.animate);
     const std::filesystem::path by_default =
         script ? scene_of(*script).value_or(default_scene()) : default_scene();
-    Scene scene = load_scene(options.scene.value_or(by_default));
+    ImportOptions import = import_options(options);
+    import.progress = tell;
+    Scene scene = load_scene(options.scene.value_or(by_default), import);
     if (options.environment) set_sky(scene, *options.environment);
     light_if_dark(scene);
     if (script) scene.animation.emplace(std::move(*script), scene.world);
@@ -129,10 +132,11 @@ void run_session(const Options& options, const MakeReference& make_reference) {
     if (const std::unique_ptr<Window> window =
             open_window(options, options.size.value_or(window_size), tried))
         return run_window(
-            *window, [&] { return open_scene(options); }, configuration, watch, options, make_reference);
+            *window, [&](const TellProgress& tell) { return open_scene(options, tell); }, configuration,
+            watch, options, make_reference);
     for (const std::string& error : tried) fmt::print(stderr, "candela: no window: {}\n", error);
-    Scene scene = open_scene(options);
-    for (const std::string& warning : scene.warnings) print_warning(warning);
+    Scene scene = open_scene(options, {});
+    for (const std::string& warning : first_ten(scene.warnings)) print_warning(warning);
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
@@ -147,11 +151,13 @@ int run(const Options& options, const MakeReference& make_reference) {
         run_session(options, make_reference);
         return 0;
     } catch (const ContextError& error) {
-        return report_error(error, no_driver);
-    } catch (const EnergyError& error) {
-        return report_error(error, wrong_picture);
+        return report_error(error.what(), no_driver);
+    } catch (const std::bad_alloc&) {
+        return report_error("out of memory", no_driver);
+    } catch (const PictureError& error) {
+        return report_error(error.what(), wrong_picture);
     } catch (const std::exception& error) {
-        return report_error(error, bad_input);
+        return report_error(error.what(), bad_input);
     }
 }
 

@@ -48,7 +48,7 @@ struct Light {
     float range;     // metres; may be infinite
     vec3 intensity;  // candela; directional: lux
     int shadow;      // index into the shadows, -1: none
-    vec2 shape;      // spot: scale and offset of the cone's falloff; directional: half extents of the footprint, metres
+    vec2 shape;      // spot: the cone's falloff is (y - (1 - cos) x)²; directional: half extents of the footprint, metres
     float cos_inner;
     float cos_outer;
 };

@@ -17,6 +17,12 @@ namespace {
 /// Of coordinates and scales. Squares of areas, as in the length of a cross product, must not overflow.
 constexpr float most = 1e9F;
 
+/// Of light in any unit. Its square times the area of a texel must not overflow, nor sums over all lights.
+constexpr float brightest = 1e32F;
+
+/// Radians. In a narrower cone, the rounding of directions would show.
+constexpr float narrowest_cone = 1e-4F;
+
 bool is_too_large(glm::vec3 vector) {
     return std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)}) > most;
 }
@@ -45,6 +51,13 @@ Fault negative_or_infinite(std::string_view what) {
     return fmt::format("{} is negative or not finite", what);
 }
 
+Fault too_bright(std::string_view what, glm::vec3 light) {
+    if (std::max({light.r, light.g, light.b}) > brightest) {
+        return fmt::format("{} is above {:g}", what, brightest);
+    }
+    return {};
+}
+
 Fault fault_of_light(glm::vec3 colour, std::string_view strength_name, float strength) {
     if (!is_amount(colour)) {
         return negative_or_infinite("the colour");
@@ -52,10 +65,7 @@ Fault fault_of_light(glm::vec3 colour, std::string_view strength_name, float str
     if (!is_amount(strength)) {
         return negative_or_infinite(fmt::format("the {}", strength_name));
     }
-    if (!is_amount(colour * strength)) {
-        return fmt::format("the product of colour and {} is not finite", strength_name);
-    }
-    return {};
+    return too_bright(fmt::format("the product of colour and {}", strength_name), colour * strength);
 }
 
 Fault fault_of_range(float range) {
@@ -83,6 +93,9 @@ Fault fault_of(const Material& material) {
     }
     if (!is_amount(material.emissive)) {
         return negative_or_infinite("the emission");
+    }
+    if (Fault fault = too_bright("the emission", material.emissive)) {
+        return fault;
     }
     if (!is_amount(material.alpha_cutoff, Limit::infinite)) {
         return "the alpha cutoff is negative or not a number";
@@ -254,8 +267,9 @@ Fault fault_of(const SpotLight& light) {
     if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {
         return negative_or_infinite("a cone");
     }
-    if (std::cos(light.outer_cone) >= 1.0F) {
-        return fmt::format("the outer cone of {} is too narrow", light.outer_cone);
+    if (light.outer_cone < narrowest_cone) {
+        return fmt::format("the outer cone of {} is narrower than {:g} radians", light.outer_cone,
+                           narrowest_cone);
     }
     return fault_of_range(light.range);
 }
@@ -267,6 +281,9 @@ Fault fault_of(const DirectionalLight& light) {
 Fault fault_of(const Environment& environment) {
     if (!is_amount(environment.radiance)) {
         return negative_or_infinite("the radiance");
+    }
+    if (Fault fault = too_bright("the radiance", environment.radiance)) {
+        return fault;
     }
     if (!std::isfinite(environment.rotation)) {
         return "the rotation is not finite";
@@ -286,6 +303,29 @@ Fault fault_of(const glm::mat4& world) {
         }
         if (column < 3 && is_too_large(world[column])) {
             return fmt::format("the world matrix scales by more than {:g}", most);
+        }
+    }
+    if (is_too_large(world[3])) {
+        return fmt::format("it is farther than {:g} metres from the origin", most);
+    }
+    return {};
+}
+
+float reach_of(const Mesh& mesh) {
+    float reach = 0.0F;
+    for (const Primitive& primitive : mesh.primitives) {
+        for (const Vertex& vertex : primitive.vertices) {
+            reach = std::max(reach, glm::length(vertex.position));
+        }
+    }
+    return reach;
+}
+
+Fault fault_of_extent(const glm::mat4& world, float reach) {
+    for (int row = 0; row < 3; ++row) {
+        const glm::vec3 scale(world[0][row], world[1][row], world[2][row]);
+        if (!(std::abs(world[3][row]) + glm::length(scale) * reach <= most)) {
+            return fmt::format("it reaches farther than {:g} metres from the origin", most);
         }
     }
     return {};

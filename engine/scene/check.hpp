@@ -38,5 +38,9 @@ enum class Strictness : std::uint8_t {
 [[nodiscard]] Fault fault_of(const Camera& camera);
 /// Of a local-to-world matrix.
 [[nodiscard]] Fault fault_of(const glm::mat4& world);
+/// Of a mesh whose vertices are at most `reach` metres from its origin, with this local-to-world matrix.
+[[nodiscard]] Fault fault_of_extent(const glm::mat4& world, float reach);
+/// The largest distance of a vertex from the origin of the mesh, metres.
+[[nodiscard]] float reach_of(const Mesh& mesh);
 
 }  // namespace candela

@@ -169,8 +169,9 @@ WorldContents contents_of(const World& world, SceneCheck& check) {
     };
     FrameContents& of_frame = contents.of_frame;
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
-        of_frame.emitters =
-            check.accepts(world, entity, instance) && emits(*instance.mesh) && is_placed(entity);
+        of_frame.emitters = check.accepts(world, entity, instance) && emits(*instance.mesh) &&
+                            is_placed(entity) &&
+                            check.accepts_at(world, entity, instance, world_matrices(entity));
         if (of_frame.emitters) {
             break;
         }

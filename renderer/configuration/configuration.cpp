@@ -8,8 +8,10 @@
 
 #include <set>
 #include <type_traits>
+#include <utility>
 
 #include "engine/json_fault.hpp"
+#include "engine/readable.hpp"
 
 namespace candela {
 namespace {
@@ -149,8 +151,10 @@ class Validator {
     }
     template <class T>
     void member(const char* name, const T& value, Range range) {
+        // In the value's own type, in which a limit such as 1e-6 may be rounded.
         const auto number = static_cast<double>(value);
-        if (number >= range.least && number <= range.most) {
+        const auto rounded = [](double limit) { return static_cast<double>(static_cast<T>(limit)); };
+        if (number >= rounded(range.least) && number <= rounded(range.most)) {
             return;
         }
         errors_->push_back(
@@ -163,6 +167,9 @@ class Validator {
 };
 
 class Reader {
+    using Json =
+        nlohmann::json;  // sorted by name: reading a member of an ordered object is linear in its size
+
  public:
     Reader(const Json& root, std::vector<std::string>& errors) : json_(&root), errors_(&errors) {}
 
@@ -194,7 +201,7 @@ class Reader {
     void report_unknown() {
         for (const auto& [name, value] : json_->items()) {
             if (!known_.contains(prefix_ + name)) {
-                error(name, "is unknown");
+                error(readable(name), "is unknown");
             }
         }
     }
@@ -261,7 +268,8 @@ class Reader {
 };
 
 /// Changes the members that `json` has.
-void read_members(const Json& json, Configuration& configuration, std::vector<std::string>& errors) {
+void read_members(const nlohmann::json& json, Configuration& configuration,
+                  std::vector<std::string>& errors) {
     if (!json.is_object()) {
         errors.emplace_back("not a JSON object");
         return;
@@ -277,10 +285,11 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     ConfigurationResult result;
     Configuration configuration = base;
     try {
-        read_members(Json::parse(text), configuration, result.errors);
+        read_members(nlohmann::json::parse(text), configuration, result.errors);
     } catch (const Json::exception& error) {
-        result.errors.push_back(json_fault(error));
+        result.errors.push_back(readable(json_fault(error)));
     }
+    result.errors = first_ten(std::move(result.errors));
     // Rejected members kept their old values; this adds errors that depend on several values.
     const std::vector<std::string> of_values = validate(configuration);
     result.errors.insert(result.errors.end(), of_values.begin(), of_values.end());

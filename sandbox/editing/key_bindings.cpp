@@ -47,7 +47,7 @@ constexpr std::array bindings{
     KeyBinding{GLFW_KEY_DOWN, 0, Action::nudge, "", ""},
     KeyBinding{GLFW_KEY_PAGE_UP, 0, Action::nudge, "", ""},
     KeyBinding{GLFW_KEY_PAGE_DOWN, 0, Action::nudge, "", ""},
-    KeyBinding{GLFW_KEY_ESCAPE, 0, Action::cancel, "Esc", "cancel a drag; deselect; close the help"},
+    KeyBinding{GLFW_KEY_ESCAPE, 0, Action::cancel, "Esc", "cancel loading or a drag; deselect; close the help"},
 
     KeyBinding{GLFW_KEY_Z, control, Action::undo, "Ctrl+Z", "undo"},
     KeyBinding{GLFW_KEY_Z, control | shift, Action::redo, "Ctrl+Shift+Z, Ctrl+Y", "redo"},

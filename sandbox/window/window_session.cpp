@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,6 +19,7 @@
 
 #include <candela/renderer.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "engine/readable.hpp"
 #include "renderer/gl/device.hpp"
 #include "renderer/gl/texture.hpp"
 #include "sandbox/capture.hpp"
@@ -48,6 +48,7 @@
 #include "sandbox/window/layout.hpp"
 #include "sandbox/window/picture_writer.hpp"
 #include "sandbox/window/render_thread.hpp"
+#include "sandbox/window/scene_loader.hpp"
 #include "sandbox/window/ui_log.hpp"
 
 namespace candela::sandbox {
@@ -73,7 +74,7 @@ class Lines {
 
 class WindowSession {
  public:
-    WindowSession(Window& window, const std::function<Scene()>& open, const Configuration& configuration,
+    WindowSession(Window& window, const OpenScene& open, const Configuration& configuration,
                   ConfigWatch& watch, const Options& options, const MakeReference& make_reference)
         : window_(window),
           watch_(watch),
@@ -83,7 +84,7 @@ class WindowSession {
           reference_(make_reference ? make_reference(Window::wake) : nullptr) {
         state_.configuration = configuration;
         if (options.ui_log) log_.emplace(*options.ui_log);
-        load(open, "the scene");
+        loader_.start(open, "the scene");
         thread_ = std::make_unique<RenderThread>(
             window.share(),
             RendererOptions{.shader_directory = options.shaders.value_or(std::filesystem::path()),
@@ -92,7 +93,7 @@ class WindowSession {
     }
 
     void run() {
-        if (options_.frames) loading_.wait();
+        if (options_.frames) loader_.wait();
         while (!window_.should_close() && (!options_.frames || frame_ < *options_.frames)) step();
         window_.hide();
     }
@@ -106,8 +107,8 @@ class WindowSession {
     [[nodiscard]] bool stop() {
         constexpr double patience = 0.2;  // seconds
         writer_.finish();
-        const bool loads = loading_.valid() && loading_.wait_for(Seconds(0.0)) != std::future_status::ready;
-        return thread_->stop(patience) && !loads;
+        loader_.cancel();
+        return thread_->stop(patience) && loader_.is_idle();
     }
 
  private:
@@ -181,32 +182,23 @@ class WindowSession {
         if (frames_to_draw_ > 0 || advances_script()) return 0.0;
         if (document_ && document_->interaction.moving()) return while_moving;
         if (pointer_moved_) return between_moves;
-        return loading_.valid() || !shown_ || !shown_->settled || shown_->request < submitted_ ? while_busy
-                                                                                               : idle;
+        const bool busy = loader_.is_loading() || !shown_ || !shown_->settled || shown_->request < submitted_;
+        return busy ? while_busy : idle;
     }
 
     [[nodiscard]] bool advances_script() const {
         return document_ && document_->is_playing() && shown_ && shown_->request == submitted_;
     }
 
-    void load(std::function<Scene()> open, std::string what) {
-        loading_what_ = std::move(what);
-        loading_ = std::async(std::launch::async, [open = std::move(open)] {
-            Scene scene = open();
-            Window::wake();
-            return scene;
-        });
-    }
-
     /// Opens another scene; the present one stays until that is loaded, and if it cannot be.
     void open(const std::filesystem::path& path) {
-        load(
-            [path] {
-                Scene scene = load_scene(path);
-                light_if_dark(scene);
-                return scene;
-            },
-            path.filename().string());
+        const auto open_file = [path, import = import_options(options_)](const TellProgress& tell) mutable {
+            import.progress = tell;
+            Scene scene = load_scene(path, import);
+            light_if_dark(scene);
+            return scene;
+        };
+        loader_.start(open_file, path.filename().string());
     }
 
     void report_errors(std::vector<std::string> errors) {
@@ -270,12 +262,12 @@ class WindowSession {
     }
 
     void take_loaded_scene() {
-        if (!loading_.valid() || loading_.wait_for(Seconds(0.0)) != std::future_status::ready) return;
+        if (!loader_.is_ready()) return;
         frames_to_draw_ = settling;
         const glm::vec2 size = window_.size();
         const bool first = !document_;
         try {
-            document_.emplace(loading_.get(), first ? options_.camera : std::nullopt, size.x / size.y);
+            document_.emplace(loader_.take(), first ? options_.camera : std::nullopt, size.x / size.y);
         } catch (const std::runtime_error& error) {
             if (first) throw;
             return report_errors({error.what()});
@@ -290,7 +282,7 @@ class WindowSession {
     }
 
     void say_warnings() {
-        state_.warnings = document_->scene.warnings;
+        state_.warnings = first_ten(document_->scene.warnings);
         window_.set_title(fmt::format("Candela - {}", document_->scene.path.filename().string()));
         for (const std::string& warning : state_.warnings) print_warning(warning);
     }
@@ -436,7 +428,7 @@ class WindowSession {
 
     [[nodiscard]] std::string busy_words() const {
         constexpr Seconds noticeable(0.3);
-        if (loading_.valid()) return fmt::format("loading {}", loading_what_);
+        if (loader_.is_loading()) return loader_.words();
         const RenderStage stage = thread_->stage();
         if (stage == RenderStage::idle || thread_->stage_time() < noticeable) return "";
         if (stage == RenderStage::rendering) return "rendering";
@@ -461,7 +453,8 @@ class WindowSession {
 
     [[nodiscard]] bool is_settled() const {
         const bool playing = document_ && document_->is_playing();
-        return shown_ && shown_->settled && shown_->request == submitted_ && !loading_.valid() && !playing;
+        return shown_ && shown_->settled && shown_->request == submitted_ && !loader_.is_loading() &&
+               !playing;
     }
 
     /// Flies, and records.
@@ -575,6 +568,7 @@ class WindowSession {
     }
 
     void close_what_is_open() {
+        if (loader_.is_loading()) return loader_.cancel();
         if (open_panel_.is_shown()) return open_panel_.hide();
         state_.help = false;
         selection_.resource.reset();
@@ -754,8 +748,7 @@ class WindowSession {
     Lines warnings_;
     AppState state_;
     std::optional<UiLog> log_;
-    std::future<Scene> loading_;
-    std::string loading_what_;
+    SceneLoader loader_{Window::wake};
     std::optional<Document> document_;
     std::unique_ptr<RenderThread> thread_;
 
@@ -787,8 +780,8 @@ class WindowSession {
 
 }  // namespace
 
-void run_window(Window& window, const std::function<Scene()>& open, const Configuration& configuration,
-                ConfigWatch& watch, const Options& options, const MakeReference& make_reference) {
+void run_window(Window& window, const OpenScene& open, const Configuration& configuration, ConfigWatch& watch,
+                const Options& options, const MakeReference& make_reference) {
     WindowSession session(window, open, configuration, watch, options, make_reference);
     session.run();
     session.write_results();

@@ -7,6 +7,7 @@
 #include "sandbox/options.hpp"
 #include "sandbox/scene.hpp"
 #include "sandbox/window/reference_view.hpp"
+#include "sandbox/window/scene_loader.hpp"
 #include "sandbox/window/window.hpp"
 
 namespace candela::sandbox {
@@ -18,9 +19,9 @@ namespace candela::sandbox {
 /// options ask for.
 ///
 /// Throws what `open` throws, std::runtime_error for outputs that cannot be written, gl::GlError, and
-/// EnergyError if the light does not add up. Ends the process if the window is closed while a frame takes
+/// PictureError if the light does not add up. Ends the process if the window is closed while a frame takes
 /// longer than a user should wait, because drivers do not interrupt frames.
-void run_window(Window& window, const std::function<Scene()>& open, const Configuration& configuration,
-                ConfigWatch& watch, const Options& options, const MakeReference& make_reference);
+void run_window(Window& window, const OpenScene& open, const Configuration& configuration, ConfigWatch& watch,
+                const Options& options, const MakeReference& make_reference);
 
 }  // namespace candela::sandbox

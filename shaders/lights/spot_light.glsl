@@ -4,7 +4,9 @@
 
 // KHR_lights_punctual: 1 inside the inner cone, 0 outside the outer one. `direction`: unit, towards the light.
 float cone_falloff(Light light, vec3 direction) {
-    float x = clamp(-dot(direction, light.direction) * light.shape.x + light.shape.y, 0.0, 1.0);
+    // 1 - cos of the angle to the axis, as half the squared distance of unit vectors: exact also for small angles.
+    vec3 off_axis = direction + light.direction;
+    float x = clamp(light.shape.y - 0.5 * dot(off_axis, off_axis) * light.shape.x, 0.0, 1.0);
     return x * x;
 }
 

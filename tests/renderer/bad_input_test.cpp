@@ -158,6 +158,10 @@ std::vector<FaultCase> transform_faults() {
     endless.scale.x = infinity;
     Transform huge = right;
     huge.scale = glm::vec3(1.1e9F);
+    Transform wide = right;
+    wide.scale = glm::vec3(1e5F);
+    Transform far = right;
+    far.translation.z = -1e19F;
     Transform turned = right;
     turned.rotation.w = not_a_number;
     const Change by_parent = [=](World& world, Entity entity) {
@@ -169,6 +173,9 @@ std::vector<FaultCase> transform_faults() {
         misplaced(square_instance(), endless, right),
         misplaced(square_instance(), turned, right),
         misplaced(square_instance(), huge, right, "the world matrix scales by more than 1e+09"),
+        misplaced(square_instance(), far, right, "it is farther than 1e+09 metres from the origin"),
+        misplaced(MeshInstance{square(1e5F, diffuse(glm::vec3(0.5F)))}, wide, right,
+                  "it reaches farther than 1e+09 metres from the origin"),
         misplaced(MeshInstance{square(0.3F, emitter(glm::vec3(2.0F)))}, nowhere, upside_down_at(in_the_box)),
         misplaced(PointLight{.intensity = 0.1F}, nowhere, right),
         misplaced(SpotLight{.intensity = 1.0F}, turned, right),
@@ -204,15 +211,18 @@ std::vector<FaultCase> light_faults() {
         point("the intensity is negative or not finite", [](PointLight& light) { light.intensity = -1.0F; }),
         point("the range is negative or not a number", [](PointLight& light) { light.range = not_a_number; }),
         point("the range is negative or not a number", [](PointLight& light) { light.range = -1.0F; }),
-        point("the product of colour and intensity is not finite",
+        point("the product of colour and intensity is above 1e+32",
               [](PointLight& light) {
                   light.colour = glm::vec3(1e30F);
                   light.intensity = 1e30F;
               }),
+        point("the product of colour and intensity is above 1e+32",
+              [](PointLight& light) { light.intensity = 3e37F; }),
         spot("SpotLight: left out, because a cone is negative or not finite",
              [](SpotLight& light) { light.inner_cone = not_a_number; }),
         spot("a cone is negative or not finite", [](SpotLight& light) { light.outer_cone = infinity; }),
-        spot("the outer cone of 0 is too narrow", [](SpotLight& light) { light.outer_cone = 0.0F; }),
+        spot("the outer cone of 0 is narrower than 0.0001 radians",
+             [](SpotLight& light) { light.outer_cone = 0.0F; }),
         spot("the intensity is negative or not finite",
              [](SpotLight& light) { light.intensity = not_a_number; }),
         spot("the range is negative or not a number", [](SpotLight& light) { light.range = not_a_number; }),

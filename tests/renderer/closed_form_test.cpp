@@ -109,6 +109,34 @@ TEST_SUITE("closed forms") {
         }
     }
 
+    TEST_CASE_FIXTURE(ClosedForm, "spot lights are exact down to the narrowest cone") {
+        Scene scene = ground();
+        const glm::vec3 light(0.0F, 2.0F, 0.0F);
+        scene.world.set(scene.light, looking(light, {0, 0, 0}, {0, 0, 1}));
+        for (const float outer : {1e-2F, 1e-3F, 1e-4F}) {
+            CAPTURE(outer);
+            scene.world.set(scene.light,
+                            SpotLight{.intensity = 5.0F, .inner_cone = 0.0F, .outer_cone = outer});
+            // Sees the lit disc, which has a radius of 2 · outer metres, from above.
+            scene.world.set(scene.camera, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+            scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                                 .half_height = 3.0F * outer,
+                                                 .near_plane = 0.1F,
+                                                 .far_plane = 10.0F});
+            const Picture expected = expected_picture(scene, size, {}, {0, 1, 0}, [&](glm::dvec3 p) {
+                const double cosine = (glm::dvec3(light) - p).y / glm::length(glm::dvec3(light) - p);
+                return glm::dvec3(0.5 / pi * 5.0 * point_irradiance(light, p, {0, 1, 0}) *
+                                  cone(cosine, 0.0, static_cast<double>(outer)));
+            });
+            constexpr double peak = 0.5 / pi * 5.0 / 4.0;
+            Configuration configuration = linear_configuration();
+            configuration.indirect = false;
+            configure(configuration);
+            // Unit vectors are rounded by 6e-8, which is 6e-4 of the narrowest angle.
+            CHECK(worst_error(render(scene, size), expected, peak) < 5e-3);
+        }
+    }
+
     TEST_CASE_FIXTURE(ClosedForm, "a plane under a directional light, steep and grazing") {
         Scene scene = ground();
         for (const glm::vec3 to_light :

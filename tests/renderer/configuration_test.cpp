@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -116,6 +118,35 @@ TEST_SUITE("configuration") {
         CHECK(several[2].starts_with("vpls.seed: "));
         CHECK(several[3].starts_with("shadows.enabled: "));
         CHECK(several[4] == "extra: is unknown");
+    }
+
+    TEST_CASE("of many unknown members, ten are named and the others counted") {
+        nlohmann::json many;
+        for (int i = 0; i < 200'000; ++i) {
+            many[fmt::format("member {}", i)] = i;
+        }
+        const std::string text = many.dump();
+        const auto start = std::chrono::steady_clock::now();
+        const GraphErrors errors = errors_of(text);
+        // Takes 0.3 s; in quadratic time it would take minutes.
+        CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
+        REQUIRE(errors.size() == 11);
+        CHECK(errors.front() == "member 0: is unknown");
+        CHECK(errors.back() == "and 199,990 more");
+    }
+
+    TEST_CASE("names in errors are cut, and their control characters visible") {
+        const nlohmann::json named{{"\x1B[2J" + std::string(5'000'000, 'x'), 1}};
+        const GraphErrors errors = errors_of(named.dump());
+        REQUIRE(errors.size() == 1);
+        CHECK(errors[0].starts_with("\\x1B[2Jxxx"));
+        CHECK(errors[0].ends_with("x...: is unknown"));
+        CHECK(errors[0].size() < 250);
+    }
+
+    TEST_CASE("limits that are rounded to single precision are included") {
+        CHECK(errors_of(R"({"vpls": {"geometry_bound": 1e-6}})").empty());
+        CHECK(!errors_of(R"({"vpls": {"geometry_bound": 0.99e-6}})").empty());
     }
 
     TEST_CASE("text that is not JSON has one error, with its line and column and what was expected") {

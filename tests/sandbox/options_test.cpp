@@ -208,7 +208,8 @@ TEST_SUITE("options") {
                                  "--seed",         "--vpl-visibility", "--animate",
                                  "--config",       "--print-config",   "--out",
                                  "--report",       "--environment",    "--describe-graph",
-                                 "--list-configs", "--version",        "--help"}) {
+                                 "--list-configs", "--version",        "--help",
+                                 "--limit",        "--confine"}) {
             CAPTURE(flag);
             CHECK(help.text.find(flag) != std::string::npos);
         }
@@ -224,6 +225,20 @@ TEST_SUITE("options") {
         check_refused_value("--report", {"a.txt", "no/such/folder/a.json"});
         check_refused_value("--describe-graph", {"a.png", "no/such/folder/a.dot"});
         check_refused_value("--config", {"no-such-file.json", "/tmp"});
+    }
+
+    TEST_CASE("limits of the import, and where it may read") {
+        const ImportOptions by_default = import_options(accepted({}));
+        CHECK(by_default.root == "/");
+        CHECK(by_default.limits.triangles == ImportLimits{}.triangles);
+        const ImportOptions set =
+            import_options(accepted({"--confine", "--limit", "triangles=7", "--limit", "bytes=0"}));
+        CHECK(set.root.empty());  // the scene's own folder
+        CHECK(set.limits.triangles == 7);
+        CHECK(set.limits.bytes == 0);
+        CHECK(set.limits.pixels == ImportLimits{}.pixels);
+        check_refused_value("--limit",
+                            {"triangles", "triangles=", "triangles=-1", "corners=3", "=3", "nodes=3x"});
     }
 
     TEST_CASE("the number of a frame replaces placeholders in the file name") {

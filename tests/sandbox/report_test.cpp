@@ -2,9 +2,12 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
+
+#include "tests/throws.hpp"
 
 namespace candela::sandbox {
 
@@ -107,12 +110,21 @@ TEST_SUITE("report") {
         state.vpls->flux.absorbed.g -= 2.0;
         CHECK_THROWS_WITH_AS(check_energy("a.gltf", state),
                              "a.gltf: 10 % of the emitted flux is unaccounted for: the picture is wrong",
-                             EnergyError);
+                             PictureError);
         // With surfels, which have no paths, the account is only as accurate as they are dense.
         state.vpls->paths = 0;
         check_energy("a.gltf", state);
         state.vpls->flux.absorbed.g = std::numeric_limits<double>::quiet_NaN();
-        CHECK_THROWS_AS(check_energy("a.gltf", state), EnergyError);
+        CHECK_THROWS_AS(check_energy("a.gltf", state), PictureError);
+    }
+
+    TEST_CASE("pixels that are not finite are an error that tells how many and where the first is") {
+        Picture picture{{3, 2}, std::vector<glm::vec3>(6, glm::vec3(1.0F))};
+        CHECK_NOTHROW(check_finite(picture, 7));
+        picture.pixels[4].g = std::numeric_limits<float>::quiet_NaN();
+        picture.pixels[5].b = std::numeric_limits<float>::infinity();
+        CHECK(throws<PictureError>([&] { check_finite(picture, 7); },
+                                   "frame 7: 2 pixels are not finite, the first in column 1 of row 1"));
     }
 
     TEST_CASE("the table names every pass and tells which ones ran") {

@@ -14,15 +14,21 @@ namespace {
 // Widest half angle with a flat map. Beyond it, most texels would cover the rim of the cone.
 constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
 
+/// 1 - cos(angle) without cancellation, so that it is exact for narrow cones.
+float one_minus_cos(float angle) {
+    const float half_chord = std::sin(0.5F * angle);
+    return 2.0F * half_chord * half_chord;
+}
+
 /// The intensity is constant inside the inner cone. From there to the outer cone it falls with the square of
 /// a linear ramp in the cosine (KHR_lights_punctual). Its integral over the sphere is
 /// 2π ((1 - cᵢ) + (cᵢ - cₒ) / 3), with the cosines cᵢ and cₒ of the inner and outer cone.
 LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::mat4& world) {
-    const float cos_outer = std::cos(light.outer_cone);
+    const float outer = one_minus_cos(light.outer_cone);
     // The ramp is at least a thousandth of the cone, which avoids a division by zero as the extension
     // suggests.
-    const float ramp = std::max(std::cos(light.inner_cone) - cos_outer, 1e-3F * (1.0F - cos_outer));
-    const float cos_inner = cos_outer + ramp;
+    const float ramp = std::max(outer - one_minus_cos(light.inner_cone), 1e-3F * outer);
+    const float inner = outer - ramp;
     const glm::vec3 intensity = light.colour * light.intensity;
     return {.entity = entity,
             .light = {.position = glm::vec3(world[3]),
@@ -31,10 +37,10 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
                       .range = light.range,
                       .intensity = intensity,
                       .shadow = no_shadow,
-                      .shape = {1.0F / ramp, -cos_outer / ramp},
-                      .cos_inner = cos_inner,
-                      .cos_outer = cos_outer},
-            .flux = intensity * (hemisphere * ((1.0F - cos_inner) + ramp / 3.0F)),
+                      .shape = {1.0F / ramp, outer / ramp},
+                      .cos_inner = 1.0F - inner,
+                      .cos_outer = 1.0F - outer},
+            .flux = intensity * (hemisphere * (inner + ramp / 3.0F)),
             .casts_shadow = light.casts_shadow};
 }
 
@@ -57,7 +63,8 @@ ShadowShape shadow_of_spot(const gpu::Light& light, const SceneMetrics& /*metric
     if (light.cos_outer < std::cos(widest_map)) {
         return {};
     }
-    return {.kind = SHADOW_PERSPECTIVE, .tangent = std::tan(std::acos(light.cos_outer))};
+    const float outer = light.shape.y / light.shape.x;
+    return {.kind = SHADOW_PERSPECTIVE, .tangent = std::sqrt(outer * (2.0F - outer)) / (1.0F - outer)};
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Gathered add_scene_gather(FrameGraph& graph, SceneCheck& check) {
                 const auto item = static_cast<std::uint32_t>(geometry.items.size());
                 const glm::mat4 world = world_matrices(entity);
                 if (!check.accepts(run.world(), entity, instance) ||
-                    !check.accepts_at(run.world(), entity, world)) {
+                    !check.accepts_at(run.world(), entity, instance, world)) {
                     continue;
                 }
                 const auto* const deformed = run.world().find<DeformedMesh>(entity);

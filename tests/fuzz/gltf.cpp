@@ -1,0 +1,74 @@
+// Importing glTF, as text and as binary: either refused with a message and the world unchanged, or imported
+// into consistent entities.
+
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/gltf.hpp>
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace candela;
+
+namespace {
+
+void check_primitive(const Primitive& primitive) {
+    fuzz::require(primitive.indices.size() % 3 == 0, "indices form triangles");
+    for (const std::uint32_t index : primitive.indices) {
+        fuzz::require(index < primitive.vertices.size(), "indices are of vertices");
+    }
+    for (const Vertex& vertex : primitive.vertices) {
+        fuzz::require(std::isfinite(vertex.position.x) && std::isfinite(vertex.position.y) &&
+                          std::isfinite(vertex.position.z),
+                      "positions are finite");
+    }
+}
+
+void check_imported(const World& world, const ImportReport& report) {
+    fuzz::require(world.size() == report.entities.size() + 1, "the report lists the new entities");
+    std::set<Entity> seen;
+    std::uint64_t triangles = 0;
+    std::set<const Mesh*> checked;
+    for (const Entity entity : report.entities) {
+        const Transform& transform = world.get<Transform>(entity);
+        fuzz::require(transform.parent == Entity{} || seen.contains(transform.parent),
+                      "parents come before their children");
+        seen.insert(entity);
+        const auto* const instance = world.find<MeshInstance>(entity);
+        if (!instance) {
+            continue;
+        }
+        for (const Primitive& primitive : instance->mesh->primitives) {
+            triangles += primitive.indices.size() / 3;
+            if (checked.insert(instance->mesh.get()).second) {
+                check_primitive(primitive);
+            }
+        }
+    }
+    fuzz::require(triangles == report.triangles, "the report counts the triangles");
+    for (const std::string& warning : report.warnings) {
+        fuzz::require_readable(warning);
+    }
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    World world;
+    const Entity before = world.create();
+    world.set(before, Name{"before"});
+    const auto revision = world.revision<Name>();
+    try {
+        check_imported(world, import_gltf({data, size}, "/nonexistent", "input.gltf", world));
+    } catch (const SceneError& error) {
+        fuzz::require_readable(error.what());
+        fuzz::require(std::string_view(error.what()).starts_with("input.gltf: "), "a message names the file");
+        fuzz::require(world.size() == 1 && world.revision<Name>() == revision &&
+                          world.revision<Transform>() == 0 && world.revision<MeshInstance>() == 0,
+                      "a failure leaves the world unchanged");
+    }
+    return 0;
+}
