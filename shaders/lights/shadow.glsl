@@ -3,6 +3,7 @@
 // shadows". Depth is reversed: 1 at the near plane, 0 at infinity (orthographic maps: at their far end). A receiver is
 // lit where its depth is greater than or equal to the map's. SHADOW_RAYS: shadows are enabled.
 #include "bindings.glsl"
+#include "maths.glsl"
 #include "scene/bvh.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
@@ -31,8 +32,6 @@ float normal_offset(float texel, float cos_axis) {
 // the crease lit.
 const float crease_bias = 1e-5;
 
-float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
-
 // One texel diagonally away from the receiver.
 vec2 diagonal(int i) { return 2.0 * vec2(i & 1, i >> 1) - 1.0; }
 
@@ -59,43 +58,40 @@ float lit_in_cube(Shadow shadow, vec3 from_light, vec3 normal) {
 
 vec3 row(mat4 m, int i) { return vec3(m[0][i], m[1][i], m[2][i]); }
 
-// The normal's components along the map's x and y in its clip space. The rows of the matrix are orthogonal.
-vec2 across_map(mat4 from_world, vec3 normal) {
-    vec3 x = row(from_world, 0);
-    vec3 y = row(from_world, 1);
-    return vec2(dot(normal, x) / dot(x, x), dot(normal, y) / dot(y, y));
+// The lifted receiver in the clip space of a flat map, and the depth of its plane around it.
+struct FlatReceiver {
+    vec3 at;
+    vec2 slope;  // change of depth per step in x and y
+    float bias;  // of the depth
+};
+
+FlatReceiver flat_receiver(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) {
+    bool perspective = shadow.kind == SHADOW_PERSPECTIVE;
+    vec3 from_light = position - light_position;
+    float texel = shadow.texel * (perspective ? dot(from_light, shadow.axis) : 1.0);
+    float offset = normal_offset(texel, dot(normal, shadow.axis));
+    vec4 clip = shadow.from_world * vec4(position + normal * offset, 1.0);
+    vec3 at = clip.xyz / clip.w;
+    vec3 x = row(shadow.from_world, 0);
+    vec3 y = row(shadow.from_world, 1);
+    vec3 z = row(shadow.from_world, 2);
+    // The normal's components along x and y of clip space, whose rows are orthogonal: theory.md, "Edges of shadows".
+    vec2 across = vec2(dot(normal, x) / dot(x, x), dot(normal, y) / dot(y, y));
+    float height = min(dot(normal, from_light) + offset, -1e-30);
+    float steepness = perspective ? shadow.near_plane / height : -dot(z, z) / dot(normal, z);
+    return FlatReceiver(at, steepness * across, perspective ? at.z * crease_bias : crease_bias);
 }
 
-// As lit_in_cube, in a flat map. `at`: the lifted receiver in clip space; `slope`: change of depth on its plane per step
-// in x and y; `bias`: for the depth.
-float lit_in_map(Shadow shadow, vec3 at, vec2 slope, float bias) {
+// As lit_in_cube.
+float lit_in_map(Shadow shadow, FlatReceiver receiver) {
     float texel = 2.0 / float(textureSize(shadow_maps, 0).x);
     float lit = 0.0;
     for (int i = 0; i < 4; ++i) {
         vec2 off = texel * diagonal(i);
-        float reference = clamp(at.z + dot(slope, off) + bias, 0.0, 1.0);
-        lit += texture(shadow_maps, vec4((at.xy + off) * 0.5 + 0.5, float(shadow.layer), reference));
+        float reference = clamp(receiver.at.z + dot(receiver.slope, off) + receiver.bias, 0.0, 1.0);
+        lit += texture(shadow_maps, vec4((receiver.at.xy + off) * 0.5 + 0.5, float(shadow.layer), reference));
     }
     return lit;
-}
-
-float lit_in_perspective(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) {
-    vec3 from_light = position - light_position;
-    float offset = normal_offset(shadow.texel * dot(from_light, shadow.axis), dot(normal, shadow.axis));
-    vec4 clip = shadow.from_world * vec4(position + normal * offset, 1.0);
-    if (clip.w <= 0.0) return 4.0;
-    float height = min(dot(normal, from_light) + offset, -1e-30);
-    vec3 at = clip.xyz / clip.w;
-    vec2 slope = across_map(shadow.from_world, normal) * (shadow.near_plane / height);
-    return lit_in_map(shadow, at, slope, at.z * crease_bias);
-}
-
-float lit_in_orthographic(Shadow shadow, vec3 position, vec3 normal) {
-    vec3 lifted = position + normal * normal_offset(shadow.texel, dot(normal, shadow.axis));
-    vec3 at = (shadow.from_world * vec4(lifted, 1.0)).xyz;
-    vec3 z = row(shadow.from_world, 2);
-    vec2 slope = -across_map(shadow.from_world, normal) * (dot(z, z) / dot(normal, z));
-    return lit_in_map(shadow, at, slope, crease_bias);
 }
 
 // Whether a ray from the surface to the light is blocked. It ends before the light, which may lie on a surface.
@@ -124,10 +120,8 @@ float shadow_visibility(Light light, Surface surface) {
     float lit;
     if (shadow.kind == SHADOW_CUBE) {
         lit = lit_in_cube(shadow, position - light.position, surface.normal);
-    } else if (shadow.kind == SHADOW_PERSPECTIVE) {
-        lit = lit_in_perspective(shadow, position, surface.normal, light.position);
     } else {
-        lit = lit_in_orthographic(shadow, position, surface.normal);
+        lit = lit_in_map(shadow, flat_receiver(shadow, position, surface.normal, light.position));
     }
     if (lit == 0.0 || lit == 4.0 || shadow_rays_left == 0) return 0.25 * lit;
     --shadow_rays_left;

@@ -35,8 +35,10 @@ Surface unpack_surface(PackedSurface surface, vec3 window, vec2 target_size, mat
 }
 
 // Where visibility is judged: 1/32 of a pixel nearer to the viewer. At a crease the position may lie behind the other
-// surface, as corners are rounded to 1/256 of a pixel before they are drawn; what is there may be lit from behind. The
-// bounds, in offsets of rays, allow for the rounding of positions, and keep the middle of a large pixel on its surface.
+// surface, as corners are rounded to 1/256 of a pixel before they are drawn; what is there may be lit from behind. It is at
+// least 24 steps of the largest coordinate, as positions far from the origin are rounded, and at most 32 offsets of rays,
+// so that the middle of a large pixel stays on its surface.
 vec3 visible_position(Surface surface, float ray_offset) {
-    return surface.position + clamp(surface.pixel / 32.0, 8.0 * ray_offset, 32.0 * ray_offset) * surface.to_viewer;
+    float nearer = max(surface.pixel / 32.0, 24.0 / 8388608.0 * largest(surface.position));
+    return surface.position + min(nearer, 32.0 * ray_offset) * surface.to_viewer;
 }
