@@ -293,8 +293,7 @@ Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest
 }
 
 FrameContents Renderer::State::contents_now(const World& world) {
-    const std::array revisions{world.revision<MeshInstance>(), world.revision<DirectionalLight>(),
-                               world.revision<Environment>()};
+    const std::array revisions{world.revision<MeshInstance>(), world.revision<Environment>()};
     const Tick transforms = world.revision<Transform>();
     const bool may_differ = revisions != contents_revisions_ ||
                             (contents_depend_on_transforms_ && transforms != contents_transforms_);

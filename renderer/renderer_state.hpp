@@ -72,7 +72,7 @@ class CANDELA_PRIVATE Renderer::State {
     Configuration configuration_;
     std::vector<Extension> extensions_;
     FrameShape shape_;                          // of the last frame
-    std::array<Tick, 3> contents_revisions_{};  // of the components that determine the contents
+    std::array<Tick, 2> contents_revisions_{};  // of the components that determine the contents
     Tick contents_transforms_ = 0;              // revision of Transform then
     bool contents_depend_on_transforms_ = false;
     Quality quality_in_motion_;

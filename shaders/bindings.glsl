@@ -80,6 +80,8 @@
 
 #define BVH_STACK_SIZE 48
 
+#define MOST_SHADOW_RAYS 32  // that an invocation casts in a dispatch or draw: shadow.glsl
+
 #define PIXEL_BLOCK 16      // pixels along an edge of the block that a work group shades: pixel_block.glsl
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels

@@ -1,5 +1,7 @@
 const float PI = 3.14159265358979;
 
+float largest(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
 // Orthonormal basis around a unit vector: Duff et al., "Building an Orthonormal Basis, Revisited" (2017), eq. 3.
 void basis_around(vec3 n, out vec3 tangent, out vec3 bitangent) {
     float s = n.z >= 0.0 ? 1.0 : -1.0;

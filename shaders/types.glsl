@@ -72,7 +72,7 @@ struct Shadow {
     float near_plane; // metres, of perspective maps
     uint layer;       // of the map array, or cube of the cube array
     uint kind;        // SHADOW_*
-    float ray_offset; // metres above a surface, where rays to the light start; of orthographic maps
+    float ray_offset; // metres above a surface, where rays to the light start
 };
 
 // The camera's view of the current frame. A uniform block: shaders/view/view.glsl.

@@ -178,12 +178,6 @@ WorldContents contents_of(const World& world, SceneCheck& check) {
     }
     const Environment environment = accepted_environment(world, check);
     of_frame.sky = environment.radiance != glm::vec3(0.0F);
-    of_frame.suns = environment.picture != nullptr;
-    for (const auto& [entity, light] : world.view<DirectionalLight>()) {
-        if (check.accepts(world, entity, light) && light.casts_shadow) {
-            of_frame.suns |= is_placed(entity);
-        }
-    }
     return contents;
 }
 

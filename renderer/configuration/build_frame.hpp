@@ -59,7 +59,6 @@ struct ViewShape {
 /// What a world contains, as far as the passes of its frames depend on it.
 struct FrameContents {
     bool emitters = false;  ///< surfaces that emit light
-    bool suns = false;      ///< directional lights that cast shadows, or a sky that may have suns
     bool sky = false;       ///< an Environment that is not black
     bool operator==(const FrameContents&) const = default;
 };

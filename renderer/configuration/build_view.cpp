@@ -101,9 +101,8 @@ Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>&
                       .shadows = shared.lit.shadows,
                       .lists = lists,
                       .show = shared.configuration.show};
-    const bool shadows = shared.configuration.shadows.enabled && shows_light(lighting.show);
-    if (shared.contents.suns && shadows) {
-        lighting.sun_rays = shared.lit.tracing;
+    if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
+        lighting.shadow_rays = shared.lit.tracing;
     }
     if (shared.vpls) {
         lighting.vpls = shared.vpls->light;

@@ -22,8 +22,7 @@ vec3 irradiance_from_light(Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
     float cos_surface = dot(surface.normal, incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
-    float visibility = shadow_visibility(light.shadow, surface.position, surface.normal, light.position);
-    return incident.irradiance * (cos_surface * visibility);
+    return incident.irradiance * (cos_surface * shadow_visibility(light, surface));
 }
 
 #ifndef DIRECT_HIDDEN

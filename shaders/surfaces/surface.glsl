@@ -3,9 +3,11 @@
 #include "maths.glsl"
 
 struct Surface {
-    vec3 position;  // world space, metres
-    vec3 normal;    // unit, on the side that the viewer sees
-    vec3 albedo;    // linear
+    vec3 position;   // world space, metres
+    vec3 normal;     // unit, on the side that the viewer sees
+    vec3 albedo;     // linear
+    vec3 to_viewer;  // unit
+    float pixel;     // metres: a pixel's width at the position
 };
 
 struct PackedSurface {
@@ -18,9 +20,25 @@ PackedSurface pack_surface(vec3 albedo, vec3 normal) {
     return PackedSurface(rounded, octahedral_encode(normal));
 }
 
+// Change of a position per step along an axis of clip space, in metres. `column`: the axis' in world_from_clip; `w`: the
+// position's before division.
+vec3 step_in_clip(vec4 column, vec3 position, float w) { return (column.xyz - position * column.w) / w; }
+
 // `window`: the pixel's centre in window coordinates (pixels), and its window depth.
 Surface unpack_surface(PackedSurface surface, vec3 window, vec2 target_size, mat4 world_from_clip) {
     vec4 clip = vec4(window.xy / target_size * 2.0 - 1.0, window.z, 1.0);
     vec4 world = world_from_clip * clip;
-    return Surface(world.xyz / world.w, octahedral_decode(surface.normal), surface.albedo);
+    vec3 position = world.xyz / world.w;
+    vec3 to_viewer = normalize(step_in_clip(world_from_clip[2], position, world.w));
+    float pixel = 2.0 / target_size.x * length(step_in_clip(world_from_clip[0], position, world.w));
+    return Surface(position, octahedral_decode(surface.normal), surface.albedo, to_viewer, pixel);
+}
+
+// Where visibility is judged: 1/32 of a pixel nearer to the viewer. At a crease the position may lie behind the other
+// surface, as corners are rounded to 1/256 of a pixel before they are drawn; what is there may be lit from behind. It is at
+// least 24 steps of the largest coordinate, as positions far from the origin are rounded, and at most 32 offsets of rays,
+// so that the middle of a large pixel stays on its surface.
+vec3 visible_position(Surface surface, float ray_offset) {
+    float nearer = max(surface.pixel / 32.0, 24.0 / 8388608.0 * largest(surface.position));
+    return surface.position + min(nearer, 32.0 * ray_offset) * surface.to_viewer;
 }

@@ -11,18 +11,16 @@
 #if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && (defined(EMITTERS) || defined(SKY)))
 
 float visibility_of_sky(vec3 direction, Surface surface) {
-    vec3 origin = surface.position + vpl_constants.ray_offset * surface.normal;
+    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * surface.normal;
     return any_hit(origin, direction, 0.0, 1.0 / 0.0) ? 0.0 : 1.0;
 }
 
 float visibility_by_ray(Vpl vpl, Surface surface) {
     vec3 target = vpl.map_origin + vpl_constants.ray_offset * vpl.normal;
-    vec3 origin = surface.position + vpl_constants.ray_offset * surface.normal;
+    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * surface.normal;
     // At least as high above the VPL's plane as the target.
     origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;
-    vec3 to_vpl = target - origin;
-    float t_min = vpl_constants.crease_slack / max(length(to_vpl), 1e-30);
-    return any_hit(origin, to_vpl, t_min, 1.0) ? 0.0 : 1.0;
+    return any_hit(origin, target - origin, 0.0, 1.0) ? 0.0 : 1.0;
 }
 
 #else
@@ -58,7 +56,7 @@ float vpl_visibility(Vpl vpl, Surface surface) {
 #ifdef EMITTERS
     if (vpl.map == NO_MAP) return visibility_by_ray(vpl, surface);
 #endif
-    vec3 from_vpl = surface.position - vpl_map_origin(vpl);
+    vec3 from_vpl = visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(vpl);
     vec3 tangent, bitangent;
     basis_around(vpl.normal, tangent, bitangent);
     float texels = float(vpl_constants.map_resolution);

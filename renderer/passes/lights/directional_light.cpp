@@ -25,8 +25,7 @@ void gather_directional_lights(const World& world, SceneCheck& check, const Scen
 ShadowShape shadow_of_directional(const gpu::Light& light, const SceneMetrics& metrics) {
     return {.kind = SHADOW_ORTHOGRAPHIC,
             .half_extent = light.shape,
-            .depth = 2.0F * glm::length(metrics.centre() - light.position),
-            .ray_offset = metrics.ray_offset()};
+            .depth = 2.0F * glm::length(metrics.centre() - light.position)};
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ struct ShadowShape {
     float tangent = 0.0F;         ///< perspective: of the half angle
     glm::vec2 half_extent{0.0F};  ///< orthographic: metres
     float depth = 0.0F;           ///< orthographic: metres from the light to the end of the scene
-    float ray_offset = 0.0F;      ///< orthographic: metres above a surface, where rays to the light start
 };
 
 /// All that the CPU needs to know of a kind of light. Each kind is one C++ file, which defines one of these,

@@ -61,15 +61,22 @@ const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
                                           {{0, 0, 1}, {0, -1, 0}},
                                           {{0, 0, -1}, {0, -1, 0}}}};
 
-void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::uint32_t resolution) {
+/// Lengths that the maps of all lights have in common, metres.
+struct MapLengths {
+    float near_plane;
+    float ray_offset;
+};
+
+void add_cube(ShadowPlan& plan, const gpu::Light& light, const MapLengths& lengths,
+              std::uint32_t resolution) {
     plan.shadows.push_back({.from_world = glm::mat4(1.0F),
                             .axis = glm::vec3(0.0F),
                             .texel = 2.0F / static_cast<float>(resolution),
-                            .near_plane = near_plane,
+                            .near_plane = lengths.near_plane,
                             .layer = plan.cubes,
                             .kind = SHADOW_CUBE,
-                            .ray_offset = 0.0F});
-    const glm::mat4 projection = reversed_perspective(1.0F, near_plane);
+                            .ray_offset = lengths.ray_offset});
+    const glm::mat4 projection = reversed_perspective(1.0F, lengths.near_plane);
     for (std::uint32_t face = 0; face < cube_faces; ++face) {
         const glm::mat4 view = look_along(light.position, faces[face].direction, faces[face].up);
         plan.views.push_back({projection * view, true, plan.cubes * cube_faces + face});
@@ -77,8 +84,9 @@ void add_cube(ShadowPlan& plan, const gpu::Light& light, float near_plane, std::
     ++plan.cubes;
 }
 
-void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float near_plane,
+void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, const MapLengths& lengths,
              std::uint32_t resolution) {
+    const float near_plane = lengths.near_plane;
     const auto texels = static_cast<float>(resolution);
     const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
     const glm::mat4 view =
@@ -89,7 +97,7 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape
                        .near_plane = near_plane,
                        .layer = plan.maps,
                        .kind = shape.kind,
-                       .ray_offset = shape.ray_offset};
+                       .ray_offset = lengths.ray_offset};
     if (shape.kind == SHADOW_PERSPECTIVE) {
         const float tangent = margin * shape.tangent;
         shadow.texel = 2.0F * tangent / texels;
@@ -216,7 +224,8 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                         const ShadowSettings& settings) {
     ShadowPlan plan;
     plan.shadow_of_light.assign(lights.entries.size(), -1);
-    const float near_plane = std::max(relative_near_plane * metrics.radius(), 1e-9F);
+    const MapLengths lengths{.near_plane = std::max(relative_near_plane * metrics.radius(), 1e-9F),
+                             .ray_offset = metrics.ray_offset()};
     const auto bytes = [](std::uint64_t resolution, std::uint64_t layers) {
         return resolution * resolution * layers * bytes_per_depth;
     };
@@ -238,9 +247,9 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
         budget -= cost;
         plan.shadow_of_light[i] = static_cast<std::int32_t>(plan.shadows.size());
         if (cube) {
-            add_cube(plan, entry.light, near_plane, settings.cube_resolution);
+            add_cube(plan, entry.light, lengths, settings.cube_resolution);
         } else {
-            add_map(plan, entry.light, shape, near_plane, settings.map_resolution);
+            add_map(plan, entry.light, shape, lengths, settings.map_resolution);
         }
     }
     return plan;

@@ -1,5 +1,6 @@
 #include "renderer/passes/scene/bvh.hpp"
 
+#include <fmt/format.h>
 #include <memory>
 #include <span>
 #include <vector>
@@ -95,9 +96,20 @@ BufferHandle<T> updated_buffer(FrameGraph& graph, Pass& pass, std::string_view n
     return pass.update(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
 }
 
+void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
+    constexpr float most = 1e-3F;  // metres: thinner walls are rare
+    const float step = metrics.coordinate_step();
+    if (metrics.is_far() && step > most) {
+        log.warn(
+            fmt::format("the scene is so far from the origin that positions are rounded to {:.1f} mm: "
+                        "light may leak where surfaces meet and through thin walls",
+                        1e3F * step));
+    }
+}
+
 }  // namespace
 
-Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
+Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
     return graph.add("bvh", [&](Pass& pass) {
         pass.remembers();  // a tree refitted to moved triangles differs from a new one
         pass.read(scene.layout);
@@ -116,7 +128,9 @@ Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene) {
             place(run, buffers, *uploaded);
             upload_objects(gpu, run, buffers, *uploaded, layout, placement.deformed);
             upload_top(gpu, run, buffers, uploaded->scene);
-            run.set(metrics, uploaded->scene.metrics(layout));
+            const SceneMetrics now = uploaded->scene.metrics(layout);
+            warn_of_rounding(gpu.log(), now);
+            run.set(metrics, now);
             run.set(kept, uploaded);
         });
         return Tracing{.nodes = buffers.nodes,

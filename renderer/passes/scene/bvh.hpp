@@ -23,7 +23,7 @@ struct Tracing {
 /// Adds node `bvh` (CPU, then upload): a bounding-volume hierarchy over the triangles that stop light, in
 /// world space, and the scene's metrics: see SceneHierarchy. Only what has changed is uploaded. Depends on
 /// the scene's layout and placement, and on its own last result.
-[[nodiscard]] Tracing add_bvh(FrameGraph& graph, const Gpu& gpu, const SceneData& scene);
+[[nodiscard]] Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene);
 
 /// For a pass whose shader includes bvh.glsl.
 void read_tracing(Pass& pass, const Tracing& tracing);

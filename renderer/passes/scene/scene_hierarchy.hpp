@@ -1,10 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -28,8 +31,16 @@ struct SceneMetrics {
     /// Radius of the bounding sphere of the box in metres; 0 for an empty scene.
     [[nodiscard]] float radius() const { return glm::length(upper - lower) * 0.5F; }
     /// Offset along the normal at which rays start, in metres: some hundred times the rounding error of
-    /// positions.
-    [[nodiscard]] float ray_offset() const { return 2e-5F * scale(); }
+    /// positions, and four times it if the scene is far from the origin.
+    [[nodiscard]] float ray_offset() const { return std::max(2e-5F * scale(), 4.0F * coordinate_step()); }
+    /// Whether the scene is so far from the origin, for its size, that rounding determines the offset.
+    [[nodiscard]] bool is_far() const { return ray_offset() > 2e-5F * scale(); }
+    /// Distance between neighbouring floats at the scene's largest coordinate, metres.
+    [[nodiscard]] float coordinate_step() const {
+        const glm::vec3 most = glm::max(glm::abs(lower), glm::abs(upper));
+        const float largest = std::max({most.x, most.y, most.z});
+        return std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest;
+    }
     /// The radius rounded down to a power of two, so that it rarely changes while objects move.
     [[nodiscard]] float scale() const {
         return radius() > 0.0F ? std::exp2(std::floor(std::log2(radius()))) : 0.0F;

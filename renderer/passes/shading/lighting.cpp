@@ -14,7 +14,7 @@ std::uint32_t light_count(const LightTable& lights) {
     return static_cast<std::uint32_t>(lights.entries.size());
 }
 
-bool casts_sun_rays(const LightTable::Entry& entry) {
+bool is_sun_with_shadow(const LightTable::Entry& entry) {
     return entry.casts_shadow && entry.light.kind == LIGHT_DIRECTIONAL;
 }
 
@@ -68,8 +68,8 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
     } else if (lighting.show == Show::normals) {
         words.emplace_back("SHOW_NORMALS");
     }
-    if (lighting.sun_rays) {
-        words.emplace_back("SUN_RAYS");
+    if (lighting.shadow_rays) {
+        words.emplace_back("SHADOW_RAYS");
     }
     if (lighting.lists) {
         words.emplace_back("LIGHT_LIST_CELLS");
@@ -92,8 +92,8 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.read(lighting.buffers.shadows, {Usage::storage, BINDING_SHADOWS});
     pass.read(lighting.shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
     pass.read(lighting.shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
-    if (lighting.sun_rays) {
-        read_tracing(pass, *lighting.sun_rays);
+    if (lighting.shadow_rays) {
+        read_tracing(pass, *lighting.shadow_rays);
     }
     if (lighting.vpls) {
         read_vpl_light(pass, *lighting.vpls);
@@ -110,7 +110,7 @@ LightingParts lighting_parts(const Execution& run, const Lighting& lighting) {
     constexpr std::int64_t few_suns = 8;
     const LightTable& lights = run.value(lighting.lights);
     const bool many_rays =
-        lighting.sun_rays && std::ranges::count_if(lights.entries, casts_sun_rays) > few_suns;
+        lighting.shadow_rays && std::ranges::count_if(lights.entries, is_sun_with_shadow) > few_suns;
     const std::uint32_t entries = many_rays ? 8 : 8192;
     const std::uint32_t shown = shows_direct(lighting.show) ? light_count(lights) : 0;
     return {.count = std::max(groups(shown, entries), 1U), .entries = entries};

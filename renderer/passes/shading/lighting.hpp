@@ -34,7 +34,7 @@ struct Lighting {
     ValueHandle<LightTable> lights;
     LightBuffers buffers;
     ShadowMaps shadows;
-    std::optional<Tracing> sun_rays{};  ///< none: there are no directional lights with shadows
+    std::optional<Tracing> shadow_rays{};  ///< none: lights have no shadows
     /// VPLs that are evaluated while shading; none: no indirect light, or it was gathered before.
     std::optional<VplLight> vpls{};
     std::optional<TextureHandle> indirect{};  ///< irradiance gathered before: see GatheredVpls, IndirectLight
@@ -63,7 +63,8 @@ void read_lighting(Pass& pass, const Lighting& lighting);
 
 /// The dispatches or draws of a shading pass. Each adds the light of some entries of the light lists; the
 /// first one also adds the indirect light. With at most 8,192 entries, or 8 if there are more than 8 suns
-/// whose shadows need rays, the loops of an invocation stay within the limit described at `most_asked`.
+/// with shadows, the loops of an invocation stay within the limit described at `most_asked`, and the edges of
+/// all suns' shadows are found by rays: see MOST_SHADOW_RAYS.
 struct LightingParts {
     std::uint32_t count = 1;
     std::uint32_t entries = 0;  ///< of a light list, in each part

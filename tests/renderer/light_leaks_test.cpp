@@ -1,0 +1,165 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/renderer/scene_builder.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr glm::uvec2 size{640, 480};  // pixels of about the size of a texel, many of them on creases
+constexpr glm::uvec2 small{160, 120};
+
+std::ptrdiff_t lit_pixels(const Picture& picture) {
+    return std::ranges::count_if(picture.pixels,
+                                 [](const glm::vec3& pixel) { return pixel != glm::vec3(0.0F); });
+}
+
+/// Above the ceiling, beside a wall, beyond an edge, and beyond a corner of the room.
+constexpr std::array<glm::vec3, 5> outside{{{0.3F, 1.5F, 0.2F},
+                                            {1.6F, 0.1F, -0.3F},
+                                            {-1.02F, 0.5F, -0.4F},
+                                            {0.2F, -1.3F, -1.4F},
+                                            {1.2F, 1.3F, 1.4F}}};
+
+/// Views of edges and corners of the room from its inside.
+const std::array<Transform, 3> views{looking({0.0F, 0.0F, 0.9F}, {0.0F, 0.0F, 0.0F}),
+                                     looking({0.7F, -0.2F, 0.6F}, {-0.9F, 0.8F, -0.7F}),
+                                     looking({-0.5F, 0.9F, 0.3F}, {1.0F, -1.0F, 0.2F})};
+
+Configuration direct_light(ShadingPath path) {
+    Configuration configuration = linear_configuration(path);
+    configuration.show = Show::direct;
+    configuration.indirect = false;
+    return configuration;
+}
+
+/// Moves everything.
+void translate(World& world, glm::vec3 offset) {
+    std::vector<Entity> all;
+    for (const auto& [entity, transform] : world.view<Transform>()) all.push_back(entity);
+    for (const Entity entity : all) {
+        world.edit<Transform>(entity, [&](Transform& transform) { transform.translation += offset; });
+    }
+}
+
+/// A closed room above a ground that a lamp outside lights: the room's walls hide both from its inside. The
+/// camera is outside.
+Scene room_above_ground() {
+    Scene scene = furnace_box(0.5F);
+    scene.world.set(scene.light, at({1.8F, -0.5F, 0.3F}));
+    add(scene.world, at({0.0F, -1.5F, 0.0F}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+    scene.world.set(scene.camera, looking({2.5F, 0.5F, 0.5F}, {2.0F, -1.5F, 0.3F}));
+    return scene;
+}
+
+class LightLeakTests : public RenderFixture {
+ protected:
+    /// Renders every view with the light at every place outside, as it is placed by `pose`.
+    void check_dark(const Configuration& configuration, Scene& scene, Transform (*pose)(glm::vec3 lamp)) {
+        configure(configuration);
+        CAPTURE(to_string(configuration.path));
+        for (const glm::vec3 lamp : outside) {
+            for (const Transform& view : views) {
+                scene.world.set(scene.light, pose(lamp));
+                scene.world.set(scene.camera, view);
+                CAPTURE(lamp.x);
+                CAPTURE(view.translation.x);
+                CHECK(lit_pixels(render(scene, size)) == 0);
+            }
+        }
+    }
+
+    /// Checks that the room has at most this share of the brightness of the ground outside.
+    void check_dark_at(glm::vec3 offset, const Configuration& configuration, double most) {
+        CAPTURE(to_string(configuration.show));
+        CAPTURE(to_string(configuration.visibility.method));
+        CAPTURE(to_string(configuration.vpls.placement));
+        Configuration of_ground = configuration;
+        of_ground.show = Show::direct;
+        configure(of_ground);
+        Scene scene = room_above_ground();
+        translate(scene.world, offset);
+        const double bright = mean(render(scene, small));
+        REQUIRE(bright > 0.01);
+        configure(configuration);
+        for (const Transform& view : views) {
+            CAPTURE(view.translation.x);
+            Transform moved = view;
+            moved.translation += offset;
+            scene.world.set(scene.camera, moved);
+            CHECK(mean(render(scene, small)) <= most * bright);
+        }
+    }
+};
+
+Transform towards_room(glm::vec3 lamp) {
+    return looking(lamp, {0.0F, 0.0F, 0.0F});
+}
+
+}  // namespace
+
+TEST_SUITE("light leaks") {
+    TEST_CASE_FIXTURE(LightLeakTests, "no pixel of a closed room of single walls is lit by a lamp outside") {
+        Scene scene = furnace_box(0.5F);
+        for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
+            check_dark(direct_light(path), scene, [](glm::vec3 lamp) { return at(lamp); });
+        }
+        scene.world.remove<PointLight>(scene.light);
+        SUBCASE("a spot light with a cube map") {
+            scene.world.set(scene.light, SpotLight{.inner_cone = 1.2F, .outer_cone = 1.3F});
+        }
+        SUBCASE("a spot light with a flat map") {
+            scene.world.set(scene.light, SpotLight{.inner_cone = 0.8F, .outer_cone = 0.9F});
+        }
+        SUBCASE("a directional light") {
+            scene.world.set(scene.light, DirectionalLight{.illuminance = 5.0F});
+        }
+        for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
+            check_dark(direct_light(path), scene, towards_room);
+        }
+    }
+
+    TEST_CASE_FIXTURE(LightLeakTests, "a closed room stays dark, at the origin and 100 km away") {
+        for (const glm::vec3 offset :
+             {glm::vec3(0.0F), glm::vec3(1e5F, 0.0F, 0.0F), glm::vec3(1e5F, -1e5F, 1e5F)}) {
+            CAPTURE(offset.x);
+            CAPTURE(offset.y);
+            check_dark_at(offset, direct_light(ShadingPath::deferred), 0.0);
+            Configuration indirect = linear_configuration();
+            indirect.show = Show::indirect;
+            indirect.visibility.method = VplVisibility::rays;
+            indirect.vpls.placement = VplPlacement::paths;
+            check_dark_at(offset, indirect, 0.0);
+            // Far away the points of surfels at the foot of a wall are rounded onto the other wall.
+            const double most_of_surfels = offset == glm::vec3(0.0F) ? 0.0 : 1e-3;
+            indirect.vpls.placement = VplPlacement::surfels;
+            check_dark_at(offset, indirect, most_of_surfels);
+            // A texel of a map that sees the ground below a wall's foot lights what is just above it.
+            indirect.visibility.method = VplVisibility::maps;
+            check_dark_at(offset, indirect, 1e-3);
+        }
+    }
+
+    TEST_CASE_FIXTURE(GlFixture, "a scene so far from the origin that rounding shows is warned of once") {
+        std::vector<std::string> lines;
+        TestedRenderer renderer(context->get_proc(),
+                                {.log = [&](std::string_view line) { lines.emplace_back(line); }});
+        const RenderTarget target(device, {16, 12});
+        for (const float away : {0.0F, 1e3F, 1e5F, 1.1e5F}) {
+            Scene scene = room_above_ground();
+            translate(scene.world, {away, 0.0F, 0.0F});
+            renderer.render(scene.world, scene.camera, target.target());
+            CHECK(lines.size() == (away < 1e5F ? 0 : 1));
+        }
+        CHECK(lines.front() ==
+              "the scene is so far from the origin that positions are rounded to 7.8 mm: light may leak "
+              "where surfaces meet and through thin walls");
+    }
+}
