@@ -96,7 +96,7 @@ std::vector<std::uint32_t> read_order(const Document& document, const tinygltf::
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& order) {
     std::vector<std::uint32_t> used(order);
     std::ranges::sort(used);
-    used.erase(std::ranges::unique(used).begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
     for (std::uint32_t& vertex : order) {
         vertex = static_cast<std::uint32_t>(std::ranges::lower_bound(used, vertex) - used.begin());
     }

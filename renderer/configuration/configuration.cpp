@@ -230,7 +230,8 @@ class Reader {
             return error(name, "is not a number");
         }
         const double number = infinite ? std::numeric_limits<double>::infinity() : json.get<double>();
-        if (number < range.least || number > range.most) {
+        const bool is_large_enough = static_cast<float>(number) >= static_cast<float>(range.least);
+        if (!is_large_enough || number > range.most) {
             return error(name, fmt::format("is not from {} to {}", range.least, range.most));
         }
         value = static_cast<float>(number);

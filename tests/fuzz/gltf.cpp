@@ -61,8 +61,17 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const Entity before = world.create();
     world.set(before, Name{"before"});
     const auto revision = world.revision<Name>();
+    // Small limits, so that each is reached, and memory above them is a finding (see -rss_limit_mb in `run`).
+    ImportOptions options;
+    options.limits = {.bytes = 1 << 20,
+                      .image_pixels = 1 << 16,
+                      .pixels = 1 << 18,
+                      .nodes = 5000,
+                      .depth = 3000,
+                      .triangles = 20'000};
     try {
-        check_imported(world, import_gltf({data, size}, "/nonexistent", "input.gltf", world));
+        check_imported(world,
+                       import_gltf({data, size}, "tests/fuzz/corpus/gltf", "input.gltf", world, options));
     } catch (const SceneError& error) {
         fuzz::require_readable(error.what());
         fuzz::require(std::string_view(error.what()).starts_with("input.gltf: "), "a message names the file");

@@ -145,7 +145,10 @@ TEST_SUITE("configuration") {
     }
 
     TEST_CASE("limits that are rounded to single precision are included") {
-        CHECK(errors_of(R"({"vpls": {"geometry_bound": 1e-6}})").empty());
+        Configuration smallest;
+        smallest.geometry_bound = 1e-6F;
+        CHECK(read_configuration(R"({"vpls": {"geometry_bound": 1e-6}})").configuration == smallest);
+        CHECK(read_configuration(write_configuration(smallest)).configuration == smallest);
         CHECK(!errors_of(R"({"vpls": {"geometry_bound": 0.99e-6}})").empty());
     }
 
