@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -22,7 +23,12 @@ class Log {
 
     explicit Log(Receiver receiver) : receiver_(std::move(receiver)) {}
 
-    void warn(std::string_view line) { pass_on(readable(line, longest_line)); }
+    /// Line breaks in `line` become spaces; other control characters are made visible.
+    void warn(std::string line) {
+        std::ranges::replace(line, '\n', ' ');
+        line.erase(line.find_last_not_of(' ') + 1);
+        pass_on(readable(line, longest_line));
+    }
 
     /// A warning about one of many things: "entity 3: left out, because ..." is of the kind "left out,
     /// because ...".
@@ -44,7 +50,6 @@ class Log {
     static constexpr std::size_t most_of_a_kind = 10;
 
     void pass_on(std::string line) {
-        line.erase(line.find_last_not_of(' ') + 1);
         const auto [known, is_new] = known_.insert(std::move(line));
         if (receiver_ && is_new) {
             receiver_(*known);

@@ -24,7 +24,10 @@ const Fault& SceneCheck::fault_in(const MeshInstance& instance) {
     if (!instance.mesh) {
         return no_mesh;
     }
-    return remembered(instance.mesh, [this](const Mesh& mesh) { return fault_of(mesh, strictness_); });
+    return remembered(instance.mesh, [this](const Mesh& mesh) {
+        Fault fault = fault_of(mesh, strictness_);
+        return fault ? fault : too_bright(mesh);
+    });
 }
 
 Fault SceneCheck::fault_in(const DeformedMesh& deformed, const Mesh& mesh) {
@@ -60,6 +63,9 @@ bool SceneCheck::accepts_at(const World& world, Entity entity, const MeshInstanc
 
 Fault SceneCheck::fault_in(const Environment& environment) {
     Fault fault = fault_of(environment);
+    if (!fault) {
+        fault = too_bright(environment);
+    }
     if (fault || !environment.picture) {
         return fault;
     }

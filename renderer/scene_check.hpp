@@ -49,7 +49,8 @@ class SceneCheck {
 
     template <class Light>
     [[nodiscard]] static Fault fault_in(const Light& light) {
-        return fault_of(light);
+        Fault fault = fault_of(light);
+        return fault ? fault : too_bright(light);
     }
     [[nodiscard]] const Fault& fault_in(const MeshInstance& instance);
     [[nodiscard]] Fault fault_in(const DeformedMesh& deformed, const Mesh& mesh);

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <candela/gl_error.hpp>
 #include <candela/headless_context.hpp>
 #include "engine/readable.hpp"
 #include "sandbox/animation_script.hpp"
@@ -151,6 +152,8 @@ int run(const Options& options, const MakeReference& make_reference) {
         run_session(options, make_reference);
         return 0;
     } catch (const ContextError& error) {
+        return report_error(error.what(), no_driver);
+    } catch (const gl::MemoryError& error) {
         return report_error(error.what(), no_driver);
     } catch (const std::bad_alloc&) {
         return report_error("out of memory", no_driver);

@@ -51,13 +51,6 @@ Fault negative_or_infinite(std::string_view what) {
     return fmt::format("{} is negative or not finite", what);
 }
 
-Fault too_bright(std::string_view what, glm::vec3 light) {
-    if (std::max({light.r, light.g, light.b}) > brightest) {
-        return fmt::format("{} is above {:g}", what, brightest);
-    }
-    return {};
-}
-
 Fault fault_of_light(glm::vec3 colour, std::string_view strength_name, float strength) {
     if (!is_amount(colour)) {
         return negative_or_infinite("the colour");
@@ -65,7 +58,17 @@ Fault fault_of_light(glm::vec3 colour, std::string_view strength_name, float str
     if (!is_amount(strength)) {
         return negative_or_infinite(fmt::format("the {}", strength_name));
     }
-    return too_bright(fmt::format("the product of colour and {}", strength_name), colour * strength);
+    if (!is_amount(colour * strength)) {
+        return fmt::format("the product of colour and {} is not finite", strength_name);
+    }
+    return {};
+}
+
+Fault fault_of_brightness(std::string_view what, glm::vec3 light) {
+    if (std::max({light.r, light.g, light.b}) > brightest) {
+        return fmt::format("{} is above {:g}", what, brightest);
+    }
+    return {};
 }
 
 Fault fault_of_range(float range) {
@@ -93,9 +96,6 @@ Fault fault_of(const Material& material) {
     }
     if (!is_amount(material.emissive)) {
         return negative_or_infinite("the emission");
-    }
-    if (Fault fault = too_bright("the emission", material.emissive)) {
-        return fault;
     }
     if (!is_amount(material.alpha_cutoff, Limit::infinite)) {
         return "the alpha cutoff is negative or not a number";
@@ -282,9 +282,6 @@ Fault fault_of(const Environment& environment) {
     if (!is_amount(environment.radiance)) {
         return negative_or_infinite("the radiance");
     }
-    if (Fault fault = too_bright("the radiance", environment.radiance)) {
-        return fault;
-    }
     if (!std::isfinite(environment.rotation)) {
         return "the rotation is not finite";
     }
@@ -307,6 +304,33 @@ Fault fault_of(const glm::mat4& world) {
     }
     if (is_too_large(world[3])) {
         return fmt::format("it is farther than {:g} metres from the origin", most);
+    }
+    return {};
+}
+
+Fault too_bright(const PointLight& light) {
+    return fault_of_brightness("the product of colour and intensity", light.colour * light.intensity);
+}
+
+Fault too_bright(const SpotLight& light) {
+    return fault_of_brightness("the product of colour and intensity", light.colour * light.intensity);
+}
+
+Fault too_bright(const DirectionalLight& light) {
+    return fault_of_brightness("the product of colour and illuminance", light.colour * light.illuminance);
+}
+
+Fault too_bright(const Environment& environment) {
+    return fault_of_brightness("the radiance", environment.radiance);
+}
+
+Fault too_bright(const Mesh& mesh) {
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        const Material& material = *mesh.primitives[i].material;
+        if (const Fault fault = fault_of_brightness("the emission", material.emissive)) {
+            return fmt::format("primitive {} of mesh \"{}\": material \"{}\": {}", i, mesh.name,
+                               material.name, *fault);
+        }
     }
     return {};
 }

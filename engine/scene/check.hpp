@@ -38,6 +38,13 @@ enum class Strictness : std::uint8_t {
 [[nodiscard]] Fault fault_of(const Camera& camera);
 /// Of a local-to-world matrix.
 [[nodiscard]] Fault fault_of(const glm::mat4& world);
+// What is finite, but so bright that its picture would not be. All else must have been checked.
+[[nodiscard]] Fault too_bright(const PointLight& light);
+[[nodiscard]] Fault too_bright(const SpotLight& light);
+[[nodiscard]] Fault too_bright(const DirectionalLight& light);
+[[nodiscard]] Fault too_bright(const Environment& environment);
+[[nodiscard]] Fault too_bright(const Mesh& mesh);
+
 /// Of a mesh whose vertices are at most `reach` metres from its origin, with this local-to-world matrix.
 [[nodiscard]] Fault fault_of_extent(const glm::mat4& world, float reach);
 /// The largest distance of a vertex from the origin of the mesh, metres.

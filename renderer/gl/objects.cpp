@@ -133,7 +133,7 @@ void Object::release() noexcept {
 Buffer::Buffer(Device& device, std::string_view label, std::uint64_t size)
     : Object(device, ObjectKind::buffer, create(device.gl().CreateBuffers), label) {
     const auto fail = [&] {
-        throw GlError(fmt::format("buffer \"{}\": no memory for {} bytes", label, size));
+        throw MemoryError(fmt::format("buffer \"{}\": no memory for {} bytes", label, size));
     };
     if (size > static_cast<std::uint64_t>(PTRDIFF_MAX)) fail();
     // OpenGL does not allow storage of size 0.

@@ -138,10 +138,10 @@ GLenum texture_target(TextureShape shape) {
 
 Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc)
     : Object(device, ObjectKind::texture, create_texture(device.gl(), desc.shape), label), desc_(desc) {
-    const auto fail = [&](std::string_view why) {
-        throw GlError(fmt::format("texture \"{}\" of {}×{}: {}", label, desc.size.x, desc.size.y, why));
-    };
-    if (const std::string why = error(desc, device.limits()); !why.empty()) fail(why);
+    const std::string called = fmt::format("texture \"{}\" of {}×{}", label, desc.size.x, desc.size.y);
+    if (const std::string why = error(desc, device.limits()); !why.empty()) {
+        throw GlError(fmt::format("{}: {}", called, why));
+    }
 
     const auto width = static_cast<GLsizei>(desc.size.x);
     const auto height = static_cast<GLsizei>(desc.size.y);
@@ -155,7 +155,9 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     // Not glGetError: it would also return, and clear, an error of the host.
     GLint stored = GL_FALSE;
     gl().GetTextureParameteriv(name(), GL_TEXTURE_IMMUTABLE_FORMAT, &stored);
-    if (stored != GL_TRUE) fail("no memory");
+    if (stored != GL_TRUE) {
+        throw MemoryError(fmt::format("{}: no memory", called));
+    }
     set_bytes(byte_size(desc));
     set_sampling();
 }

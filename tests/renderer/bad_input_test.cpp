@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -211,7 +212,7 @@ std::vector<FaultCase> light_faults() {
         point("the intensity is negative or not finite", [](PointLight& light) { light.intensity = -1.0F; }),
         point("the range is negative or not a number", [](PointLight& light) { light.range = not_a_number; }),
         point("the range is negative or not a number", [](PointLight& light) { light.range = -1.0F; }),
-        point("the product of colour and intensity is above 1e+32",
+        point("the product of colour and intensity is not finite",
               [](PointLight& light) {
                   light.colour = glm::vec3(1e30F);
                   light.intensity = 1e30F;
@@ -499,7 +500,24 @@ TEST_SUITE("bad input") {
         log.warn("one line");
         log.warn("another");
         CHECK(lines == std::vector<std::string>{"one line", "another"});
+        log.warn("\x1B[2J");
+        CHECK(lines.back() == "\\x1B[2J");
         Log silent({});
         silent.warn("unheard");
+    }
+
+    TEST_CASE("of warnings of one kind, ten are logged") {
+        std::vector<std::string> lines;
+        Log log([&](std::string_view line) { lines.emplace_back(line); });
+        for (int i = 0; i < 20'000; ++i) {
+            log.warn(fmt::format("entity {}", i), "left out, because it is faulty");
+            log.warn("entity 0", "left out, because it is faulty");  // known
+        }
+        log.warn("entity 3", "left out, because it is far away");
+        REQUIRE(lines.size() == 11);
+        CHECK(lines[8] == "entity 8: left out, because it is faulty");
+        CHECK(lines[9] ==
+              "entity 9: left out, because it is faulty (further warnings of this kind are not shown)");
+        CHECK(lines[10] == "entity 3: left out, because it is far away");
     }
 }

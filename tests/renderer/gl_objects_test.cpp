@@ -96,8 +96,8 @@ TEST_SUITE("gl objects") {
     TEST_CASE_FIXTURE(GlFixture, "a buffer that is too large is refused, and no object is left") {
         CHECK(throws<GlError>([&] { static_cast<void>(Buffer(device, "huge", ~std::uint64_t{0})); },
                               "buffer \"huge\""));
-        CHECK(throws<GlError>([&] { static_cast<void>(Buffer(device, "huge", std::uint64_t{1} << 50U)); },
-                              "no memory"));
+        CHECK(throws<MemoryError>([&] { static_cast<void>(Buffer(device, "huge", std::uint64_t{1} << 50U)); },
+                                  "no memory"));
         static_cast<void>(device.take_messages());  // the driver may report its refusal
         CHECK(device.live() == ObjectCounts{});
     }
@@ -110,7 +110,7 @@ TEST_SUITE("gl objects") {
                                .layers = device.limits().texture_layers};
         CHECK(throws<GlError>([&] { static_cast<void>(Texture(device, "huge", huge)); },
                               "texture \"huge\" of"));
-        CHECK(throws<GlError>([&] { static_cast<void>(Texture(device, "huge", huge)); }, "no memory"));
+        CHECK(throws<MemoryError>([&] { static_cast<void>(Texture(device, "huge", huge)); }, "no memory"));
         static_cast<void>(device.take_messages());  // the driver may report its refusal
         CHECK(device.live() == ObjectCounts{});
     }
@@ -120,8 +120,8 @@ TEST_SUITE("gl objects") {
         device.gl().Enable(GL_RENDERER);  // no capability
         CHECK_NOTHROW(Buffer(device, "buffer", 64));
         CHECK_NOTHROW(Texture(device, "texture", TextureDesc{.size = {4, 4}}));
-        CHECK(throws<GlError>([&] { static_cast<void>(Buffer(device, "huge", std::uint64_t{1} << 50U)); },
-                              "no memory"));
+        CHECK(throws<MemoryError>([&] { static_cast<void>(Buffer(device, "huge", std::uint64_t{1} << 50U)); },
+                                  "no memory"));
         CHECK(device.gl().GetError() == GL_INVALID_ENUM);
         static_cast<void>(device.take_messages());
     }

@@ -186,7 +186,8 @@ void add_edits(CLI::App& app, int& status) {
 }
 
 void add_scale(CLI::App& app, int& status) {
-    CLI::App& part = *app.add_subcommand("scale", "time and memory to load a scene and render its first frame");
+    CLI::App& part =
+        *app.add_subcommand("scale", "time and memory to load a scene and render its first frame");
     const auto study = std::make_shared<ScaleStudy>();
     const auto size = std::make_shared<std::string>("512x512");
     add_scene(part, study->scene);
