@@ -160,9 +160,10 @@ bool Animation::drives(Entity entity) const {
 }
 
 bool Animation::moves(const World& world, Entity entity) const {
-    for (const auto* at = world.find<Transform>(entity); at != nullptr; at = world.find<Transform>(entity)) {
+    while (entity) {
         if (drives(entity)) return true;
-        entity = at->parent;
+        const auto* transform = world.find<Transform>(entity);
+        entity = transform == nullptr ? Entity{} : transform->parent;
     }
     return false;
 }

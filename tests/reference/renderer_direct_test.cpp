@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <limits>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,22 +45,22 @@ class DirectLight : public PathFixture {
                     .rel_mse};
     }
 
-    /// The required bounds must hold at the last resolution, and the error must decrease with each
-    /// resolution, unless only rounding error is left.
+    /// The required bounds must hold at every resolution of the shadow maps. Rays decide wherever an edge may
+    /// be near, so the error must not depend on the resolution either: by less than a hundredth, which is
+    /// left for objects that texels miss.
     void check_scene(const Scene& scene, const std::vector<std::uint32_t>& resolutions) {
         const reference::Estimate truth = trace(reference::Scene(scene.world), scene.camera,
                                                 {.size = sampled_size, .samples = 2, .bounces = 0});
-        DirectErrors found{};
-        double last = std::numeric_limits<double>::infinity();
+        std::optional<double> first;
         for (const std::uint32_t resolution : resolutions) {
             CAPTURE(resolution);
-            found = errors(scene, truth, resolution);
+            const DirectErrors found = errors(scene, truth, resolution);
             MESSAGE("relMSE of samples ", found.samples, ", of pixels ", found.pixels);
-            CHECK((found.pixels < last || found.pixels < rounding));
-            last = found.pixels;
+            CHECK(found.samples <= 1e-4);
+            CHECK(found.pixels <= 1e-3);
+            CHECK(std::abs(found.pixels - first.value_or(found.pixels)) <= 0.01 * found.pixels + rounding);
+            first = first.value_or(found.pixels);
         }
-        CHECK(found.samples <= 1e-4);
-        CHECK(found.pixels <= 0.01);
     }
 
     /// Albedos are half floats with an error of 2⁻¹¹; this is its square.

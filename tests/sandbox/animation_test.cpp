@@ -261,6 +261,20 @@ TEST_SUITE("animation") {
         CHECK(stage.world.revision<Transform>() > transforms);
     }
 
+    TEST_CASE("what is below a moving node moves, and nothing else does") {
+        Stage stage;
+        Track arm{.node = "arm"};
+        arm.translation = {{0, {0.0F, 0.0F, 0.0F}}, {9, {1.0F, 0.0F, 0.0F}}};
+        Script script;
+        script.frames = 10;
+        script.tracks = {arm};
+        const Animation animation(script, stage.world);
+        CHECK(animation.moves(stage.world, stage.arm));
+        CHECK(animation.moves(stage.world, stage.lamp));
+        CHECK(!animation.moves(stage.world, stage.sun));
+        CHECK(!animation.moves(stage.world, stage.world.create()));
+    }
+
     TEST_CASE("errors name nodes that are missing, ambiguous, or not lights") {
         Stage stage;
         CHECK(error_of({{.node = "lamp"}}, stage.world) == "none");
