@@ -99,6 +99,7 @@ constexpr std::array limits{NamedLimit{"bytes", &ImportLimits::bytes},
 /// The limits with their defaults, as on the command line.
 std::string default_limits() {
     std::vector<std::string> lines;
+    lines.reserve(limits.size());
     for (const NamedLimit& each : limits) {
         lines.push_back(fmt::format("{}={}", each.name, ImportLimits{}.*each.limit));
     }

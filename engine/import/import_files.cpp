@@ -91,7 +91,7 @@ fs::path ImportFiles::resolve(const std::string& path, std::string_view called) 
         throw SceneError(fmt::format("{} contains a NUL character", called));
     }
     std::error_code error;
-    const fs::path found = fs::weakly_canonical(base_directory_ / path, error);
+    fs::path found = fs::weakly_canonical(base_directory_ / path, error);
     const fs::path root = fs::weakly_canonical(root_, error);
     if (error) {
         throw SceneError(fmt::format("{} cannot be read", called));
