@@ -13,7 +13,7 @@ namespace candela::gltf {
 
 namespace {
 
-std::shared_ptr<const SkyPicture> decode(Bytes bytes, ImportBudget& budget) {
+std::shared_ptr<const SkyPicture> decode_sky(Bytes bytes, ImportBudget& budget) {
     const PictureSize size = sky_picture_size(bytes);
     budget.add_picture(static_cast<std::uint64_t>(size.width), static_cast<std::uint64_t>(size.height));
     return decode_sky_picture(bytes);
@@ -24,10 +24,10 @@ std::shared_ptr<const SkyPicture> read_picture(const Document& document, const t
                                                ImportFiles& files, ImportBudget& budget) {
     try {
         if (source.Has("bufferView")) {
-            return decode(buffer_view_bytes(document, source.Get("bufferView").GetNumberAsInt()), budget);
+            return decode_sky(buffer_view_bytes(document, source.Get("bufferView").GetNumberAsInt()), budget);
         }
         if (source.Has("uri")) {
-            return decode(*files.read(source.Get("uri").Get<std::string>()), budget);
+            return decode_sky(*files.read(source.Get("uri").Get<std::string>()), budget);
         }
         return nullptr;
     } catch (const SceneError& error) {
