@@ -14,23 +14,52 @@ namespace candela {
 /// Characters of a text from outside that messages quote.
 inline constexpr std::size_t longest_quote = 200;
 
-/// Text from outside as a message may quote it: control characters as \x1B, and cut, with "..." at the end,
-/// at `longest` bytes, but not inside a UTF-8 character.
+/// The bytes of the UTF-8 character that `text` begins with, 1 to 4; 0 if it begins with none.
+[[nodiscard]] inline std::size_t utf8_length(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text.front());
+    const std::size_t length = first < 0x80U   ? 1
+                               : first < 0xC2U ? 0
+                               : first < 0xE0U ? 2
+                               : first < 0xF0U ? 3
+                               : first < 0xF5U ? 4
+                                               : 0;
+    const std::string_view rest = text.substr(0, length).substr(std::min<std::size_t>(length, 1));
+    const bool is_whole = text.size() >= length && std::ranges::all_of(rest, [](char c) {
+                              return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+                          });
+    return is_whole ? length : 0;
+}
+
+/// Whether a terminal would act on it instead of showing it: control characters (C0, DEL, C1), line
+/// separators, and what sets the direction of writing.
+[[nodiscard]] inline bool is_control(std::string_view character) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+    if (character.size() == 1) return byte(0) < 0x20U || byte(0) == 0x7FU;
+    if (character.size() == 2) return byte(0) == 0xC2U && byte(1) < 0xA0U;
+    if (character.size() != 3 || byte(0) != 0xE2U) return false;
+    const bool separator_or_direction = byte(1) == 0x80U && byte(2) >= 0xA8U && byte(2) <= 0xAEU;
+    const bool mark = byte(1) == 0x80U && (byte(2) == 0x8EU || byte(2) == 0x8FU);
+    const bool isolate = byte(1) == 0x81U && byte(2) >= 0xA6U && byte(2) <= 0xA9U;
+    return separator_or_direction || mark || isolate;
+}
+
+/// Text from outside as a message may quote it: control characters and what is not UTF-8 as \x1B, byte by
+/// byte, and cut, with "..." at the end, after at most `longest` bytes of `text`, but not inside a character.
 [[nodiscard]] inline std::string readable(std::string_view text, std::size_t longest = longest_quote) {
-    std::size_t end = std::min(text.size(), longest);
-    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
-        --end;
-    }
     std::string shown;
-    for (const char c : text.substr(0, end)) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20U || byte == 0x7FU) {
-            shown += fmt::format("\\x{:02X}", byte);
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t length = utf8_length(text.substr(at));
+        const std::string_view character = text.substr(at, std::max<std::size_t>(length, 1));
+        if (at + character.size() > longest) return shown + "...";
+        if (length > 0 && !is_control(character)) {
+            shown += character;
         } else {
-            shown += c;
+            for (const char c : character) shown += fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
         }
+        at += character.size();
     }
-    return end < text.size() ? shown + "..." : shown;
+    return shown;
 }
 
 /// The number with commas: 1,234,567.

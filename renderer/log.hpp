@@ -16,7 +16,7 @@
 namespace candela {
 
 /// Passes warnings on to the host, each line once. Without a receiver, it does nothing. Of warnings of the
-/// same kind, which differ in what they are about, the first ten are passed on, and the tenth says so.
+/// same kind, which differ in what they are about, the first ten are passed on, and the others are counted.
 class Log {
  public:
     using Receiver = std::function<void(std::string_view line)>;
@@ -37,15 +37,31 @@ class Log {
         if (known_.contains(line)) {
             return;
         }
-        std::size_t& count = kinds_[readable(kind, longest_line)];
-        if (count < most_of_a_kind) {
-            ++count;
-            pass_on(count < most_of_a_kind ? line : line + " (further warnings of this kind are not shown)");
-            known_.insert(line);
+        Kind& same = kinds_[readable(kind, longest_line)];
+        if (same.shown < most_of_a_kind) {
+            ++same.shown;
+            pass_on(line);
+        } else {
+            same.others.insert(std::hash<std::string>{}(line));
+        }
+    }
+
+    /// Says how many warnings of each kind were not passed on, if there are more than it has said.
+    void tell_counts() {
+        for (auto& [kind, same] : kinds_) {
+            if (same.others.size() > std::exchange(same.told, same.others.size())) {
+                pass_on(fmt::format("{} more: {}", grouped(same.others.size()), kind));
+            }
         }
     }
 
  private:
+    struct Kind {
+        std::size_t shown = 0;
+        std::unordered_set<std::size_t> others{};  // hashes of the lines that were not passed on
+        std::size_t told = 0;                      // how many of the others have been told
+    };
+
     static constexpr std::size_t longest_line = 2000;
     static constexpr std::size_t most_of_a_kind = 10;
 
@@ -58,7 +74,7 @@ class Log {
 
     Receiver receiver_;
     std::unordered_set<std::string> known_;
-    std::map<std::string, std::size_t> kinds_;  // how many of each have been passed on
+    std::map<std::string, Kind> kinds_;
 };
 
 }  // namespace candela

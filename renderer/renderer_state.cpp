@@ -115,10 +115,19 @@ std::vector<std::string> Renderer::State::configure(const Configuration& configu
     return try_to(configuration, extensions_);
 }
 
+/// Throws gl::GlError if the driver has no room for the depth maps of so many VPLs.
+void Renderer::State::require_room_for_maps(const Configuration& configuration) const {
+    if (configuration.indirect && configuration.visibility.method == VplVisibility::maps) {
+        (void)plan_vpl_atlas(configuration.visibility.map_resolution, configuration.vpls.count,
+                             gpu_.device().limits());
+    }
+}
+
 /// Switches to a configuration and extensions, or returns why that is not possible.
 std::vector<std::string> Renderer::State::try_to(const Configuration& configuration,
                                                  std::vector<Extension> extensions) {
     try {
+        require_room_for_maps(configuration);
         switch_to(configuration, shape_, std::move(extensions));
     } catch (const std::exception& error) {
         return {error.what()};
@@ -220,6 +229,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
         const TimedFrame timed(backend_.timer(), index);
         last_passes_ = runtime_.run(world, Timing::on).passes;
     }
+    gpu_.log().tell_counts();
     completed_ = true;
     refine_ = refines();
     pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality()});

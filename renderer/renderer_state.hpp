@@ -52,6 +52,7 @@ class CANDELA_PRIVATE Renderer::State {
                    std::vector<Extension> extensions);
     [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration,
                                                   std::vector<Extension> extensions);
+    void require_room_for_maps(const Configuration& configuration) const;
     void require_views(std::span<const RenderView> views) const;
     void set_view(const ViewHandles& handles, const RenderView& view);
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "engine/readable.hpp"
+
 #include <candela/scene/components.hpp>
 
 namespace candela::sandbox {
@@ -57,7 +59,7 @@ std::optional<T> value_at(const Keys<T>& keys, Interpolation interpolation, int 
 [[noreturn]] void fail(const Script& script, std::size_t track, const char* member,
                        const std::string& error) {
     throw std::runtime_error(fmt::format("{}: tracks[{}].{}: '{}' {}", script.path.string(), track, member,
-                                         script.tracks[track].node, error));
+                                         readable(script.tracks[track].node), error));
 }
 
 std::vector<Entity> find_nodes(const World& world, const std::string& wanted) {

@@ -1,6 +1,4 @@
 #include "sandbox/animation_script.hpp"
-#include "engine/json_fault.hpp"
-#include "engine/readable.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/import/unit_length.hpp"
+#include "engine/json_fault.hpp"
+#include "engine/readable.hpp"
 #include "sandbox/files/input_file.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/scene.hpp"

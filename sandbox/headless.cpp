@@ -8,6 +8,7 @@
 
 #include "sandbox/capture.hpp"
 #include "sandbox/files/output_file.hpp"
+#include "sandbox/messages.hpp"
 
 namespace candela::sandbox {
 
@@ -37,10 +38,6 @@ int frames_of(const Options& options, const Scene& scene) {
     return options.frames.value_or(scene.animation ? scene.animation->script().frames : 1);
 }
 
-void print_warning(std::string_view line) {
-    fmt::print(stderr, "candela: {}\n", line);
-}
-
 void apply(Renderer& renderer, const Configuration& configuration) {
     const std::vector<std::string> errors = renderer.configure(configuration);
     if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
@@ -49,7 +46,7 @@ void apply(Renderer& renderer, const Configuration& configuration) {
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size) {
     Renderer renderer(context.get_proc(),
-                      {.shader_directory = options.shaders.value_or(fs::path()), .log = print_warning});
+                      {.shader_directory = options.shaders.value_or(fs::path()), .log = print_message});
     apply(renderer, configuration);
     Capture capture(renderer, size);
     const std::optional<fs::path> out = picture_path(options);

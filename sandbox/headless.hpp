@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string_view>
 
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
@@ -28,9 +27,6 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
 
 /// Writes --report and --describe-graph if they are asked for.
 void write_documents(const Options& options, const RunReport& report, const Renderer& renderer);
-
-/// Prints a warning on stderr.
-void print_warning(std::string_view line);
 
 /// Sets a configuration, which must be valid, on a new renderer. Throws std::runtime_error.
 void apply(Renderer& renderer, const Configuration& configuration);

@@ -23,9 +23,9 @@ int run_app(int count, char** arguments) {
 int main(int count, char** arguments) {
     const int status = run_app(count, arguments);
     const bool is_written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-    if (status == 0 && !is_written) {
+    if (status == success && !is_written) {
         std::fputs("candela: the output cannot be written\n", stderr);
-        return 2;
+        return bad_input;
     }
     return status;
 }

@@ -16,7 +16,9 @@
 
 #include <candela/version.hpp>
 #include "sandbox/choose_configuration.hpp"
+#include "sandbox/exit_status.hpp"
 #include "sandbox/files/output_file.hpp"
+#include "sandbox/messages.hpp"
 #include "sandbox/scene.hpp"
 
 namespace candela::sandbox {
@@ -169,6 +171,7 @@ std::vector<std::pair<std::string, Enum>> named(const std::array<Enum, N>& value
 }
 
 void declare(CLI::App& app, Options& options) {
+    app.footer(exit_statuses);
     app.set_help_flag("--help", "print this and exit");
     app.set_version_flag("--version", "candela " CANDELA_VERSION, "print the version and exit");
     app.add_option("SCENE", options.scene,
@@ -266,11 +269,6 @@ void check_together(Options& options) {
     options.headless = options.headless || windowless;
 }
 
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-}
-
 }  // namespace
 
 std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments) {
@@ -282,11 +280,11 @@ std::variant<Options, EarlyExit> parse_options(int count, const char* const* arg
         check_together(options);
         return options;
     } catch (const CLI::CallForHelp&) {
-        return EarlyExit{0, app.help()};
+        return EarlyExit{success, app.help()};
     } catch (const CLI::CallForVersion& version) {
-        return EarlyExit{0, fmt::format("{}\n", version.what())};
+        return EarlyExit{success, fmt::format("{}\n", version.what())};
     } catch (const CLI::ParseError& error) {
-        return EarlyExit{2, fmt::format("candela: {}\n", one_line(error.what()))};
+        return EarlyExit{bad_input, fmt::format("candela: {}\n", one_line(error.what()))};
     }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,9 @@
 #include "sandbox/choose_configuration.hpp"
 #include "sandbox/config_watch.hpp"
 #include "sandbox/environment.hpp"
+#include "sandbox/exit_status.hpp"
 #include "sandbox/headless.hpp"
+#include "sandbox/messages.hpp"
 #include "sandbox/report.hpp"
 #include "sandbox/scene.hpp"
 #include "sandbox/window/window.hpp"
@@ -31,16 +34,11 @@ namespace candela::sandbox {
 
 namespace {
 
-constexpr int bad_input = 2;
-constexpr int no_driver = 3;
-constexpr int wrong_picture = 4;
 constexpr glm::ivec2 window_size{1280, 720};
 constexpr glm::ivec2 headless_size{512, 512};
 
-/// Prints the message on one line.
-int report_error(std::string line, int status) {
-    for (char& c : line) c = c == '\n' ? ' ' : c;
-    fmt::print(stderr, "candela: {}\n", line);
+ExitStatus report_error(std::string_view error, ExitStatus status) {
+    print_message(error);
     return status;
 }
 
@@ -135,9 +133,9 @@ void run_session(const Options& options, const MakeReference& make_reference) {
         return run_window(
             *window, [&](const TellProgress& tell) { return open_scene(options, tell); }, configuration,
             watch, options, make_reference);
-    for (const std::string& error : tried) fmt::print(stderr, "candela: no window: {}\n", error);
+    for (const std::string& error : tried) print_message("no window: " + error);
     Scene scene = open_scene(options, {});
-    for (const std::string& warning : first_ten(scene.warnings)) print_warning(warning);
+    for (const std::string& warning : first_ten(scene.warnings)) print_message(warning);
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
@@ -147,10 +145,10 @@ void run_session(const Options& options, const MakeReference& make_reference) {
 
 }  // namespace
 
-int run(const Options& options, const MakeReference& make_reference) {
+ExitStatus run(const Options& options, const MakeReference& make_reference) {
     try {
         run_session(options, make_reference);
-        return 0;
+        return success;
     } catch (const ContextError& error) {
         return report_error(error.what(), no_driver);
     } catch (const gl::MemoryError& error) {

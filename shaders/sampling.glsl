@@ -46,16 +46,17 @@ vec2 sample_2d(uint index, uint pair, uint seed) {
     return vec2(bits >> 8u) * (1.0 / 16777216.0);
 }
 
-// Unit direction at an angle with cosine `cos_theta` to the unit vector `axis`; `u` is the azimuth in turns.
-vec3 direction_at(vec3 axis, float cos_theta, float u) {
+// Unit direction at an angle θ to the unit vector `axis`, given by x = 1 - cos θ, which is exact also for small angles;
+// `u` is the azimuth in turns.
+vec3 direction_off(vec3 axis, float x, float u) {
     vec3 tangent, bitangent;
     basis_around(axis, tangent, bitangent);
-    float sin_theta = sqrt(max(0.0, 1.0 - cos_theta * cos_theta));
+    float sin_theta = sqrt(max(0.0, x * (2.0 - x)));
     float phi = 2.0 * PI * u;
-    return sin_theta * (cos(phi) * tangent + sin(phi) * bitangent) + cos_theta * axis;
+    return sin_theta * (cos(phi) * tangent + sin(phi) * bitangent) + (1.0 - x) * axis;
 }
 
 // Unit direction in the hemisphere of `normal` with density cos θ / π, for `u` in [0, 1)². See theory.md, "Directions".
 vec3 cosine_direction(vec3 normal, vec2 u) {
-    return direction_at(normal, sqrt(1.0 - u.x), u.y);
+    return direction_off(normal, 1.0 - sqrt(1.0 - u.x), u.y);
 }

@@ -49,8 +49,8 @@ struct Light {
     vec3 intensity;  // candela; directional: lux
     int shadow;      // index into the shadows, -1: none
     vec2 shape;      // spot: the cone's falloff is (y - (1 - cos) x)²; directional: half extents of the footprint, metres
-    float cos_inner;
-    float cos_outer;
+    float cos_outer;  // spot: of the cone
+    float pad0 DEFAULT(0.0);
 };
 
 // What all lights have in common. A uniform block: shaders/lights/light_list.glsl.

@@ -11,6 +11,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_document.hpp"
+#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
@@ -84,7 +85,7 @@ std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& mate
         const std::size_t index = draft_.add("materials", describe(*material));
         return materials_.emplace(material, index).first->second;
     } catch (const SceneError& error) {
-        throw SceneError(fmt::format("material \"{}\": {}", material->name, error.what()));
+        throw SceneError(fmt::format("material \"{}\": {}", readable(material->name), error.what()));
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/unit_length.hpp"
+#include "engine/readable.hpp"
 #include "engine/scene/check.hpp"
 
 namespace candela::gltf {
@@ -106,8 +107,8 @@ std::optional<std::size_t> MeshWriter::add(const Mesh& mesh) {
         throw SceneError(*fault);
     }
     if (!has_unit_normals(mesh)) {
-        draft_.warnings.push_back(
-            fmt::format("mesh \"{}\": normals that are not of unit length will be normalised", mesh.name));
+        draft_.warnings.push_back(fmt::format(
+            "mesh \"{}\": normals that are not of unit length will be normalised", readable(mesh.name)));
     }
     Json primitives;
     for (const Primitive& primitive : mesh.primitives) {

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "engine/readable.hpp"
+
 namespace candela {
 namespace {
 
@@ -143,7 +145,7 @@ Fault fault_of(const Primitive& primitive, Strictness strictness) {
         return "it has no material";
     }
     if (const Fault fault = fault_of(*primitive.material)) {
-        return fmt::format("material \"{}\": {}", primitive.material->name, *fault);
+        return fmt::format("material \"{}\": {}", readable(primitive.material->name), *fault);
     }
     if (primitive.indices.size() % 3 != 0) {
         return fmt::format("its {} indices make no whole number of triangles", primitive.indices.size());
@@ -207,7 +209,7 @@ Fault fault_of_planes(const Camera& camera) {
 Fault fault_of(const Mesh& mesh, Strictness strictness) {
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         if (const Fault fault = fault_of(mesh.primitives[i], strictness)) {
-            return fmt::format("primitive {} of mesh \"{}\": {}", i, mesh.name, *fault);
+            return fmt::format("primitive {} of mesh \"{}\": {}", i, readable(mesh.name), *fault);
         }
     }
     return {};
@@ -228,13 +230,13 @@ Fault fault_of_fit(const DeformedMesh& deformed, const Mesh& mesh) {
     }
     if (deformed.vertices->size() != mesh.primitives.size()) {
         return fmt::format("{} lists of vertices, but mesh \"{}\" has {} primitives",
-                           deformed.vertices->size(), mesh.name, mesh.primitives.size());
+                           deformed.vertices->size(), readable(mesh.name), mesh.primitives.size());
     }
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         const std::size_t count = (*deformed.vertices)[i].size();
         if (count != mesh.primitives[i].vertices.size()) {
-            return fmt::format("{} vertices, but primitive {} of mesh \"{}\" has {}", count, i, mesh.name,
-                               mesh.primitives[i].vertices.size());
+            return fmt::format("{} vertices, but primitive {} of mesh \"{}\" has {}", count, i,
+                               readable(mesh.name), mesh.primitives[i].vertices.size());
         }
     }
     return {};
@@ -328,8 +330,8 @@ Fault too_bright(const Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
         const Material& material = *mesh.primitives[i].material;
         if (const Fault fault = fault_of_brightness("the emission", material.emissive)) {
-            return fmt::format("primitive {} of mesh \"{}\": material \"{}\": {}", i, mesh.name,
-                               material.name, *fault);
+            return fmt::format("primitive {} of mesh \"{}\": material \"{}\": {}", i, readable(mesh.name),
+                               readable(material.name), *fault);
         }
     }
     return {};

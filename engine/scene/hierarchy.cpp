@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "engine/readable.hpp"
+
 namespace candela {
 
 glm::mat4 local_matrix(const Transform& transform) {
@@ -13,7 +15,8 @@ glm::mat4 local_matrix(const Transform& transform) {
 
 std::string describe(const World& world, Entity entity) {
     const Name* name = world.find<Name>(entity);
-    return name ? fmt::format("entity \"{}\"", name->value) : fmt::format("entity {}", entity.index);
+    return name ? fmt::format("entity \"{}\"", readable(name->value))
+                : fmt::format("entity {}", entity.index);
 }
 
 glm::mat4 world_matrix(const World& world, Entity entity) {

@@ -29,6 +29,7 @@
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/files/recent_files.hpp"
 #include "sandbox/headless.hpp"
+#include "sandbox/messages.hpp"
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/panels/help_panel.hpp"
@@ -203,7 +204,7 @@ class WindowSession {
 
     void report_errors(std::vector<std::string> errors) {
         frames_to_draw_ = settling;
-        for (const std::string& error : errors) fmt::print(stderr, "candela: {}\n", error);
+        for (const std::string& error : errors) print_message(error);
         state_.errors = std::move(errors);
     }
 
@@ -254,7 +255,7 @@ class WindowSession {
         take_saved_configuration();
         take_saved_shaders();
         for (std::string& line : warnings_.take()) {
-            print_warning(line);
+            print_message(line);
             state_.warnings.push_back(std::move(line));
             frames_to_draw_ = settling;
         }
@@ -284,7 +285,7 @@ class WindowSession {
     void say_warnings() {
         state_.warnings = first_ten(document_->scene.warnings);
         window_.set_title(fmt::format("Candela - {}", document_->scene.path.filename().string()));
-        for (const std::string& warning : state_.warnings) print_warning(warning);
+        for (const std::string& warning : state_.warnings) print_message(warning);
     }
 
     void take_saved_configuration() {
@@ -307,7 +308,7 @@ class WindowSession {
                             std::make_move_iterator(frame.times.end()));
         }
         if (!frame.errors.empty() && frame.errors != state_.errors) {
-            for (const std::string& error : frame.errors) fmt::print(stderr, "candela: {}\n", error);
+            for (const std::string& error : frame.errors) print_message(error);
         }
         if (frame.request == submitted_ && (!frame.errors.empty() || from_renderer_)) {
             state_.errors = frame.errors;

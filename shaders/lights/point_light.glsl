@@ -17,5 +17,5 @@ Incident incident_from_point(Light light, vec3 position) {
 }
 
 Emission emission_of_point(Light light, vec2 u) {
-    return Emission(light.position, direction_at(vec3(0.0, 0.0, 1.0), 1.0 - 2.0 * u.x, u.y));
+    return Emission(light.position, direction_off(vec3(0.0, 0.0, 1.0), 2.0 * u.x, u.y));
 }

@@ -10,18 +10,19 @@ float cone_falloff(Light light, vec3 direction) {
     return x * x;
 }
 
-// Cosine of the angle to the axis, distributed like the intensity, for `u` in [0, 1): the inverse of the cumulative flux
+// 1 - cos of the angle to the axis, distributed like the intensity, for `u` in [0, 1): the inverse of the cumulative flux
 // of the inner cone and then of the quadratic falloff. See theory.md, "Directions".
-float sample_spot_cosine(Light light, float u) {
-    float inner = 1.0 - light.cos_inner;
-    float falloff = (light.cos_inner - light.cos_outer) / 3.0;
-    float x = u * (inner + falloff);
-    if (x < inner) return 1.0 - x;
-    return light.cos_outer + (light.cos_inner - light.cos_outer) * pow(max(1.0 - (x - inner) / falloff, 0.0), 1.0 / 3.0);
+float sample_spot(Light light, float u) {
+    float ramp = 1.0 / light.shape.x;
+    float outer = light.shape.y * ramp;
+    float inner = outer - ramp;
+    float x = u * (inner + ramp / 3.0);
+    if (x < inner) return x;
+    return outer - ramp * pow(max(1.0 - 3.0 * (x - inner) / ramp, 0.0), 1.0 / 3.0);
 }
 
 Emission emission_of_spot(Light light, vec2 u) {
-    return Emission(light.position, direction_at(light.direction, sample_spot_cosine(light, u.x), u.y));
+    return Emission(light.position, direction_off(light.direction, sample_spot(light, u.x), u.y));
 }
 
 // Cosine of the half angle of a cone that contains the light, widened by more than the rounding of directions.

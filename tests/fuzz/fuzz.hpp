@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "engine/readable.hpp"
+
 namespace candela::fuzz {
 
 /// Ends the program if a property does not hold; libFuzzer then saves the input.
@@ -19,9 +21,7 @@ inline void require(bool holds, std::string_view property) {
 inline void require_readable(std::string_view message) {
     require(!message.empty(), "a message has text");
     require(message.size() < 2000, "a message is short");
-    for (const char c : message) {
-        require(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f, "a message has no control characters");
-    }
+    require(readable(message, message.size()) == message, "a message has no control characters");
 }
 
 }  // namespace candela::fuzz

@@ -410,6 +410,38 @@ TEST_SUITE("bad input") {
         CHECK(renderer.render(good.world, good.camera) == picture);
     }
 
+    TEST_CASE_FIXTURE(BadInput, "spots that fall between the points of surfels are told, others are not") {
+        Scene scene = cornell_box();
+        const auto lines_with = [&](float cone, VplPlacement placement) {
+            scene.world.set(scene.light, SpotLight{.inner_cone = 0.0F, .outer_cone = cone});
+            Watched renderer(device, context->get_proc(), false);
+            Configuration configuration = small_configuration();
+            configuration.vpls.placement = placement;
+            REQUIRE(renderer.renderer().configure(configuration).empty());
+            static_cast<void>(renderer.render(scene.world, scene.camera));
+            return renderer.lines;
+        };
+        scene.world.remove<PointLight>(scene.light);
+        const std::vector<std::string> lines = lines_with(1e-3F, VplPlacement::surfels);
+        REQUIRE(lines.size() == 1);
+        CHECK(lines[0].starts_with("spot lights whose light falls between the points of surfels: 1; "));
+        CHECK(lines_with(0.5F, VplPlacement::surfels).empty());
+        CHECK(lines_with(1e-3F, VplPlacement::paths).empty());
+    }
+
+    TEST_CASE_FIXTURE(BadInput, "more depth maps of VPLs than the driver has room for are refused at once") {
+        Watched renderer(device, context->get_proc(), false);
+        const Configuration before = renderer.renderer().configuration();
+        Configuration configuration = before;
+        configuration.vpls.placement = VplPlacement::paths;
+        configuration.vpls.count = 1U << 20U;
+        configuration.visibility.method = VplVisibility::maps;
+        const std::vector<std::string> errors = renderer.renderer().configure(configuration);
+        REQUIRE(errors.size() == 1);
+        CHECK(errors[0].starts_with("depth maps of 1048576 VPLs, 64 texels a side, fill 16384 layers"));
+        CHECK(renderer.renderer().configuration() == before);
+    }
+
     TEST_CASE_FIXTURE(BadInput, "an entity without a name is called by its index") {
         Scene scene = cornell_box();
         const Entity culprit = add(scene.world, MeshInstance{});
@@ -515,9 +547,15 @@ TEST_SUITE("bad input") {
         }
         log.warn("entity 3", "left out, because it is far away");
         REQUIRE(lines.size() == 11);
-        CHECK(lines[8] == "entity 8: left out, because it is faulty");
-        CHECK(lines[9] ==
-              "entity 9: left out, because it is faulty (further warnings of this kind are not shown)");
+        CHECK(lines[9] == "entity 9: left out, because it is faulty");
         CHECK(lines[10] == "entity 3: left out, because it is far away");
+        for (int frame = 0; frame < 2; ++frame) {
+            log.tell_counts();
+            CHECK(lines.size() == 12);
+            CHECK(lines.back() == "19,990 more: left out, because it is faulty");
+        }
+        log.warn("entity 20000", "left out, because it is faulty");
+        log.tell_counts();
+        CHECK(lines.back() == "19,991 more: left out, because it is faulty");
     }
 }

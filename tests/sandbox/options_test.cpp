@@ -10,12 +10,13 @@
 #include <doctest/doctest.h>
 
 #include <candela/version.hpp>
+#include "sandbox/messages.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
-std::variant<Options, EarlyExit> parse(std::initializer_list<const char*> flags) {
+std::variant<Options, EarlyExit> parse(std::vector<const char*> flags) {
     std::vector<const char*> arguments{"candela"};
     arguments.insert(arguments.end(), flags.begin(), flags.end());
     return parse_options(static_cast<int>(arguments.size()), arguments.data());
@@ -196,6 +197,19 @@ TEST_SUITE("options") {
             CHECK(help.find(flag) == std::string::npos);
         }
         check_refused({"a.gltf", "b.gltf"}, "b.gltf", "");
+    }
+
+    TEST_CASE("messages show control characters as text") {
+        for (const std::vector<const char*>& arguments :
+             {std::vector<const char*>{"--\x1B]0;"}, {"--vpls", "\x1B[2J"}, {"--config", "\xC2\x9B\n"}}) {
+            const EarlyExit exit = std::get<EarlyExit>(parse(arguments));
+            CHECK(exit.status == 2);
+            CHECK(exit.text.find('\x1B') == std::string::npos);
+            CHECK(exit.text.find('\x9B') == std::string::npos);
+            CHECK(std::ranges::count(exit.text, '\n') == 1);
+        }
+        CHECK(one_line("a\nb\x1B") == "a b\\x1B");
+        CHECK(one_line(std::string(10'000, 'x')).size() < 5'000);
     }
 
     TEST_CASE("the help names every flag, and the version is printed alone") {

@@ -46,7 +46,6 @@ LightTable::Entry directional_entry(Entity entity, const ParallelLight& light, c
                       .intensity = light.illuminance,
                       .shadow = no_shadow,
                       .shape = shape,
-                      .cos_inner = 0.0F,
                       .cos_outer = 0.0F},
             .flux = light.illuminance * (4.0F * shape.x * shape.y),
             .casts_shadow = light.casts_shadow};

@@ -20,7 +20,6 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
                       .intensity = intensity,
                       .shadow = no_shadow,
                       .shape = glm::vec2(0.0F),
-                      .cos_inner = 0.0F,
                       .cos_outer = 0.0F},
             .flux = intensity * (2.0F * hemisphere),
             .casts_shadow = light.casts_shadow};

@@ -38,7 +38,6 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
                       .intensity = intensity,
                       .shadow = no_shadow,
                       .shape = {1.0F / ramp, outer / ramp},
-                      .cos_inner = 1.0F - inner,
                       .cos_outer = 1.0F - outer},
             .flux = intensity * (hemisphere * (inner + ramp / 3.0F)),
             .casts_shadow = light.casts_shadow};

@@ -1,9 +1,12 @@
 #include "renderer/passes/surfels/surfel_light.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <candela/graph/execute.hpp>
 
@@ -133,6 +136,26 @@ void light_points(const gl::Functions& gl, const gl::Program& program, std::uint
     gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+/// Light is evaluated at the cells' points only. A spot that is narrower than they are apart, even where it
+/// is widest, may fall between them.
+void warn_of_narrow_spots(Log& log, const LightTable& lights, const SceneMetrics& metrics,
+                          std::uint32_t points) {
+    const float apart = std::sqrt(metrics.area / static_cast<float>(std::max(points, 1U)));
+    const auto is_narrow = [&](const LightTable::Entry& entry) {
+        const gpu::Light& light = entry.light;
+        const float farthest = std::min(light.range, 2.0F * metrics.radius());
+        const float tangent = std::sqrt(1.0F - light.cos_outer * light.cos_outer) / light.cos_outer;
+        return light.kind == LIGHT_SPOT && light.cos_outer > 0.0F && 2.0F * farthest * tangent < apart;
+    };
+    const auto narrow = std::ranges::count_if(lights.entries, is_narrow);
+    if (narrow > 0) {
+        log.warn(
+            fmt::format("spot lights whose light falls between the points of surfels: {}; their indirect "
+                        "light is wrong or missing, use \"vpls\": {{\"placement\": \"paths\"}}",
+                        narrow));
+    }
+}
+
 /// For a pass that reads the sky, if there is one. Returns the names to define in its shader.
 std::vector<std::string> read_sky(Pass& pass, const std::optional<SkyPatches>& sky) {
     if (!sky) {
@@ -179,7 +202,9 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
                 return;
             }
             lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
-            const auto light_count = static_cast<std::uint32_t>(run.value(lights.table).entries.size());
+            const LightTable& table = run.value(lights.table);
+            warn_of_narrow_spots(gpu.log(), table, run.value(tracing.metrics), points);
+            const auto light_count = static_cast<std::uint32_t>(table.entries.size());
             set_emitters(lighter, run.value(surfels.plan));
             if (sky) {
                 set_sky(lighter, run.value(sky->count));

@@ -21,7 +21,7 @@ VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t map
     if (settings.method != VplVisibility::maps) {
         return {};
     }
-    VplAtlas atlas = plan_vpl_atlas(settings.map_resolution, std::max(maps, 1U), limits);
+    VplAtlas atlas = plan_vpl_atlas(settings.map_resolution, maps, limits);
     atlas.reach = metrics.scale() > 0.0F ? 4.0F * metrics.scale() : 1.0F;
     return atlas;
 }
@@ -53,7 +53,7 @@ VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::
                                       resolution, limits.texture_size));
     }
     const std::uint32_t of_layer = atlas.tiles * atlas.tiles;
-    atlas.layers = (maps + of_layer - 1) / of_layer;
+    atlas.layers = std::max((maps + of_layer - 1) / of_layer, 1U);
     if (atlas.layers > limits.texture_layers) {
         throw gl::GlError(
             fmt::format("depth maps of {} VPLs, {} texels a side, fill {} layers; the driver allows {}", maps,

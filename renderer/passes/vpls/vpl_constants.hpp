@@ -24,7 +24,7 @@ struct VplAtlas {
     bool operator==(const VplAtlas&) const = default;
 };
 
-/// The atlas with the fewest layers for `maps` slots, within the limits of the driver. Throws gl::GlError if
+/// The atlas with the fewest layers, at least one, for `maps` slots, within the limits of the driver. Throws gl::GlError if
 /// there is none.
 [[nodiscard]] VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::Limits& limits);
 
