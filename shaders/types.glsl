@@ -189,7 +189,7 @@ struct VplConstants {
     uint map_resolution;      // texels along a side of a slot of the atlas
     uint map_tiles;           // slots along a side of a layer
     float map_side;           // texels along a side of a layer
-    float map_inverse_reach;  // 1/m, inverse of the distance at which map depth is 0
+    float map_near;           // metres, the octahedral distance at which map depth is 1
 };
 
 #ifndef __cplusplus  // C++ has it in engine/bvh/bvh.hpp

@@ -1,6 +1,7 @@
 // The atlas of the VPLs' depth maps: square slots (VplTile) in the layers of an array texture. A slot holds the
-// hemisphere above a VPL's surface in the hemi-octahedral map. Depth is linear in distance and reversed: 1 at the VPL,
-// 0 at a distance of at least the scene's diameter and where there is no surface.
+// hemisphere above a VPL's surface in the hemi-octahedral map. Depth is the inverse of the octahedral distance
+// |x| + |y| + z, so that it is linear over a plane (theory.md, "One plane in a VPL map"): 1 at VplConstants::map_near and
+// nearer, 0 where there is no surface.
 #include "maths.glsl"
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
@@ -19,4 +20,5 @@ VplTile vpl_tile(uint map) {
 
 vec3 vpl_map_origin(Vpl vpl) { return vpl.map_origin + vpl_constants.ray_offset * vpl.normal; }
 
-float vpl_map_depth(float distance) { return 1.0 - distance * vpl_constants.map_inverse_reach; }
+// `at`: in the map's space, metres from its origin.
+float vpl_map_depth(vec3 at) { return min(vpl_constants.map_near / (abs(at.x) + abs(at.y) + at.z), 1.0); }

@@ -20,5 +20,5 @@ void main() {
     vec3 direction = local.x * tangent + local.y * bitangent + local.z * vpl.normal;
     if (!may_have_changed(vpl_map_origin(vpl), direction, 1.0 / 0.0)) discard;
     Hit hit = closest_hit(vpl_map_origin(vpl), direction, 0.0, 1.0 / 0.0);
-    gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(hit.t);
+    gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(hit.t * local);
 }

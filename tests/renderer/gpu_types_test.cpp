@@ -105,7 +105,7 @@ const std::vector<Layout>& layouts() {
          {MEMBER(VplConstants, count), MEMBER(VplConstants, radius2), MEMBER(VplConstants, crease_slack),
           MEMBER(VplConstants, ray_offset), MEMBER(VplConstants, map_resolution),
           MEMBER(VplConstants, map_tiles), MEMBER(VplConstants, map_side),
-          MEMBER(VplConstants, map_inverse_reach)}},
+          MEMBER(VplConstants, map_near)}},
         {"BvhNode",
          sizeof(gpu::BvhNode),
          {MEMBER(BvhNode, lower), MEMBER(BvhNode, first), MEMBER(BvhNode, upper), MEMBER(BvhNode, count)}},

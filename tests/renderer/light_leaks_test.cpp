@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +39,14 @@ Configuration direct_light(ShadingPath path) {
     Configuration configuration = linear_configuration(path);
     configuration.show = Show::direct;
     configuration.indirect = false;
+    return configuration;
+}
+
+Configuration vpl_light(VplPlacement placement, VplVisibility method) {
+    Configuration configuration = linear_configuration();
+    configuration.show = Show::indirect;
+    configuration.vpls = {.placement = placement, .count = 256, .bounces = 4};
+    configuration.visibility.method = method;
     return configuration;
 }
 
@@ -144,6 +154,62 @@ TEST_SUITE("light leaks") {
             // A texel of a map that sees the ground below a wall's foot lights what is just above it.
             indirect.visibility.method = VplVisibility::maps;
             check_dark_at(offset, indirect, 1e-3);
+        }
+    }
+
+    TEST_CASE_FIXTURE(LightLeakTests,
+                      "what a plane hides gets no light from VPLs, however near it is behind it") {
+        // Ground, a plate above it and a ceiling above the plate. Seen from below the plate is culled, but it
+        // is in the way of light.
+        const glm::quat downwards = glm::angleAxis(glm::pi<float>(), glm::vec3(1, 0, 0));
+        for (const float gap : {0.1F, 0.01F, 0.001F}) {
+            CAPTURE(gap);
+            Scene scene;
+            add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.8F)))});
+            add(scene.world, at({0, 1, 0}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+            add(scene.world, Transform{.translation = {0, 1.0F + gap, 0}, .rotation = downwards},
+                MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+            scene.light = add(scene.world, at({0.1F, 0.5F, 0.2F}), PointLight{});
+            scene.camera =
+                add(scene.world, looking({0.0F, 0.6F, 0.0F}, {0.0F, 2.0F, 0.0F}, {0, 0, 1}), Camera{});
+            const auto light_by = [&](VplVisibility method) {
+                configure(vpl_light(VplPlacement::paths, method));
+                return mean(render(scene, small));
+            };
+            const double unhidden = light_by(VplVisibility::none);
+            REQUIRE(unhidden > 0.0);
+            CHECK(light_by(VplVisibility::rays) == 0.0);
+            // Four faces of the octahedron meet along the two diagonals of a map. There, in a strip two
+            // texels wide along each, look-ups do not see that it is one plane.
+            CHECK(light_by(VplVisibility::maps) < 4.0 / 64.0 * unhidden);
+        }
+    }
+
+    TEST_CASE_FIXTURE(LightLeakTests,
+                      "a room behind a thin wall of a lit one gets a thousandth of its light at most") {
+        for (const float thickness : {0.01F, 0.001F}) {
+            CAPTURE(thickness);
+            Scene scene = furnace_box(0.5F);
+            const glm::vec3 beyond(2.0F + thickness, 0.0F, 0.0F);
+            add(scene.world, at(beyond), MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.8F)))});
+            scene.world.set(scene.light, at(beyond + glm::vec3(0.2F, 0.3F, -0.1F)));
+            for (const VplPlacement placement : {VplPlacement::surfels, VplPlacement::paths}) {
+                CAPTURE(to_string(placement));
+                for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays}) {
+                    CAPTURE(to_string(method));
+                    configure(vpl_light(placement, method));
+                    scene.world.set(scene.camera, looking(beyond + glm::vec3(0.0F, 0.0F, 0.9F), beyond));
+                    const double bright = mean(render(scene, small));
+                    REQUIRE(bright > 0.1);
+                    // Texels that see both the wall and the floor in front of it let some light through.
+                    const double most = method == VplVisibility::maps ? 1e-3 * bright : 0.0;
+                    for (const Transform& view : {looking({-0.5F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}),
+                                                  looking({0.2F, -0.2F, 0.1F}, {1.0F, -1.0F, 0.7F})}) {
+                        scene.world.set(scene.camera, view);
+                        CHECK(mean(render(scene, size)) <= most);
+                    }
+                }
+            }
         }
     }
 

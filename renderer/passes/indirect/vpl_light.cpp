@@ -37,7 +37,7 @@ void read_vpl_light(Pass& pass, const VplLight& light) {
         pass.read(*light.vpls.points, {Usage::storage, BINDING_LIT_POINTS});
     }
     if (light.maps) {
-        pass.read(*light.maps, {Usage::compared, UNIT_VPL_MAPS});
+        pass.read(*light.maps, {Usage::sampled, UNIT_VPL_MAPS});
     }
     if (light.rays) {
         read_tracing(pass, *light.rays);

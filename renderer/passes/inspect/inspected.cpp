@@ -35,6 +35,7 @@ glm::vec4 perspective_terms(float near_plane) {
     return {0.0F, near_plane, -1.0F, 0.0F};
 }
 
+
 /// Of one with the depth 1 - metres / reach.
 glm::vec4 linear_terms(float reach) {
     return {1.0F / reach, 1.0F, 0.0F, 1.0F};
@@ -65,7 +66,7 @@ std::optional<glm::vec4> depth_terms(const Execution& run, const DepthMeaning& d
         return shadow_terms(run.value(shadows->plan), shadows->cubes, layer);
     }
     if (const auto* const atlas = std::get_if<ValueHandle<VplAtlas>>(&depth)) {
-        return linear_terms(run.value(*atlas).reach);
+        return perspective_terms(run.value(*atlas).near);
     }
     return std::nullopt;
 }

@@ -57,7 +57,7 @@ struct ShadowDepths {
 };
 
 /// What turns the depths of a texture into metres: those along the axis of the camera or of a shadow map, or
-/// the distance to a VPL. None: unknown.
+/// the octahedral distance to a VPL. None: unknown.
 using DepthMeaning =
     std::variant<std::monostate, ValueHandle<CameraView>, ShadowDepths, ValueHandle<VplAtlas>>;
 

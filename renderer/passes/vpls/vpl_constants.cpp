@@ -22,7 +22,7 @@ VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t map
         return {};
     }
     VplAtlas atlas = plan_vpl_atlas(settings.map_resolution, maps, limits);
-    atlas.reach = metrics.scale() > 0.0F ? 4.0F * metrics.scale() : 1.0F;
+    atlas.near = metrics.scale() > 0.0F ? 0x1p-18F * metrics.scale() : 1.0F;
     return atlas;
 }
 
@@ -35,7 +35,7 @@ gpu::VplConstants constants_of(std::uint32_t vpl_count, const SceneMetrics& metr
             .map_resolution = atlas.resolution,
             .map_tiles = atlas.tiles,
             .map_side = static_cast<float>(atlas.side),
-            .map_inverse_reach = 1.0F / atlas.reach};
+            .map_near = atlas.near};
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ struct VplAtlas {
     std::uint32_t tiles = 1;       ///< slots along a side of a layer
     std::uint32_t side = 1;        ///< texels along a side of a layer: a power of two or the driver's limit
     std::uint32_t layers = 1;
-    /// Distance in metres at which depth is 0: at least the scene's diameter; rarely changes while objects
-    /// move.
-    float reach = 1.0F;
+    /// Octahedral distance in metres at which depth is 1 (shaders/vpls/vpl_atlas.glsl); rarely changes while
+    /// objects move.
+    float near = 1.0F;
     bool operator==(const VplAtlas&) const = default;
 };
 

@@ -28,8 +28,8 @@ struct MappedVpls {
 /// triangles are therefore exact in the curved mapping whatever their tessellation, and a map costs as many
 /// rays as it has texels, however large the scene is. One draw covers all maps. With surfels, only texels
 /// whose rays pass through changed boxes are traced again. Depends on the VPLs, the BVH and the constants;
-/// with surfels also on motion and on its own last result. Returns a 2D array of depth32f, reversed: 1 at the
-/// VPL, 0 at VplAtlas::reach and beyond (shaders/vpls/vpl_atlas.glsl).
+/// with surfels also on motion and on its own last result. Returns a 2D array of depth32f, reversed: 1 near
+/// the VPL, 0 where there is no surface (shaders/vpls/vpl_atlas.glsl).
 [[nodiscard]] TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                          const MappedVpls& vpls, const VplCommon& common);
 
