@@ -51,6 +51,7 @@
 #include "sandbox/window/render_thread.hpp"
 #include "sandbox/window/scene_loader.hpp"
 #include "sandbox/window/ui_log.hpp"
+#include "sandbox/window/view_commands.hpp"
 
 namespace candela::sandbox {
 
@@ -509,6 +510,7 @@ class WindowSession {
 
     void carry_out(const Command& command) {
         frames_to_draw_ = settling;
+        if (change_view(command, graph_, state_, selection_)) return;
         switch (command.action) {
             case Action::open_scene:
                 return open_panel_.show(
@@ -525,26 +527,8 @@ class WindowSession {
                 return toggle_sequence();
             case Action::full_screen:
                 return window_.toggle_full_screen();
-            case Action::panel:
-                state_.panel = !state_.panel;
-                return;
-            case Action::help:
-                state_.help = !state_.help;
-                return;
             case Action::cancel:
                 return close_what_is_open();
-            case Action::preset:
-                return choose_preset(command.number);
-            case Action::next_path:
-                return change_path(1);
-            case Action::previous_path:
-                return change_path(-1);
-            case Action::compare:
-                return change_comparison();
-            case Action::next_resource:
-                return change_resource(1);
-            case Action::previous_resource:
-                return change_resource(-1);
             case Action::play_pause:
                 if (document_->playback) document_->playback->toggle();
                 return;
@@ -616,38 +600,6 @@ class WindowSession {
         sequence_frame_ = 0;
         state_.notice =
             state_.sequence ? fmt::format("saving each new picture as {}-0000.png, ...", sequence_) : "";
-    }
-
-    /// The purposes come first in the list of named configurations.
-    void choose_preset(int number) {
-        const auto named = named_configurations();
-        const auto index = static_cast<std::size_t>(number - 1);
-        if (index < named.size()) state_.configuration = choose_named(state_.configuration, named[index]);
-    }
-
-    void change_path(int step) {
-        constexpr int count = static_cast<int>(all_shading_paths.size());
-        const int next = (static_cast<int>(state_.configuration.path) + step + count) % count;
-        state_.configuration.path = all_shading_paths.at(static_cast<std::size_t>(next));
-    }
-
-    void change_comparison() {
-        Comparison& comparison = state_.comparison;
-        if (comparison.mode == CompareMode::off && comparison.other == Configuration{})
-            comparison.other = state_.configuration;
-        comparison.mode = static_cast<CompareMode>((static_cast<int>(comparison.mode) + 1) % 3);
-    }
-
-    /// The next texture or buffer of the graph; after the last one, the picture.
-    void change_resource(int step) {
-        std::vector<std::optional<std::string>> all{std::nullopt};
-        for (const GraphResource& resource : graph_.resources) {
-            if (resource.kind != GraphResource::Kind::value) all.emplace_back(resource.name);
-        }
-        const auto at = std::ranges::find(all, selection_.resource);
-        const auto index = at == all.end() ? 0 : at - all.begin();
-        const auto count = static_cast<std::ptrdiff_t>(all.size());
-        selection_.resource = all[static_cast<std::size_t>((index + step + count) % count)];
     }
 
     /// Asks for a new picture if something has changed since the last request.

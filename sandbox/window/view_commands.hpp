@@ -1,0 +1,15 @@
+#pragma once
+
+#include "sandbox/editing/interaction.hpp"
+#include "sandbox/panels/graph_panel.hpp"
+#include "sandbox/window/app_state.hpp"
+
+namespace candela::sandbox {
+
+/// Carries out a command that changes only what is shown, and how: panel and help, presets and paths, the
+/// comparison, and which resource of `graph` is selected. Returns whether it is such a command; others change
+/// nothing.
+bool change_view(const Command& command, const GraphPicture& graph, AppState& state,
+                 GraphSelection& selection);
+
+}  // namespace candela::sandbox
