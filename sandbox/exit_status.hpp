@@ -12,7 +12,6 @@ enum ExitStatus : int {
 
 inline constexpr const char* exit_statuses =
     "Exit status: 0 success; 2 invalid input, or output that cannot be written; 3 no driver, or too little "
-    "memory; "
-    "4 a wrong picture: its light is not accounted for, or pixels are not finite";
+    "memory; 4 a wrong picture: its light is not accounted for, or pixels are not finite";
 
 }  // namespace candela::sandbox

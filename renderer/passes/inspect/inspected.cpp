@@ -35,7 +35,6 @@ glm::vec4 perspective_terms(float near_plane) {
     return {0.0F, near_plane, -1.0F, 0.0F};
 }
 
-
 /// Of one with the depth 1 - metres / reach.
 glm::vec4 linear_terms(float reach) {
     return {1.0F / reach, 1.0F, 0.0F, 1.0F};

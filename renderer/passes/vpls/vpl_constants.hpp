@@ -24,8 +24,8 @@ struct VplAtlas {
     bool operator==(const VplAtlas&) const = default;
 };
 
-/// The atlas with the fewest layers, at least one, for `maps` slots, within the limits of the driver. Throws gl::GlError if
-/// there is none.
+/// The atlas with the fewest layers, at least one, for `maps` slots, within the limits of the driver. Throws
+/// gl::GlError if there is none.
 [[nodiscard]] VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::Limits& limits);
 
 /// Constants of all VPLs, for the CPU and for shaders that include vpl_constants.glsl.
