@@ -39,19 +39,20 @@ layout(binding = UNIT_VPL_MAPS) uniform sampler2DArray vpl_maps;
 struct MapTexels {
     vec2 first;  // place of (0, 0) in the slot
     vec4 depth;
-    vec4 share;  // bilinear weights
+    vec2 at;  // place of the direction between them: in [0, 1], or up to half a texel beyond at the border of the map
 };
+
+vec4 bilinear_weights(vec2 at) { return vec4(1.0 - at.x, at.x, 1.0 - at.x, at.x) * vec4(1.0 - at.yy, at.yy); }
 
 // `at`: in the map's space.
 MapTexels texels_around(uint map, vec3 at) {
     float side = float(vpl_constants.map_resolution);
-    vec2 inside = clamp((hemi_octahedral_encode(at) * 0.5 + 0.5) * side - 0.5, 0.0, side - 1.0);
-    vec2 first = min(floor(inside), side - 2.0);
-    vec2 t = inside - first;
+    vec2 inside = (hemi_octahedral_encode(at) * 0.5 + 0.5) * side - 0.5;
+    vec2 first = clamp(floor(inside), 0.0, side - 2.0);
     VplTile tile = vpl_tile(map);
     vec2 middle = (vec2(tile.corner) + first + 1.0) / vec2(textureSize(vpl_maps, 0).xy);
     vec4 depth = textureGather(vpl_maps, vec3(middle, float(tile.layer))).wzxy;
-    return MapTexels(first, depth, vec4(1.0 - t.x, t.x, 1.0 - t.x, t.x) * vec4(1.0 - t.yy, t.yy));
+    return MapTexels(first, depth, inside - first);
 }
 
 // Whether the texels see one plane, or nothing at all. See theory.md, "One plane in a VPL map".
@@ -62,7 +63,9 @@ bool see_one_plane(MapTexels texels) {
 }
 
 // Whether the plane that the texels see is not between the map's origin and the position.
-bool is_before_plane(MapTexels texels, vec3 at) { return vpl_map_depth(at) >= dot(texels.share, texels.depth); }
+bool is_before_plane(MapTexels texels, vec3 at) {
+    return vpl_map_depth(at) >= dot(bilinear_weights(texels.at), texels.depth);
+}
 
 // Share of the texels whose surfaces are not nearer than the distance. The inverse of a unit direction's octahedral
 // length is the length of its point on the octahedron.
@@ -74,7 +77,8 @@ float share_beyond(MapTexels texels, float distance) {
     vec4 y = 0.5 * (u - v);
     vec4 z = 1.0 - abs(x) - abs(y);
     vec4 nearest = vpl_constants.map_near * sqrt(x * x + y * y + z * z);
-    return dot(texels.share, vec4(greaterThanEqual(nearest, distance * texels.depth)));
+    vec4 share = bilinear_weights(clamp(texels.at, 0.0, 1.0));
+    return dot(share, vec4(greaterThanEqual(nearest, distance * texels.depth)));
 }
 
 // The map covers the hemisphere above the VPL's surface only.
@@ -88,17 +92,16 @@ float footprint_sine(vec3 direction, float texels) {
     return min(2.8284271 * min(s * (1.0 + 5.0 / texels), 1.7320508) / texels, 0.9);
 }
 
-// Metres to lift the surface along its normal before a look-up that compares depths of texels: ρ tan δ, with ρ the
-// distance `aside` from the foot of the perpendicular from the map's origin. Its own plane then never shadows it. Shadows
-// begin at the foot of the object that casts them and end at most 2δ from their true edge. Added margins: a tenth of the
-// distance for shading normals that are about 5 degrees off, and four ray offsets for rounding. See theory.md, "Lift
-// above VPL maps".
+// Metres to lift the surface along its normal before the look-up: ρ tan δ, with ρ the distance `aside` from the foot of
+// the perpendicular from the map's origin. Its own plane then never shadows it. Shadows begin at the foot of the object
+// that casts them and end at most 2δ from their true edge. Added margins: a tenth of the distance for shading normals
+// that are about 5 degrees off, and four ray offsets for rounding. See theory.md, "Lift above VPL maps".
 float lift_above_map(float aside, float distance, float sine) {
     return (aside + 0.1 * distance) * sine * inversesqrt(1.0 - sine * sine) + 4.0 * vpl_constants.ray_offset;
 }
 
-// Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane around the surface, it is
-// exactly 0 or 1. Elsewhere it comes from four depth comparisons.
+// Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane in the surface's direction,
+// it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons.
 float vpl_visibility(Vpl vpl, Surface surface) {
 #ifdef EMITTERS
     if (vpl.map == NO_MAP) return visibility_by_ray(vpl, surface);
@@ -108,17 +111,13 @@ float vpl_visibility(Vpl vpl, Surface surface) {
     mat3 map_from_world = transpose(mat3(tangent, bitangent, vpl.normal));
     vec3 normal = map_from_world * surface.normal;
     vec3 position = map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(vpl));
-    vec3 raised = above_horizon(position + 4.0 * vpl_constants.ray_offset * normal);
-    MapTexels texels = texels_around(vpl.map, raised);
-    if (see_one_plane(texels)) return is_before_plane(texels, raised) ? 1.0 : 0.0;
-
     float distance = length(position);
     float height = dot(normal, position);
     float aside = sqrt(max(distance * distance - height * height, 0.0));
     float sine = footprint_sine(above_horizon(position) / distance, float(vpl_constants.map_resolution));
     vec3 lifted = position + lift_above_map(aside, distance, sine) * normal;
     vec3 seen = above_horizon(lifted);
-    texels = texels_around(vpl.map, seen);
+    MapTexels texels = texels_around(vpl.map, seen);
     if (see_one_plane(texels)) return is_before_plane(texels, seen) ? 1.0 : 0.0;
     return share_beyond(texels, min(length(lifted), distance));
 }

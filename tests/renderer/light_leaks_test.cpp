@@ -158,31 +158,30 @@ TEST_SUITE("light leaks") {
     }
 
     TEST_CASE_FIXTURE(LightLeakTests,
-                      "what a plane hides gets no light from VPLs, however near it is behind it") {
+                      "what a plane hides gets no light from VPLs behind the height of the lift") {
         // Ground, a plate above it and a ceiling above the plate. Seen from below the plate is culled, but it
-        // is in the way of light.
+        // is in the way of light. The ceiling is lifted by at most 0.1 m: (ρ + 0.1 r) sin δ, with ρ < 1.1 m,
+        // r < 1.6 m and sin δ < 2√2 √3 / 64.
+        constexpr float gap = 0.15F;
         const glm::quat downwards = glm::angleAxis(glm::pi<float>(), glm::vec3(1, 0, 0));
-        for (const float gap : {0.1F, 0.01F, 0.001F}) {
-            CAPTURE(gap);
-            Scene scene;
-            add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.8F)))});
-            add(scene.world, at({0, 1, 0}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
-            add(scene.world, Transform{.translation = {0, 1.0F + gap, 0}, .rotation = downwards},
-                MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
-            scene.light = add(scene.world, at({0.1F, 0.5F, 0.2F}), PointLight{});
-            scene.camera =
-                add(scene.world, looking({0.0F, 0.6F, 0.0F}, {0.0F, 2.0F, 0.0F}, {0, 0, 1}), Camera{});
-            const auto light_by = [&](VplVisibility method) {
-                configure(vpl_light(VplPlacement::paths, method));
-                return mean(render(scene, small));
-            };
-            const double unhidden = light_by(VplVisibility::none);
-            REQUIRE(unhidden > 0.0);
-            CHECK(light_by(VplVisibility::rays) == 0.0);
-            // Four faces of the octahedron meet along the two diagonals of a map. There, in a strip two
-            // texels wide along each, look-ups do not see that it is one plane.
-            CHECK(light_by(VplVisibility::maps) < 4.0 / 64.0 * unhidden);
-        }
+        Scene scene;
+        add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.8F)))});
+        add(scene.world, at({0, 1, 0}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+        add(scene.world, Transform{.translation = {0, 1.0F + gap, 0}, .rotation = downwards},
+            MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+        scene.light = add(scene.world, at({0.1F, 0.5F, 0.2F}), PointLight{});
+        scene.camera = add(scene.world, looking({0.0F, 0.6F, 0.0F}, {0.0F, 2.0F, 0.0F}, {0, 0, 1}), Camera{});
+        const auto light_by = [&](VplVisibility method) {
+            configure(vpl_light(VplPlacement::paths, method));
+            return mean(render(scene, small));
+        };
+        const double unhidden = light_by(VplVisibility::none);
+        REQUIRE(unhidden > 0.0);
+        CHECK(light_by(VplVisibility::rays) == 0.0);
+        // Four faces of the octahedron meet along the two diagonals of a map. There, in a strip two texels
+        // wide along each, look-ups do not see that it is one plane. Depths of texels alone would let 0.4 %
+        // through.
+        CHECK(light_by(VplVisibility::maps) < 0.004 * 4.0 / 64.0 * unhidden);
     }
 
     TEST_CASE_FIXTURE(LightLeakTests,

@@ -6,8 +6,8 @@
 
 namespace candela {
 
-/// Base class of all exceptions that the library throws, except std::bad_alloc: EntityError, SceneError,
-/// ImportCancelled, GraphError, gl::GlError, gl::MemoryError, gl::ProgramError and ContextError. `what()`
+/// Base class of all exceptions that the library throws, except std::bad_alloc: ContextError, EntityError,
+/// GraphError, ImportCancelled, SceneError, gl::GlError, gl::MemoryError and gl::ProgramError. `what()`
 /// names the object and the problem. Exceptions of functions that the host passes in, its component types and
 /// graph passes included, propagate as they are.
 class CANDELA_API Error : public std::runtime_error {
