@@ -8,9 +8,8 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "engine/readable.hpp"
-
 #include <candela/scene/components.hpp>
+#include "engine/readable.hpp"
 
 namespace candela::sandbox {
 
