@@ -13,6 +13,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_accessors.hpp"
+#include "engine/import/png_check.hpp"
 
 namespace candela::gltf {
 
@@ -26,7 +27,8 @@ Image decode(Bytes encoded, ImportBudget& budget) {
     // at least 1 bit for 64 pixels, which gives fewer pixels per byte.
     constexpr std::uint64_t most_pixels_in_a_byte = 8256;  // 8 × 1,032
 
-    if (!starts_with(encoded, "\x89PNG") && !starts_with(encoded, "\xFF\xD8\xFF")) {
+    const bool is_png = starts_with(encoded, "\x89PNG");
+    if (!is_png && !starts_with(encoded, "\xFF\xD8\xFF")) {
         throw SceneError("it is neither PNG nor JPEG");
     }
     if (encoded.size() > std::numeric_limits<int>::max()) {
@@ -43,6 +45,9 @@ Image decode(Bytes encoded, ImportBudget& budget) {
         throw SceneError(fmt::format("its {} bytes cannot hold {} x {} pixels", size, width, height));
     }
     budget.add_picture(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
+    if (is_png) {
+        check_png(encoded, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
+    }
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
         stbi_image_free);

@@ -3,12 +3,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
+#include <stb/stb_image_write.h>
 #include <tiny_gltf.h>
 
 #include "tests/engine/malformed_gltf.hpp"
@@ -176,6 +180,44 @@ TEST_SUITE("import limits") {
         const Material& material = *world.get<MeshInstance>(report.entities[0]).mesh->primitives[0].material;
         CHECK(material.base_colour_texture != nullptr);
         CHECK(material.base_colour_texture == material.emissive_texture);
+    }
+
+    TEST_CASE("what a PNG claims to hold is checked before memory is allocated for it") {
+        const auto outcome_of = [](const Bytes& image) {
+            const TemporaryDirectory folder;
+            write_file(folder / "a.png", image);
+            GltfBuilder file = complete_scene();
+            file.document["images"] = {{{"uri", "a.png"}}};
+            return outcome(file.gltf(), {}, folder / "");
+        };
+        CHECK(outcome_of(png()) == "imported");
+
+        SUBCASE("a chunk of 1.9 GB in a file of less than 100 bytes") {
+            Bytes cut = png();
+            const std::string_view type = "IDAT";
+            const auto chunk = std::search(cut.begin(), cut.end(), type.begin(), type.end()) - 4;
+            chunk[0] = 0x78;
+            const auto left = cut.end() - (chunk + 8);
+            CHECK(outcome_of(cut) ==
+                  fmt::format("scene.gltf: image 0: it is cut short: of a chunk of {} bytes, {} are left",
+                              0x78000000U + chunk[3], left));
+        }
+
+        SUBCASE("data of 4,096 x 4,096 pixels where the header says 2 x 1") {
+            constexpr int side = 4096;
+            const std::vector<unsigned char> black(std::size_t{side} * side);
+            Bytes large;
+            const auto append = [](void* to, void* data, int size) {
+                const auto* bytes = static_cast<const unsigned char*>(data);
+                static_cast<Bytes*>(to)->insert(static_cast<Bytes*>(to)->end(), bytes, bytes + size);
+            };
+            REQUIRE(stbi_write_png_to_func(append, &large, side, side, 1, black.data(), side) != 0);
+            REQUIRE(large.size() < 200'000);
+            const std::array<unsigned char, 8> two_by_one{0, 0, 0, 2, 0, 0, 0, 1};
+            std::ranges::copy(two_by_one, large.begin() + 16);  // after signature, length and type of IHDR
+            CHECK(outcome_of(large) ==
+                  "scene.gltf: image 0: its data are corrupt, or more than 2 x 1 pixels need");
+        }
     }
 
     TEST_CASE("only files inside the root are read") {
