@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,7 +21,7 @@ constexpr std::size_t chunk_header_size = 8;  // length and type
 constexpr std::size_t checksum_size = 4;
 
 struct Chunk {
-    std::string_view type;
+    Bytes type;
     Bytes data;
 };
 
@@ -31,7 +30,6 @@ std::optional<Chunk> first_chunk(Bytes rest) {
     if (rest.size() < chunk_header_size) {
         return std::nullopt;
     }
-    const std::string_view type(reinterpret_cast<const char*>(&rest[4]), 4);
     const std::size_t length = std::size_t{rest[0]} << 24U | std::size_t{rest[1]} << 16U |
                                std::size_t{rest[2]} << 8U | std::size_t{rest[3]};
     const Bytes data = rest.subspan(chunk_header_size);
@@ -39,7 +37,7 @@ std::optional<Chunk> first_chunk(Bytes rest) {
         throw SceneError(
             fmt::format("it is cut short: of a chunk of {} bytes, {} are left", length, data.size()));
     }
-    return Chunk{type, data.first(length)};
+    return Chunk{rest.subspan(4, 4), data.first(length)};
 }
 
 /// The contents of all IDAT chunks: one stream in zlib's format.
@@ -47,10 +45,10 @@ std::vector<char> compressed_data(Bytes png) {
     std::vector<char> all;
     Bytes rest = png.subspan(std::min(signature_size, png.size()));
     while (const std::optional<Chunk> chunk = first_chunk(rest)) {
-        if (chunk->type == "IEND") {
+        if (starts_with(chunk->type, "IEND")) {
             break;
         }
-        if (chunk->type == "IDAT") {
+        if (starts_with(chunk->type, "IDAT")) {
             all.insert(all.end(), chunk->data.begin(), chunk->data.end());
         }
         const std::size_t size = chunk_header_size + chunk->data.size() + checksum_size;

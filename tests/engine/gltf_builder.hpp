@@ -20,6 +20,12 @@ namespace candela::test {
 using Json = nlohmann::json;
 using Bytes = std::vector<unsigned char>;
 
+/// Appends to Bytes what stb_image_write hands over.
+inline void append(void* bytes, void* data, int size) {
+    const auto* first = static_cast<unsigned char*>(data);
+    static_cast<Bytes*>(bytes)->insert(static_cast<Bytes*>(bytes)->end(), first, first + size);
+}
+
 /// A new directory, removed with its contents on destruction.
 class TemporaryDirectory {
  public:

@@ -207,10 +207,6 @@ TEST_SUITE("import limits") {
             constexpr int side = 4096;
             const std::vector<unsigned char> black(std::size_t{side} * side);
             Bytes large;
-            const auto append = [](void* to, void* data, int size) {
-                const auto* bytes = static_cast<const unsigned char*>(data);
-                static_cast<Bytes*>(to)->insert(static_cast<Bytes*>(to)->end(), bytes, bytes + size);
-            };
             REQUIRE(stbi_write_png_to_func(append, &large, side, side, 1, black.data(), side) != 0);
             REQUIRE(large.size() < 200'000);
             const std::array<unsigned char, 8> two_by_one{0, 0, 0, 2, 0, 0, 0, 1};

@@ -16,11 +16,6 @@ using Texels = std::vector<glm::u8vec4>;
 
 const Texels four_colours{{255, 0, 0, 255}, {0, 255, 0, 128}, {0, 0, 255, 0}, {10, 20, 30, 40}};
 
-void append(void* bytes, void* data, int size) {
-    const auto* first = static_cast<unsigned char*>(data);
-    static_cast<Bytes*>(bytes)->insert(static_cast<Bytes*>(bytes)->end(), first, first + size);
-}
-
 Bytes png(const Texels& texels, int width, int height) {
     Bytes bytes;
     stbi_write_png_to_func(append, &bytes, width, height, 4, texels.data(), width * 4);

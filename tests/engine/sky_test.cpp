@@ -21,11 +21,6 @@ using namespace candela::test;
 
 namespace {
 
-void append(void* bytes, void* data, int size) {
-    const auto* first = static_cast<unsigned char*>(data);
-    static_cast<Bytes*>(bytes)->insert(static_cast<Bytes*>(bytes)->end(), first, first + size);
-}
-
 Bytes hdr(const std::vector<glm::vec3>& texels, int width) {
     Bytes bytes;
     stbi_write_hdr_to_func(append, &bytes, width, static_cast<int>(texels.size()) / width, 3, &texels[0].x);
