@@ -13,10 +13,9 @@
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
-#include <nlohmann/json.hpp>
 
 #include "engine/import/unit_length.hpp"
-#include "engine/json_fault.hpp"
+#include "engine/json/json.hpp"
 #include "engine/readable.hpp"
 #include "sandbox/files/input_file.hpp"
 #include "sandbox/files/output_file.hpp"
@@ -27,7 +26,6 @@ namespace candela::sandbox {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 [[noreturn]] void fail(const std::string& place, std::string_view error) {
     throw std::runtime_error(place.empty() ? std::string(error) : fmt::format("{}: {}", place, error));
@@ -42,13 +40,8 @@ std::string element_of(const std::string& place, std::size_t index) {
     return fmt::format("{}[{}]", place, index);
 }
 
-const Json* find(const Json& object, const char* member) {
-    const auto found = object.find(member);
-    return found == object.end() ? nullptr : &*found;
-}
-
 const Json& require(const Json& object, const std::string& place, const char* member) {
-    const Json* found = find(object, member);
+    const Json* found = object.find(member);
     if (found == nullptr) fail(member_of(place, member), "is missing");
     return *found;
 }
@@ -56,7 +49,7 @@ const Json& require(const Json& object, const std::string& place, const char* me
 /// Checks that it is an object with no members other than `known`.
 void check_object(const Json& json, const std::string& place, std::initializer_list<std::string_view> known) {
     if (!json.is_object()) fail(place, "is not an object");
-    for (const auto& [member, value] : json.items()) {
+    for (const auto& [member, value] : json.members()) {
         if (std::find(known.begin(), known.end(), member) == known.end())
             fail(member_of(place, readable(member)), "is unknown");
     }
@@ -67,24 +60,24 @@ void check_array(const Json& json, const std::string& place, std::size_t size, s
 }
 
 int read_whole(const Json& json, const std::string& place, int least, int most) {
-    const bool fits = json.is_number_integer() && json.get<double>() >= least && json.get<double>() <= most;
+    const bool fits = json.is_whole() && json.number() >= least && json.number() <= most;
     if (!fits) fail(place, fmt::format("is not a whole number from {} to {}", least, most));
-    return json.get<int>();
+    return json.whole<int>();
 }
 
 bool read_bool(const Json& json, const std::string& place) {
     if (!json.is_boolean()) fail(place, "is not true or false");
-    return json.get<bool>();
+    return json.flag();
 }
 
 std::string read_text(const Json& json, const std::string& place) {
-    if (!json.is_string() || json.get<std::string>().empty()) fail(place, "is not a word");
-    return json.get<std::string>();
+    if (!json.is_string() || json.text().empty()) fail(place, "is not a word");
+    return json.text();
 }
 
 float read_float(const Json& json, const std::string& place) {
     if (!json.is_number()) fail(place, "is not a number");
-    const double number = json.get<double>();
+    const double number = json.number();
     // Converting a number outside the range of float would give infinity.
     if (std::abs(number) > std::numeric_limits<float>::max()) fail(place, "is too large");
     return static_cast<float>(number);
@@ -137,9 +130,9 @@ glm::quat read_rotation(const Json& json, const std::string& place) {
 }
 
 Interpolation read_interpolation(const Json& json, const std::string& place) {
-    if (json == "linear") return Interpolation::linear;
-    if (json == "step") return Interpolation::step;
-    if (json == "smooth") return Interpolation::smooth;
+    if (json.is("linear")) return Interpolation::linear;
+    if (json.is("step")) return Interpolation::step;
+    if (json.is("smooth")) return Interpolation::smooth;
     fail(place, "is not one of linear, step, smooth");
 }
 
@@ -147,13 +140,13 @@ Interpolation read_interpolation(const Json& json, const std::string& place) {
 template <class T>
 Keys<T> read_keys(const Json& track, const std::string& track_place, const char* member, int frames,
                   T (*read_value)(const Json&, const std::string&)) {
-    const Json* json = find(track, member);
+    const Json* json = track.find(member);
     if (json == nullptr) return {};
     const std::string place = member_of(track_place, member);
     if (!json->is_array() || json->empty()) fail(place, "is not a list of keys");
     Keys<T> keys;
     keys.reserve(json->size());
-    for (const Json& pair : *json) {
+    for (const Json& pair : json->items()) {
         const std::string key_place = element_of(place, keys.size());
         check_array(pair, key_place, 2, "a pair of a frame and a value");
         const int frame = read_whole(pair[0], element_of(key_place, 0), 0, frames);
@@ -170,7 +163,7 @@ Track read_track(const Json& json, const std::string& place, int frames) {
         {"node", "interpolation", "translation", "rotation", "scale", "intensity", "colour", "enabled"});
     Track track;
     track.node = read_text(require(json, place, "node"), member_of(place, "node"));
-    if (const Json* interpolation = find(json, "interpolation"))
+    if (const Json* interpolation = json.find("interpolation"))
         track.interpolation = read_interpolation(*interpolation, member_of(place, "interpolation"));
     track.translation = read_keys(json, place, "translation", frames, read_vector);
     track.rotation = read_keys(json, place, "rotation", frames, read_rotation);
@@ -186,7 +179,7 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
     std::vector<Track> tracks;
     tracks.reserve(json.size());
     std::set<std::string> nodes;
-    for (const Json& track : json) {
+    for (const Json& track : json.items()) {
         const std::string place = element_of("tracks", tracks.size());
         tracks.push_back(read_track(track, place, frames));
         const std::string& node = tracks.back().node;
@@ -199,8 +192,8 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
 Json parse(std::string_view text) {
     try {
         return Json::parse(text);
-    } catch (const Json::exception& error) {
-        throw std::runtime_error(readable(json_fault(error)));
+    } catch (const JsonError& error) {
+        throw std::runtime_error(readable(error.what()));
     }
 }
 
@@ -231,8 +224,8 @@ Script read_script(std::string_view text) {
     check_object(json, "", {"scene", "frames", "loop", "tracks"});
     Script script;
     script.frames = read_whole(require(json, "", "frames"), "frames", 1, std::numeric_limits<int>::max());
-    if (const Json* scene = find(json, "scene")) script.scene = read_text(*scene, "scene");
-    if (const Json* loop = find(json, "loop")) script.loop = read_bool(*loop, "loop");
+    if (const Json* scene = json.find("scene")) script.scene = read_text(*scene, "scene");
+    if (const Json* loop = json.find("loop")) script.loop = read_bool(*loop, "loop");
     script.tracks = read_tracks(require(json, "", "tracks"), script.frames);
     return script;
 }

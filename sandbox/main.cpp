@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <variant>
 
-#include "sandbox/live_reference.hpp"
+#include "sandbox/reference/live_reference.hpp"
 #include "sandbox/options.hpp"
 #include "sandbox/session.hpp"
 

@@ -7,23 +7,21 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <nlohmann/json.hpp>
 
 #include <candela/version.hpp>
+#include "engine/json/json.hpp"
 #include "sandbox/picture_error.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
-OrderedJson to_json(const glm::dvec3& rgb) {
+Json to_json(const glm::dvec3& rgb) {
     return {rgb.r, rgb.g, rgb.b};
 }
 
-OrderedJson to_json(const FrameReport& frame) {
-    OrderedJson passes = OrderedJson::array();
+Json to_json(const FrameReport& frame) {
+    Json passes = Json::array();
     for (const PassReport& pass : frame.passes) {
         passes.push_back(
             {{"name", pass.name}, {"ran", pass.ran}, {"cpu_ms", pass.cpu_ms}, {"gpu_ms", pass.gpu_ms}});
@@ -31,8 +29,8 @@ OrderedJson to_json(const FrameReport& frame) {
     return {{"index", frame.index}, {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"passes", passes}};
 }
 
-OrderedJson to_json(const VplReport& vpls) {
-    OrderedJson flux;
+Json to_json(const VplReport& vpls) {
+    Json flux;
     for (const EnergyLine& line : energy_lines(vpls.flux)) flux[line.name] = to_json(line.value);
     flux["roulette_error"] = to_json(vpls.flux.roulette_error);
     return {{"requested", vpls.requested},
@@ -43,7 +41,7 @@ OrderedJson to_json(const VplReport& vpls) {
             {"flux", flux}};
 }
 
-OrderedJson to_json(const LightReport& lights) {
+Json to_json(const LightReport& lights) {
     return {{"count", lights.count},
             {"with_shadow", lights.with_shadow},
             {"without_shadow", lights.without_shadow},
@@ -54,16 +52,16 @@ OrderedJson to_json(const LightReport& lights) {
             {"overflowed_tiles", 0}};
 }
 
-OrderedJson to_json(const Environment& environment) {
+Json to_json(const Environment& environment) {
     if (environment.radiance == glm::vec3(0.0F)) return nullptr;
     return {{"radiance", {environment.radiance.r, environment.radiance.g, environment.radiance.b}},
             {"picture", environment.picture
-                            ? OrderedJson({environment.picture->width, environment.picture->height})
-                            : OrderedJson(nullptr)},
+                            ? Json({environment.picture->width, environment.picture->height})
+                            : Json(nullptr)},
             {"rotation", environment.rotation}};
 }
 
-OrderedJson to_json(const MemoryUse& memory) {
+Json to_json(const MemoryUse& memory) {
     return {{"texture_bytes", memory.texture_bytes},
             {"buffer_bytes", memory.buffer_bytes},
             {"shared_by_aliasing_bytes", memory.shared_by_aliasing_bytes}};
@@ -104,26 +102,26 @@ std::string vpl_table(const VplReport& vpls) {
 }  // namespace
 
 std::string to_json(const RunReport& report) {
-    OrderedJson frames = OrderedJson::array();
+    Json frames = Json::array();
     for (const FrameReport& frame : report.frames) frames.push_back(to_json(frame));
-    const OrderedJson json = {
+    const Json json = {
         {"version", CANDELA_VERSION},
         {"gl_renderer", report.state.gl_renderer},
         {"context", report.context},
         {"scene", report.scene},
-        {"animation", report.animation ? OrderedJson(*report.animation) : OrderedJson(nullptr)},
+        {"animation", report.animation ? Json(*report.animation) : Json(nullptr)},
         {"environment", to_json(report.environment)},
         {"triangles", report.state.triangles},
         {"size", {report.size.x, report.size.y}},
-        {"config", OrderedJson::parse(write_configuration(report.configuration))},
+        {"config", Json::parse(write_configuration(report.configuration))},
         {"frames", frames},
         {"refined", report.state.refined},
         {"rendered_size", {report.state.rendered_size.x, report.state.rendered_size.y}},
-        {"vpls", report.state.vpls ? to_json(*report.state.vpls) : OrderedJson(nullptr)},
+        {"vpls", report.state.vpls ? to_json(*report.state.vpls) : Json(nullptr)},
         {"lights", to_json(report.state.lights)},
         {"memory", to_json(report.state.memory)}};
     // A path may contain bytes that are not valid UTF-8.
-    return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+    return json.dump(2, Json::Faulty::replaced) + "\n";
 }
 
 std::string to_table(const FrameReport& frame, const Report& state) {

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include "engine/import/shortest.hpp"
+#include "engine/json/json.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/scene.hpp"
 
@@ -18,7 +18,6 @@ namespace candela::sandbox {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Lines = std::vector<std::string>;
 
 Json to_json(float number) {
@@ -41,7 +40,7 @@ Json to_json(const glm::quat& rotation) {
 std::string text(const std::string& words) {
     try {
         return Json(words).dump();
-    } catch (const Json::type_error&) {
+    } catch (const JsonError&) {
         throw std::runtime_error("a name is not UTF-8");
     }
 }

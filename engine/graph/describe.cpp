@@ -6,7 +6,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "engine/json/json.hpp"
 
 namespace candela {
 namespace {
@@ -196,21 +197,21 @@ bool uses_gpu(const CompiledGraph& graph, std::uint32_t pass) {
     });
 }
 
-nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t position) {
+Json pass_json(const CompiledGraph& graph, std::uint32_t position) {
     const std::uint32_t pass = graph.plan().order[position];
     const detail::PassNode& node = graph.declared().passes[pass];
-    nlohmann::ordered_json json{{"name", node.name},
+    Json json{{"name", node.name},
                                 {"kind", uses_gpu(graph, pass) ? "gpu" : "cpu"},
                                 {"side_effect", node.side_effect},
                                 {"barrier", to_string(graph.plan().barrier[position])},
-                                {"world", nlohmann::ordered_json::array()},
-                                {"reads", nlohmann::ordered_json::array()},
-                                {"writes", nlohmann::ordered_json::array()}};
+                                {"world", Json::array()},
+                                {"reads", Json::array()},
+                                {"writes", Json::array()}};
     for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
         json["world"].push_back(read.name);
     }
     for (const Access& access : graph.declared().accesses_of(pass)) {
-        nlohmann::ordered_json entry{{"resource", name_of(graph, access.resource)},
+        Json entry{{"resource", name_of(graph, access.resource)},
                                      {"version", access.version}};
         const bool value = graph.declared().resources[access.resource].kind == ResourceKind::value;
         if (!value) {
@@ -225,7 +226,7 @@ nlohmann::ordered_json pass_json(const CompiledGraph& graph, std::uint32_t posit
 }
 
 /// The parts of storage_text on their own, as declared.
-void add_storage(const CompiledGraph& graph, const Resource& resource, nlohmann::ordered_json& json) {
+void add_storage(const CompiledGraph& graph, const Resource& resource, Json& json) {
     json["kind"] = to_string(resource.kind);
     if (resource.kind == ResourceKind::buffer) {
         const BufferDesc& desc = graph.declared().buffer(resource);
@@ -282,9 +283,9 @@ std::string describe_dot(const CompiledGraph& graph) {
 }
 
 std::string describe_json(const CompiledGraph& graph) {
-    nlohmann::ordered_json json{{"passes", nlohmann::ordered_json::array()},
-                                {"culled", nlohmann::ordered_json::array()},
-                                {"resources", nlohmann::ordered_json::array()}};
+    Json json{{"passes", Json::array()},
+                                {"culled", Json::array()},
+                                {"resources", Json::array()}};
     for (std::uint32_t position = 0; position < graph.pass_count(); ++position) {
         json["passes"].push_back(pass_json(graph, position));
     }
@@ -295,7 +296,7 @@ std::string describe_json(const CompiledGraph& graph) {
     for (const std::uint32_t index : used_resources(graph)) {
         const Resource& resource = graph.declared().resources[index];
         const detail::Span span = graph.plan().lifetime[index];
-        nlohmann::ordered_json entry{{"name", resource.name},
+        Json entry{{"name", resource.name},
                                      {"storage", storage_text(graph, resource)},
                                      {"lifetime", to_string(resource.lifetime)},
                                      {"first", span.first},

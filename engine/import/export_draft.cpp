@@ -110,7 +110,7 @@ Json to_json(const std::string& text) {
     Json json = text;
     try {
         static_cast<void>(json.dump());
-    } catch (const Json::type_error&) {
+    } catch (const JsonError&) {
         throw SceneError("a name is not valid UTF-8");
     }
     return json;
@@ -149,10 +149,10 @@ Json Draft::add_picture(std::vector<std::byte> encoded, std::string_view ending)
 
 std::vector<OutputFile> Draft::finish() {
     if (!extensions_.empty()) {
-        document["extensionsUsed"] = extensions_;
+        document["extensionsUsed"] = Json::array({extensions_.begin(), extensions_.end()});
     }
     if (!buffer_.empty()) {
-        document["buffers"] = Json::array({{{"byteLength", buffer_.size()}}});
+        document["buffers"] = Json::array({Json{{"byteLength", buffer_.size()}}});
     }
     if (!buffer_.empty() && !binary_) {
         files_.push_back({beside(".bin"), buffer_});

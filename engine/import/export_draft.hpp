@@ -12,13 +12,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <nlohmann/json.hpp>
 
 #include "engine/import/output_files.hpp"
+#include "engine/json/json.hpp"
 
 namespace candela::gltf {
-
-using Json = nlohmann::json;
 
 /// Numbers with the fewest digits that are read back as the same floats. These functions throw SceneError if
 /// a number is not finite.

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 #include <stb/stb_image_write.h>
-#include <tiny_gltf.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/import/gltf_document.hpp"
+#include "engine/import/gltf_extensions.hpp"
+#include "engine/import/gltf_model.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
@@ -34,13 +34,13 @@ std::vector<std::byte> encode_png(const Image& image) {
 int to_wrap_mode(Wrap wrap) {
     switch (wrap) {
         case Wrap::mirrored_repeat:
-            return TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT;
+            return wrap_mirrored_repeat;
         case Wrap::clamp_to_edge:
-            return TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+            return wrap_clamp_to_edge;
         case Wrap::repeat:
             break;
     }
-    return TINYGLTF_TEXTURE_WRAP_REPEAT;
+    return wrap_repeat;
 }
 
 const char* name_of(AlphaMode mode) {

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_model.hpp"
 #include "engine/import/unit_length.hpp"
 #include "engine/readable.hpp"
 #include "engine/scene/check.hpp"
@@ -29,10 +29,10 @@ struct Attribute {
     const char* type;
 };
 
-constexpr Attribute position{"POSITION", offsetof(Vertex, position), TINYGLTF_COMPONENT_TYPE_FLOAT, "VEC3"};
-constexpr Attribute normal{"NORMAL", offsetof(Vertex, normal), TINYGLTF_COMPONENT_TYPE_FLOAT, "VEC3"};
-constexpr Attribute uv{"TEXCOORD_0", offsetof(Vertex, uv), TINYGLTF_COMPONENT_TYPE_FLOAT, "VEC2"};
-constexpr Attribute colour{"COLOR_0", offsetof(Vertex, colour), TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+constexpr Attribute position{"POSITION", offsetof(Vertex, position), floating_point, "VEC3"};
+constexpr Attribute normal{"NORMAL", offsetof(Vertex, normal), floating_point, "VEC3"};
+constexpr Attribute uv{"TEXCOORD_0", offsetof(Vertex, uv), floating_point, "VEC2"};
+constexpr Attribute colour{"COLOR_0", offsetof(Vertex, colour), unsigned_short,
                            "VEC4"};
 
 /// glTF requires the bounds of positions.
@@ -56,7 +56,7 @@ bool has_colours(const std::vector<Vertex>& vertices) {
 Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
     const std::size_t view =
         draft.add_view(std::as_bytes(std::span(vertices)),
-                       {{"byteStride", sizeof(Vertex)}, {"target", TINYGLTF_TARGET_ARRAY_BUFFER}});
+                       {{"byteStride", sizeof(Vertex)}, {"target", vertices_target}});
     Json attributes;
     const auto add = [&](const Attribute& attribute, Json accessor) {
         accessor.update({{"bufferView", view},
@@ -79,9 +79,9 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
 
 std::size_t add_indices(const std::vector<std::uint32_t>& indices, Draft& draft) {
     const std::size_t view =
-        draft.add_view(std::as_bytes(std::span(indices)), {{"target", TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER}});
+        draft.add_view(std::as_bytes(std::span(indices)), {{"target", indices_target}});
     return draft.add("accessors", {{"bufferView", view},
-                                   {"componentType", TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
+                                   {"componentType", unsigned_int},
                                    {"type", "SCALAR"},
                                    {"count", indices.size()}});
 }

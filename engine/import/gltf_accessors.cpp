@@ -41,8 +41,8 @@ struct Run {
 
 Elements locate(const Document& document, const Run& run) {
     const Bytes bytes = buffer_view_bytes(document, run.buffer_view);
-    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(run.buffer_view)];
-    const std::size_t stride = view.byteStride != 0 ? view.byteStride : run.element_size;
+    const BufferView& view = document.model.buffer_views[static_cast<std::size_t>(run.buffer_view)];
+    const std::size_t stride = view.stride != 0 ? view.stride : run.element_size;
     if (stride < run.element_size) {
         throw SceneError(
             fmt::format("{} has elements of {} bytes, more than the stride of {} of buffer view {}",
@@ -53,7 +53,7 @@ Elements locate(const Document& document, const Run& run) {
     if (!fits) {
         throw SceneError(fmt::format("{} reads past the end of buffer view {}", run.owner, run.buffer_view));
     }
-    if ((view.byteOffset + run.offset) % run.component_size != 0) {
+    if ((view.offset + run.offset) % run.component_size != 0) {
         throw SceneError(
             fmt::format("{} is not aligned to its components of {} bytes", run.owner, run.component_size));
     }
@@ -62,9 +62,9 @@ Elements locate(const Document& document, const Run& run) {
 
 std::size_t component_size(int component_type) {
     switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case unsigned_byte:
             return 1;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case unsigned_short:
             return 2;
         default:
             return 4;  // UNSIGNED_INT or FLOAT: callers have checked the type
@@ -73,9 +73,9 @@ std::size_t component_size(int component_type) {
 
 std::uint32_t load_unsigned(const unsigned char* bytes, int component_type) {
     switch (component_type) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+        case unsigned_byte:
             return *bytes;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+        case unsigned_short:
             return load<std::uint16_t>(bytes);
         default:
             return load<std::uint32_t>(bytes);
@@ -83,12 +83,12 @@ std::uint32_t load_unsigned(const unsigned char* bytes, int component_type) {
 }
 
 bool is_unsigned(int component_type) {
-    return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
-           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-           component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    return component_type == unsigned_byte ||
+           component_type == unsigned_short ||
+           component_type == unsigned_int;
 }
 
-const tinygltf::Accessor& accessor_at(const Document& document, int index) {
+const Accessor& accessor_at(const Document& document, int index) {
     return document.model.accessors[static_cast<std::size_t>(index)];
 }
 
@@ -96,22 +96,21 @@ const tinygltf::Accessor& accessor_at(const Document& document, int index) {
 template <class Element, class Decode>
 void apply_sparse(const Document& document, int index, const Selection& selection, Decode decode,
                   std::size_t element_size, std::vector<Element>& elements) {
-    const tinygltf::Accessor& accessor = accessor_at(document, index);
-    const auto& sparse = accessor.sparse;
-    const int index_type = sparse.indices.componentType;
+    const Accessor& accessor = accessor_at(document, index);
+    const SparseElements& sparse = *accessor.sparse;
+    const int index_type = sparse.indices.component_type;
     if (!is_unsigned(index_type)) {
         throw SceneError(fmt::format("accessor {} has sparse indices that are not unsigned integers", index));
     }
-    const auto count = static_cast<std::size_t>(sparse.count);
+    const std::size_t index_size = component_size(index_type);
     const Elements indices =
-        locate(document, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.bufferView,
-                          static_cast<std::size_t>(sparse.indices.byteOffset), count,
-                          component_size(index_type), component_size(index_type)});
+        locate(document, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.buffer_view,
+                          sparse.indices.offset, sparse.count, index_size, index_size});
     const Elements values =
-        locate(document, {fmt::format("accessor {} (its sparse values)", index), sparse.values.bufferView,
-                          static_cast<std::size_t>(sparse.values.byteOffset), count,
-                          component_size(accessor.componentType), element_size});
-    for (std::size_t i = 0; i < count; ++i) {
+        locate(document, {fmt::format("accessor {} (its sparse values)", index), sparse.values.buffer_view,
+                          sparse.values.offset, sparse.count, component_size(sparse.values.component_type),
+                          element_size});
+    for (std::size_t i = 0; i < sparse.count; ++i) {
         const std::uint32_t at = load_unsigned(indices[i], index_type);
         if (at >= accessor.count) {
             throw SceneError(
@@ -127,24 +126,23 @@ void apply_sparse(const Document& document, int index, const Selection& selectio
 /// types. An accessor without a buffer view is all zeros.
 template <class Element, class Decode>
 std::vector<Element> read(const Document& document, int index, const Selection& selection, Decode decode) {
-    const tinygltf::Accessor& accessor = accessor_at(document, index);
-    const std::size_t component = component_size(accessor.componentType);
-    const auto components =
-        static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
-    const std::size_t size = component * components;
+    const Accessor& accessor = accessor_at(document, index);
+    const std::size_t component = component_size(accessor.source.component_type);
+    const std::size_t size = component * static_cast<std::size_t>(accessor.components);
 
     std::vector<Element> elements{};
-    if (accessor.bufferView < 0) {
+    if (accessor.source.buffer_view < 0) {
         elements.resize(selection.count(), Element{});
     } else {
-        const Elements source = locate(document, {fmt::format("accessor {}", index), accessor.bufferView,
-                                                  accessor.byteOffset, accessor.count, component, size});
+        const Elements source =
+            locate(document, {fmt::format("accessor {}", index), accessor.source.buffer_view,
+                              accessor.source.offset, accessor.count, component, size});
         elements.reserve(selection.count());
         for (std::size_t i = 0; i < selection.count(); ++i) {
             elements.push_back(decode(source[selection[i]]));
         }
     }
-    if (accessor.sparse.isSparse) {
+    if (accessor.sparse) {
         apply_sparse(document, index, selection, decode, size, elements);
     }
     return elements;
@@ -172,20 +170,20 @@ void check_finite(const std::vector<Vector>& elements, int index, const Selectio
 }
 
 /// Whether the components are FLOAT, or normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
-bool has_real_components(const tinygltf::Accessor& accessor) {
-    const int type = accessor.componentType;
+bool has_real_components(const Accessor& accessor) {
+    const int type = accessor.source.component_type;
     const bool integers =
-        type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
-    return type == TINYGLTF_COMPONENT_TYPE_FLOAT || (integers && accessor.normalized);
+        type == unsigned_byte || type == unsigned_short;
+    return type == floating_point || (integers && accessor.normalized);
 }
 
 /// Component `i` of an element of such an accessor.
 float real_component(const unsigned char* element, std::size_t i, int type) {
     const unsigned char* const bytes = element + i * component_size(type);
-    if (type == TINYGLTF_COMPONENT_TYPE_FLOAT) {
+    if (type == floating_point) {
         return load<float>(bytes);
     }
-    const float one = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 65535.0F : 255.0F;
+    const float one = type == unsigned_short ? 65535.0F : 255.0F;
     return static_cast<float>(load_unsigned(bytes, type)) / one;
 }
 
@@ -201,13 +199,13 @@ std::size_t Selection::place(std::size_t element) const {
 }
 
 Bytes buffer_view_bytes(const Document& document, int buffer_view) {
-    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(buffer_view)];
+    const BufferView& view = document.model.buffer_views[static_cast<std::size_t>(buffer_view)];
     const Bytes bytes = document.buffers[static_cast<std::size_t>(view.buffer)].bytes;
-    if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
+    if (view.offset > bytes.size() || view.length > bytes.size() - view.offset) {
         throw SceneError(
             fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, view.buffer));
     }
-    return bytes.subspan(view.byteOffset, view.byteLength);
+    return bytes.subspan(view.offset, view.length);
 }
 
 std::size_t element_count(const Document& document, int accessor) {
@@ -215,8 +213,8 @@ std::size_t element_count(const Document& document, int accessor) {
 }
 
 std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
-    const tinygltf::Accessor& accessor = accessor_at(document, index);
-    if (accessor.type != TINYGLTF_TYPE_VEC3 || accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+    const Accessor& accessor = accessor_at(document, index);
+    if (accessor.components != 3 || accessor.source.component_type != floating_point) {
         throw SceneError(
             fmt::format("accessor {} holds positions or normals, but is not VEC3 of FLOAT", index));
     }
@@ -227,15 +225,15 @@ std::vector<glm::vec3> read_vectors(const Document& document, int index, const S
 
 std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
                                                 const Selection& selection) {
-    const tinygltf::Accessor& accessor = accessor_at(document, index);
-    if (accessor.type != TINYGLTF_TYPE_VEC2 || !has_real_components(accessor)) {
+    const Accessor& accessor = accessor_at(document, index);
+    if (accessor.components != 2 || !has_real_components(accessor)) {
         throw SceneError(
             fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
                         "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
                         index));
     }
     auto coordinates = read<glm::vec2>(
-        document, index, selection, [type = accessor.componentType](const unsigned char* bytes) {
+        document, index, selection, [type = accessor.source.component_type](const unsigned char* bytes) {
             return glm::vec2(real_component(bytes, 0, type), real_component(bytes, 1, type));
         });
     check_finite(coordinates, index, selection);
@@ -243,16 +241,16 @@ std::vector<glm::vec2> read_texture_coordinates(const Document& document, int in
 }
 
 std::vector<glm::u16vec4> read_colours(const Document& document, int index, const Selection& selection) {
-    const tinygltf::Accessor& accessor = accessor_at(document, index);
-    const bool has_alpha = accessor.type == TINYGLTF_TYPE_VEC4;
-    if ((accessor.type != TINYGLTF_TYPE_VEC3 && !has_alpha) || !has_real_components(accessor)) {
+    const Accessor& accessor = accessor_at(document, index);
+    const bool has_alpha = accessor.components == 4;
+    if ((accessor.components != 3 && !has_alpha) || !has_real_components(accessor)) {
         throw SceneError(
             fmt::format("accessor {} holds colours, but is not VEC3 or VEC4 of FLOAT or of "
                         "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
                         index));
     }
     const auto colours = read<glm::vec4>(
-        document, index, selection, [type = accessor.componentType, has_alpha](const unsigned char* bytes) {
+        document, index, selection, [type = accessor.source.component_type, has_alpha](const unsigned char* bytes) {
             return glm::vec4(real_component(bytes, 0, type), real_component(bytes, 1, type),
                              real_component(bytes, 2, type),
                              has_alpha ? real_component(bytes, 3, type) : 1.0F);
@@ -267,9 +265,9 @@ std::vector<glm::u16vec4> read_colours(const Document& document, int index, cons
 }
 
 std::vector<std::uint32_t> read_indices(const Document& document, int index, std::size_t vertex_count) {
-    const tinygltf::Accessor& accessor = accessor_at(document, index);
-    const int type = accessor.componentType;
-    if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_unsigned(type)) {
+    const Accessor& accessor = accessor_at(document, index);
+    const int type = accessor.source.component_type;
+    if (accessor.components != 1 || !is_unsigned(type)) {
         throw SceneError(
             fmt::format("accessor {} holds indices, but is not SCALAR of an unsigned integer", index));
     }

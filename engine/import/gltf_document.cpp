@@ -1,5 +1,4 @@
 #include "engine/import/gltf_document.hpp"
-#include "engine/json_fault.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,21 +9,16 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_extensions.hpp"
+#include "engine/import/gltf_parser.hpp"
 #include "engine/import/gltf_schema.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
 
 namespace {
-
-using Json = nlohmann::json;
-
-// TinyGLTF parses extensions and extras recursively, so deep nesting could overflow the stack. glTF's own
-// members are nested at most 8 deep.
-constexpr int deepest_nesting = 256;
 
 /// The two parts of a glTF file. A .gltf has no binary part.
 struct Container {
@@ -85,54 +79,30 @@ Container split(Bytes bytes) {
     return container;
 }
 
-/// Runs before any parser. The depth is exact for valid JSON; invalid JSON is reported later by the parser.
-void check_nesting(Bytes text) {
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const unsigned char c = text[i];
-        if (c == '"') {
-            in_string = !in_string;
-        }
-        if (in_string) {
-            i += c == '\\' ? 1 : 0;
-            continue;
-        }
-        if (c == '[' || c == '{') {
-            ++depth;
-        }
-        if (c == ']' || c == '}') {
-            --depth;
-        }
-        if (depth > deepest_nesting) {
-            throw SceneError("its JSON is nested too deeply");
-        }
-    }
-}
-
 Json parse_json(Bytes text) {
-    check_nesting(text);
     try {
-        return Json::parse(text.begin(), text.end());
-    } catch (const Json::exception& error) {
-        throw SceneError(json_fault(error));
+        return Json::parse({reinterpret_cast<const char*>(text.data()), text.size()});
+    } catch (const JsonError& error) {
+        throw SceneError(error.what());
     }
-}
-
-bool is_supported(std::string_view extension) {
-    return std::ranges::find(supported_extensions, extension) != supported_extensions.end();
 }
 
 /// The array of this name; empty if there is none.
 const Json& list(const Json& document, const char* name) {
     static const Json none = Json::array();
-    const auto found = document.find(name);
-    return found == document.end() ? none : *found;
+    const Json* const found = document.find(name);
+    return found ? *found : none;
 }
 
 /// Throws for required extensions that are not supported; returns a warning for each other unsupported one.
 std::vector<std::string> check_extensions(const Json& document) {
-    const auto names = [&](const char* member) { return document.value(member, std::set<std::string>{}); };
+    const auto names = [&](const char* member) {
+        std::set<std::string> listed;
+        for (const Json& name : list(document, member).items()) {
+            listed.insert(name.text());
+        }
+        return listed;
+    };
     for (const std::string& name : names("extensionsRequired")) {
         if (!is_supported(name)) {
             throw SceneError(
@@ -151,10 +121,10 @@ std::vector<std::string> check_extensions(const Json& document) {
 
 Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<Bytes>& binary,
                    ImportFiles& files) {
-    const auto length = buffer.at("byteLength").get<std::size_t>();
+    const auto length = buffer.at("byteLength").whole<std::size_t>();
     Buffer loaded;
-    if (buffer.contains("uri")) {
-        loaded.content = files.read(buffer.at("uri").get_ref<const std::string&>());
+    if (const Json* const uri = buffer.find("uri")) {
+        loaded.content = files.read(uri->text());
         loaded.bytes = *loaded.content;
     } else if (index == 0 && binary) {
         loaded.bytes = *binary;
@@ -171,7 +141,7 @@ Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<By
 std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes>& binary,
                                  ImportFiles& files) {
     std::vector<Buffer> buffers;
-    for (const Json& description : list(document, "buffers")) {
+    for (const Json& description : list(document, "buffers").items()) {
         try {
             buffers.push_back(load_buffer(description, buffers.size(), binary, files));
         } catch (const SceneError& error) {
@@ -181,148 +151,53 @@ std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes
     return buffers;
 }
 
-std::vector<tinygltf::Image> describe_images(const Json& document) {
+std::vector<EncodedImage> describe_images(const Json& document) {
     const Json& descriptions = list(document, "images");
-    std::vector<tinygltf::Image> images(descriptions.size());
+    std::vector<EncodedImage> images(descriptions.size());
     for (std::size_t i = 0; i < images.size(); ++i) {
-        images[i].name = descriptions[i].value("name", "");
-        images[i].uri = descriptions[i].value("uri", "");
-        images[i].bufferView = descriptions[i].value("bufferView", -1);
-        if (images[i].uri.empty() == (images[i].bufferView < 0)) {
+        const auto text_of = [&](const char* member) {
+            const Json* const text = descriptions[i].find(member);
+            return text ? text->text() : std::string();
+        };
+        const Json* const view = descriptions[i].find("bufferView");
+        images[i] = {text_of("name"), text_of("uri"), view ? view->whole<int>() : -1};
+        if (images[i].uri.empty() == (images[i].buffer_view < 0)) {
             throw SceneError(fmt::format(R"(image {} needs either a "uri" or a "bufferView")", i));
         }
     }
     return images;
 }
 
-/// Adds two defaults that TinyGLTF 2.5 does not handle: byte offsets that a sparse accessor leaves out, and
-/// the buffer view of an accessor without one (TinyGLTF then writes out of bounds). Such accessors get an
-/// extra buffer view after those of the file; its index is returned.
-std::size_t write_defaults(Json& document) {
-    Json& views = document["bufferViews"];
-    views.push_back({{"buffer", 0}, {"byteLength", 1}});
-    const std::size_t none = views.size() - 1;
-    if (document.contains("accessors")) {
-        for (Json& accessor : document["accessors"]) {
-            accessor.emplace("bufferView", none);
-            if (accessor.contains("sparse")) {
-                accessor["sparse"]["indices"].emplace("byteOffset", 0);
-                accessor["sparse"]["values"].emplace("byteOffset", 0);
-            }
-        }
-    }
-    return none;
-}
-
-/// Removes extras and extensions that are not supported, for each of which TinyGLTF would make objects.
-void remove_unread(Json& value) {
-    if (value.is_object()) {
-        value.erase("extras");
-        if (const auto extensions = value.find("extensions");
-            extensions != value.end() && extensions->is_object()) {
-            for (auto each = extensions->begin(); each != extensions->end();) {
-                each = is_supported(each.key()) ? std::next(each) : extensions->erase(each);
-            }
-        }
-    }
-    for (Json& member : value) {
-        if (member.is_structured()) {
-            remove_unread(member);
-        }
-    }
-}
-
-/// Counts the memory of TinyGLTF's objects, which is a multiple of that of the shortest JSON for them.
-void count_objects(const Json& document, ImportBudget& budget) {
-    const auto count = [&](const char* name, std::size_t bytes) {
-        budget.add_memory(list(document, name).size() * bytes);
-    };
-    count("accessors", sizeof(tinygltf::Accessor));
-    count("bufferViews", sizeof(tinygltf::BufferView));
-    count("cameras", sizeof(tinygltf::Camera));
-    count("images", sizeof(tinygltf::Image));
-    count("materials", sizeof(tinygltf::Material));
-    count("meshes", sizeof(tinygltf::Mesh));
-    count("samplers", sizeof(tinygltf::Sampler));
-    count("scenes", sizeof(tinygltf::Scene));
-    count("textures", sizeof(tinygltf::Texture));
-    for (const Json& mesh : list(document, "meshes")) {
-        budget.add_memory(list(mesh, "primitives").size() * sizeof(tinygltf::Primitive));
-    }
-    const Json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
-    if (document.contains(lights)) {
-        budget.add_memory(document.at(lights).size() * sizeof(tinygltf::Light));
-    }
-}
-
-/// The parser's messages, one per line, as one line.
-std::string joined(std::string messages) {
-    std::ranges::replace(messages, '\n', ' ');
-    messages.erase(messages.find_last_not_of(" .") + 1);
-    return messages;
-}
-
-/// Parses everything but buffers, images and nodes. Those are read here, with stricter checks than
-/// TinyGLTF's.
-tinygltf::Model parse_model(Json document) {
-    for (const char* member : {"buffers", "images", "nodes", "animations", "skins"}) {
-        document.erase(member);
-    }
-    remove_unread(document);
-    const std::size_t no_view = write_defaults(document);
-    const std::string text = document.dump();
-    if (text.size() > std::numeric_limits<unsigned int>::max()) {
-        throw SceneError("its JSON exceeds 4 GiB");
-    }
-
-    tinygltf::Model model;
-    std::string errors;
-    std::string warnings;
-    tinygltf::TinyGLTF parser;
-    const bool parsed = parser.LoadASCIIFromString(&model, &errors, &warnings, text.data(),
-                                                   static_cast<unsigned int>(text.size()), {});
-    if (!parsed || !errors.empty()) {
-        throw SceneError(errors.empty() ? "it is not valid glTF" : joined(errors));
-    }
-    model.bufferViews.pop_back();
-    for (tinygltf::Accessor& accessor : model.accessors) {
-        if (accessor.bufferView == static_cast<int>(no_view)) {
-            accessor.bufferView = -1;
-        }
-    }
-    return model;
-}
-
 /// Whether any material has the member at `path`, with a value for which `counts` holds.
 bool any_material(const Json& document, const char* path, bool (*counts)(const Json& value)) {
-    const Json::json_pointer pointer(path);
-    return std::ranges::any_of(list(document, "materials"), [&](const Json& material) {
-        return material.contains(pointer) && counts(material.at(pointer));
+    return std::ranges::any_of(list(document, "materials").items(), [&](const Json& material) {
+        const Json* const member = material.find_path(path);
+        return member && counts(*member);
     });
 }
 
 /// A warning for each kind of thing that the file asks for explicitly and the import leaves out.
 std::vector<std::string> omissions(const Json& document) {
     const auto any = [](const Json&) { return true; };
-    const auto above_0 = [](const Json& value) { return value.get<double>() > 0.0; };
-    const auto below_1 = [](const Json& value) { return value.get<double>() < 1.0; };
+    const auto above_0 = [](const Json& value) { return value.number() > 0.0; };
+    const auto below_1 = [](const Json& value) { return value.number() < 1.0; };
     std::vector<std::string> warnings;
     for (const char* member : {"animations", "skins"}) {
         if (document.contains(member)) {
             warnings.push_back(fmt::format("{} are ignored", member));
         }
     }
-    if (any_material(document, "/pbrMetallicRoughness/metallicFactor", above_0) ||
-        any_material(document, "/pbrMetallicRoughness/metallicRoughnessTexture", any)) {
+    if (any_material(document, "pbrMetallicRoughness/metallicFactor", above_0) ||
+        any_material(document, "pbrMetallicRoughness/metallicRoughnessTexture", any)) {
         warnings.emplace_back("metalness is ignored: all surfaces are diffuse");
     }
-    if (any_material(document, "/pbrMetallicRoughness/roughnessFactor", below_1)) {
+    if (any_material(document, "pbrMetallicRoughness/roughnessFactor", below_1)) {
         warnings.emplace_back("roughness is ignored: all surfaces are diffuse");
     }
-    if (any_material(document, "/normalTexture", any)) {
+    if (any_material(document, "normalTexture", any)) {
         warnings.emplace_back("normal maps are ignored");
     }
-    if (any_material(document, "/occlusionTexture", any)) {
+    if (any_material(document, "occlusionTexture", any)) {
         warnings.emplace_back("occlusion textures are ignored");
     }
     return warnings;
@@ -335,16 +210,13 @@ Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     Json json = parse_json(container.json);
     check_schema(json);
     budget.check_nodes(list(json, "nodes").size());
-    count_objects(json, budget);
+    budget.add_memory(parsing_memory(json));
     Document document;
     document.warnings = check_extensions(json);
     document.buffers = load_buffers(json, container.binary, files);
-    std::vector<tinygltf::Image> images = describe_images(json);
+    std::vector<EncodedImage> images = describe_images(json);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
     document.nodes = std::move(json["nodes"]);
-    if (document.nodes.is_null()) {
-        document.nodes = Json::array();
-    }
     document.model = parse_model(std::move(json));
     document.model.images = std::move(images);
     return document;

@@ -20,16 +20,13 @@ std::shared_ptr<const SkyPicture> decode_sky(Bytes bytes, ImportBudget& budget) 
 }
 
 /// Null if there is none.
-std::shared_ptr<const SkyPicture> read_picture(const Document& document, const tinygltf::Value& source,
+std::shared_ptr<const SkyPicture> read_picture(const Document& document, const EnvironmentSource& source,
                                                ImportFiles& files, ImportBudget& budget) {
     try {
-        if (source.Has("bufferView")) {
-            return decode_sky(buffer_view_bytes(document, source.Get("bufferView").GetNumberAsInt()), budget);
+        if (source.buffer_view >= 0) {
+            return decode_sky(buffer_view_bytes(document, source.buffer_view), budget);
         }
-        if (source.Has("uri")) {
-            return decode_sky(*files.read(source.Get("uri").Get<std::string>()), budget);
-        }
-        return nullptr;
+        return source.uri.empty() ? nullptr : decode_sky(*files.read(source.uri), budget);
     } catch (const SceneError& error) {
         throw SceneError(fmt::format("the environment's picture: {}", error.what()));
     }
@@ -39,22 +36,13 @@ std::shared_ptr<const SkyPicture> read_picture(const Document& document, const t
 
 std::optional<NamedEnvironment> read_environment(const Document& document, ImportFiles& files,
                                                  ImportBudget& budget) {
-    const tinygltf::ExtensionMap& extensions = default_scene(document.model).extensions;
-    const auto found = extensions.find(environment_extension);
-    if (found == extensions.end()) {
+    const std::optional<EnvironmentSource>& source = default_scene(document.model).environment;
+    if (!source) {
         return std::nullopt;
     }
-    const tinygltf::Value& source = found->second;
-    Environment environment{.radiance = glm::vec3(1.0F), .picture = nullptr};
-    for (int i = 0; i < 3 && source.Has("radiance"); ++i) {
-        environment.radiance[i] = static_cast<float>(source.Get("radiance").Get(i).GetNumberAsDouble());
-    }
-    if (source.Has("rotation")) {
-        environment.rotation = static_cast<float>(source.Get("rotation").GetNumberAsDouble());
-    }
-    environment.picture = read_picture(document, source, files, budget);
-    const bool is_named = source.Has("name");
-    return NamedEnvironment{is_named ? source.Get("name").Get<std::string>() : "environment", environment};
+    return NamedEnvironment{source->name, Environment{.radiance = source->radiance,
+                                                      .picture = read_picture(document, *source, files, budget),
+                                                      .rotation = source->rotation}};
 }
 
 }  // namespace candela::gltf

@@ -20,7 +20,7 @@
 #include "engine/import/export_draft.hpp"
 #include "engine/import/export_meshes.hpp"
 #include "engine/import/exr.hpp"
-#include "engine/import/gltf_document.hpp"
+#include "engine/import/gltf_extensions.hpp"
 #include "engine/import/naming_file.hpp"
 #include "engine/import/output_files.hpp"
 #include "engine/import/sky_picture_size.hpp"
@@ -32,7 +32,6 @@ namespace candela {
 namespace {
 
 using gltf::Draft;
-using gltf::Json;
 using gltf::to_json;
 
 /// The entities that become nodes, sorted, so that the index of an entity is that of its node.

@@ -65,11 +65,11 @@ Image decode(Bytes encoded, ImportBudget& budget) {
 
 Wrap to_wrap(int mode, int sampler) {
     switch (mode) {
-        case TINYGLTF_TEXTURE_WRAP_REPEAT:
+        case wrap_repeat:
             return Wrap::repeat;
-        case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+        case wrap_mirrored_repeat:
             return Wrap::mirrored_repeat;
-        case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+        case wrap_clamp_to_edge:
             return Wrap::clamp_to_edge;
         default:
             throw SceneError(fmt::format("sampler {} has the unknown wrapping mode {}", sampler, mode));
@@ -82,50 +82,20 @@ struct Wraps {
     Wrap v = Wrap::repeat;
 };
 
-Wraps wraps_of(const tinygltf::Model& model, const tinygltf::Texture& texture) {
+Wraps wraps_of(const Model& model, const Texture& texture) {
     if (texture.sampler < 0) {
         return {};
     }
-    const tinygltf::Sampler& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
-    return {to_wrap(sampler.wrapS, texture.sampler), to_wrap(sampler.wrapT, texture.sampler)};
+    const Sampler& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
+    return {to_wrap(sampler.wrap_s, texture.sampler), to_wrap(sampler.wrap_t, texture.sampler)};
 }
 
-/// How a material uses a texture: the members of glTF's textureInfo and of its extension
-/// KHR_texture_transform, which may override the coordinate set.
-struct TextureUse {
-    int index = -1;
-    int coordinate_set = 0;
-    glm::mat3 transform{1.0F};
-};
-
-glm::vec2 read_pair(const tinygltf::Value& extension, const char* member, glm::vec2 otherwise) {
-    if (!extension.Has(member)) {
-        return otherwise;
-    }
-    const tinygltf::Value& pair = extension.Get(member);
-    return {static_cast<float>(pair.Get(0).GetNumberAsDouble()),
-            static_cast<float>(pair.Get(1).GetNumberAsDouble())};
-}
-
-/// Scales, then rotates counter-clockwise as seen with v pointing down, then moves.
-TextureUse texture_use(const tinygltf::TextureInfo& info) {
-    TextureUse use{info.index, info.texCoord, glm::mat3(1.0F)};
-    const auto found = info.extensions.find(texture_transform_extension);
-    if (found == info.extensions.end()) {
-        return use;
-    }
-    const tinygltf::Value& extension = found->second;
-    if (extension.Has("texCoord")) {
-        use.coordinate_set = extension.Get("texCoord").GetNumberAsInt();
-    }
-    const glm::vec2 scale = read_pair(extension, "scale", glm::vec2(1.0F));
-    const glm::vec2 offset = read_pair(extension, "offset", glm::vec2(0.0F));
-    const double angle = extension.Has("rotation") ? extension.Get("rotation").GetNumberAsDouble() : 0.0;
-    const auto cosine = static_cast<float>(std::cos(angle));
-    const auto sine = static_cast<float>(std::sin(angle));
-    use.transform = glm::mat3(glm::vec3(cosine * scale.x, -sine * scale.x, 0.0F),
-                              glm::vec3(sine * scale.y, cosine * scale.y, 0.0F), glm::vec3(offset, 1.0F));
-    return use;
+/// Of (u, v, 1): scales, then rotates, then moves.
+glm::mat3 transform_of(const TextureUse& use) {
+    const auto cosine = static_cast<float>(std::cos(use.rotation));
+    const auto sine = static_cast<float>(std::sin(use.rotation));
+    return {glm::vec3(cosine * use.scale.x, -sine * use.scale.x, 0.0F),
+            glm::vec3(sine * use.scale.y, cosine * use.scale.y, 0.0F), glm::vec3(use.offset, 1.0F)};
 }
 
 /// Reads the images of materials. Textures with the same bytes and wrapping share one.
@@ -136,11 +106,11 @@ class ImageReader {
 
     /// The image of a texture; null, with a warning that starts with `label`, if it cannot be used.
     std::shared_ptr<const Image> read(const TextureUse& use, const std::string& label) {
-        if (use.index < 0) {
+        if (use.texture < 0) {
             return nullptr;
         }
-        const tinygltf::Texture& texture = document_.model.textures[static_cast<std::size_t>(use.index)];
-        if (texture.source < 0) {
+        const Texture& texture = document_.model.textures[static_cast<std::size_t>(use.texture)];
+        if (texture.image < 0) {
             warn(fmt::format("{} has no PNG or JPEG image; ignored", label));
             return nullptr;
         }
@@ -151,9 +121,9 @@ class ImageReader {
         }
         const Wraps wraps = wraps_of(document_.model, texture);
         try {
-            return load(texture.source, wraps);
+            return load(texture.image, wraps);
         } catch (const SceneError& error) {
-            throw SceneError(fmt::format("image {}: {}", texture.source, error.what()));
+            throw SceneError(fmt::format("image {}: {}", texture.image, error.what()));
         }
     }
 
@@ -173,9 +143,9 @@ class ImageReader {
     }
 
     Bytes encoded_image(int index) {
-        const tinygltf::Image& source = document_.model.images[static_cast<std::size_t>(index)];
-        if (source.bufferView >= 0) {
-            return buffer_view_bytes(document_, source.bufferView);
+        const EncodedImage& source = document_.model.images[static_cast<std::size_t>(index)];
+        if (source.buffer_view >= 0) {
+            return buffer_view_bytes(document_, source.buffer_view);
         }
         Content& content = contents_[index];
         if (!content) {
@@ -190,15 +160,6 @@ class ImageReader {
     std::map<int, Content> contents_;  // by image; keeps their bytes, whose addresses identify images
     std::map<ImageKey, std::shared_ptr<const Image>> images_;
 };
-
-/// KHR_materials_emissive_strength; check_schema has checked the value.
-double emissive_strength(const tinygltf::Material& material) {
-    const auto extension = material.extensions.find(emissive_strength_extension);
-    if (extension == material.extensions.end() || !extension->second.Has("emissiveStrength")) {
-        return 1.0;
-    }
-    return extension->second.Get("emissiveStrength").GetNumberAsDouble();
-}
 
 /// check_schema accepts no other names.
 AlphaMode to_alpha_mode(std::string_view name) {
@@ -215,44 +176,41 @@ void show_unlit(Material& material) {
     material.base_colour = glm::vec4(0.0F, 0.0F, 0.0F, material.base_colour.a);
 }
 
-ReadMaterial read_material(const tinygltf::Material& source, const std::string& label, ImageReader& images) {
-    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
-    const TextureUse base_colour = texture_use(pbr.baseColorTexture);
-    const bool is_unlit = source.extensions.contains(unlit_extension);
-    const TextureUse emissive = is_unlit ? base_colour : texture_use(source.emissiveTexture);
+ReadMaterial read_material(const MaterialSource& source, const std::string& label, ImageReader& images) {
+    const TextureUse& emissive = source.unlit ? source.base_colour_texture : source.emissive_texture;
     Material material;
     material.name = source.name;
     for (int i = 0; i < 4; ++i) {
-        material.base_colour[i] = static_cast<float>(pbr.baseColorFactor[static_cast<std::size_t>(i)]);
+        material.base_colour[i] = static_cast<float>(source.base_colour[static_cast<std::size_t>(i)]);
     }
     for (int i = 0; i < 3; ++i) {
-        material.emissive[i] = static_cast<float>(source.emissiveFactor[static_cast<std::size_t>(i)] *
-                                                  emissive_strength(source));
+        material.emissive[i] =
+            static_cast<float>(source.emissive[static_cast<std::size_t>(i)] * source.emissive_strength);
         if (!std::isfinite(material.emissive[i])) {
             throw SceneError(fmt::format("{}: its emission is too large", label));
         }
     }
-    material.base_colour_texture = images.read(base_colour, label + ": its texture");
-    if (is_unlit) {
+    material.base_colour_texture = images.read(source.base_colour_texture, label + ": its texture");
+    if (source.unlit) {
         show_unlit(material);
     } else if (material.emissive != glm::vec3(0.0F)) {
         material.emissive_texture = images.read(emissive, label + ": its emissive texture");
     }
-    if (material.base_colour_texture && material.emissive_texture &&
-        base_colour.transform != emissive.transform) {
+    const glm::mat3 transform = transform_of(source.base_colour_texture);
+    if (material.base_colour_texture && material.emissive_texture && transform != transform_of(emissive)) {
         images.warn(label + ": its emissive texture is transformed like its base colour");
     }
-    material.double_sided = source.doubleSided;
-    material.alpha_mode = to_alpha_mode(source.alphaMode);
-    material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-    const glm::mat3 transform = material.base_colour_texture ? base_colour.transform : emissive.transform;
-    return {std::make_shared<const Material>(std::move(material)), transform};
+    material.double_sided = source.double_sided;
+    material.alpha_mode = to_alpha_mode(source.alpha_mode);
+    material.alpha_cutoff = static_cast<float>(source.alpha_cutoff);
+    const glm::mat3 used = material.base_colour_texture ? transform : transform_of(emissive);
+    return {std::make_shared<const Material>(std::move(material)), used};
 }
 
-std::vector<bool> used_materials(const tinygltf::Model& model, const std::vector<bool>& used_meshes) {
+std::vector<bool> used_materials(const Model& model, const std::vector<bool>& used_meshes) {
     std::vector<bool> used(model.materials.size());
     for (std::size_t i = 0; i < model.meshes.size(); ++i) {
-        for (const tinygltf::Primitive& primitive : model.meshes[i].primitives) {
+        for (const PrimitiveSource& primitive : model.meshes[i].primitives) {
             if (used_meshes[i] && primitive.material >= 0) {
                 used[static_cast<std::size_t>(primitive.material)] = true;
             }

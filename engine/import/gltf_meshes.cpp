@@ -29,7 +29,7 @@ struct Omissions {
     bool second_colours = false;
 };
 
-std::optional<int> find_attribute(const tinygltf::Primitive& source, const char* name) {
+std::optional<int> find_attribute(const PrimitiveSource& source, const char* name) {
     const auto found = source.attributes.find(name);
     return found == source.attributes.end() ? std::nullopt : std::optional(found->second);
 }
@@ -45,7 +45,7 @@ int checked_attribute(const Document& document, int accessor, std::string_view a
 }
 
 /// The selected vertices. A missing normal is zero until the faces provide one.
-std::vector<Vertex> read_vertices(const Document& document, const tinygltf::Primitive& source, int positions,
+std::vector<Vertex> read_vertices(const Document& document, const PrimitiveSource& source, int positions,
                                   const Selection& selection) {
     const std::size_t all = element_count(document, positions);
     std::vector<Vertex> vertices;
@@ -82,7 +82,7 @@ std::vector<Vertex> read_vertices(const Document& document, const tinygltf::Prim
     return vertices;
 }
 
-std::vector<std::uint32_t> read_order(const Document& document, const tinygltf::Primitive& source,
+std::vector<std::uint32_t> read_order(const Document& document, const PrimitiveSource& source,
                                       std::size_t vertex_count) {
     if (source.indices >= 0) {
         return read_indices(document, source.indices, vertex_count);
@@ -106,14 +106,14 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& order) {
 /// The triangles of a list, strip or fan, with the winding order of glTF 2.0 (section 3.7.2.1).
 std::vector<Corners> assemble(std::span<const std::uint32_t> order, int mode) {
     std::vector<Corners> triangles;
-    if (mode == TINYGLTF_MODE_TRIANGLES) {
+    if (mode == mode_triangles) {
         for (std::size_t i = 0; i < order.size(); i += 3) {
             triangles.push_back({order[i], order[i + 1], order[i + 2]});
         }
         return triangles;
     }
     for (std::size_t i = 0; i + 2 < order.size(); ++i) {
-        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+        if (mode == mode_triangle_strip) {
             triangles.push_back({order[i], order[i + 1 + i % 2], order[i + 2 - i % 2]});
         } else {
             triangles.push_back({order[i + 1], order[i + 2], order[0]});
@@ -160,27 +160,27 @@ void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& tri
     }
 }
 
-bool is_drawn(const tinygltf::Primitive& source, Omissions& omissions) {
-    const bool triangles = source.mode >= TINYGLTF_MODE_TRIANGLES;
+bool is_drawn(const PrimitiveSource& source, Omissions& omissions) {
+    const bool triangles = source.mode >= mode_triangles;
     const bool positions = find_attribute(source, "POSITION").has_value();
     omissions.points_or_lines |= !triangles;
     omissions.no_positions |= triangles && !positions;
-    omissions.morph_targets |= !source.targets.empty();
+    omissions.morph_targets |= source.has_targets;
     omissions.second_colours |= find_attribute(source, "COLOR_1").has_value();
     return triangles && positions;
 }
 
 /// The triangles of so many indices or vertices.
 std::uint64_t triangle_count(std::uint64_t order, int mode) {
-    if (order < 3 || (mode == TINYGLTF_MODE_TRIANGLES && order % 3 != 0)) {
+    if (order < 3 || (mode == mode_triangles && order % 3 != 0)) {
         throw SceneError(
             fmt::format("it has {} indices or vertices, which make no whole number of triangles", order));
     }
-    return mode == TINYGLTF_MODE_TRIANGLES ? order / 3 : order - 2;
+    return mode == mode_triangles ? order / 3 : order - 2;
 }
 
 /// Counts what read_primitive needs, without the vertices that it selects.
-void count_triangles(const Document& document, const tinygltf::Primitive& source, ImportBudget& budget) {
+void count_triangles(const Document& document, const PrimitiveSource& source, ImportBudget& budget) {
     const std::uint64_t order =
         element_count(document, source.indices >= 0 ? source.indices : *find_attribute(source, "POSITION"));
     const std::uint64_t triangles = triangle_count(order, source.mode);
@@ -192,7 +192,7 @@ void count_triangles(const Document& document, const tinygltf::Primitive& source
 }
 
 /// Without indices if no triangle has an area.
-Primitive read_primitive(const Document& document, const tinygltf::Primitive& source, ImportBudget& budget) {
+Primitive read_primitive(const Document& document, const PrimitiveSource& source, ImportBudget& budget) {
     const int positions = *find_attribute(source, "POSITION");
     const std::size_t vertex_count = element_count(document, positions);
     count_triangles(document, source, budget);
@@ -220,11 +220,11 @@ Primitive read_primitive(const Document& document, const tinygltf::Primitive& so
     return primitive;
 }
 
-Mesh read_mesh(const Document& document, const tinygltf::Mesh& source,
+Mesh read_mesh(const Document& document, const MeshSource& source,
                const std::vector<ReadMaterial>& materials, Omissions& omissions, ImportBudget& budget) {
     Mesh mesh;
     mesh.name = source.name;
-    for (const tinygltf::Primitive& part : source.primitives) {
+    for (const PrimitiveSource& part : source.primitives) {
         if (!is_drawn(part, omissions)) {
             continue;
         }

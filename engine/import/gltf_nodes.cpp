@@ -21,8 +21,6 @@ namespace {
 
 constexpr float half_pi = 1.57079632679489662F;
 
-using Json = nlohmann::json;
-
 /// A node to convert, its level in the hierarchy, and the index of its parent's entity.
 struct Visit {
     int node;
@@ -37,8 +35,8 @@ const Json& node_at(const Document& document, int index) {
 /// Empty if the node has no such member.
 const Json& array_of(const Json& node, const char* member) {
     static const Json none = Json::array();
-    const auto found = node.find(member);
-    return found == node.end() ? none : *found;
+    const Json* const found = node.find(member);
+    return found ? *found : none;
 }
 
 const Json& children_of(const Document& document, int node) {
@@ -49,11 +47,11 @@ const Json& children_of(const Document& document, int node) {
 std::vector<int> find_parents(const Document& document) {
     std::vector<int> parents(document.nodes.size(), -1);
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
-        for (const Json& child : children_of(document, node)) {
-            int& parent = parents[child.get<std::size_t>()];
+        for (const Json& child : children_of(document, node).items()) {
+            int& parent = parents[child.whole<std::size_t>()];
             if (parent >= 0) {
                 throw SceneError(
-                    fmt::format("node {} has two parents, nodes {} and {}", child.get<int>(), parent, node));
+                    fmt::format("node {} has two parents, nodes {} and {}", child.whole<int>(), parent, node));
             }
             parent = node;
         }
@@ -75,8 +73,8 @@ void check_hierarchy(const Document& document) {
         const int node = reached.back();
         reached.pop_back();
         below_a_root[static_cast<std::size_t>(node)] = true;
-        for (const Json& child : children_of(document, node)) {
-            reached.push_back(child.get<int>());
+        for (const Json& child : children_of(document, node).items()) {
+            reached.push_back(child.whole<int>());
         }
     }
     if (const auto lost = std::ranges::find(below_a_root, false); lost != below_a_root.end()) {
@@ -100,14 +98,7 @@ void check_hierarchy(const Document& document) {
 template <class Vector>
 void assign(Vector& vector, const Json& numbers) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        vector[static_cast<typename Vector::length_type>(i)] = numbers[i].get<float>();
-    }
-}
-
-template <class Vector>
-void assign(Vector& vector, const std::vector<double>& numbers) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        vector[static_cast<typename Vector::length_type>(i)] = static_cast<float>(numbers[i]);
+        vector[static_cast<typename Vector::length_type>(i)] = static_cast<float>(numbers[i].number());
     }
 }
 
@@ -125,7 +116,7 @@ bool is_finite(const Transform& transform) {
 std::vector<Transform> read_matrix(const Json& numbers) {
     glm::dmat4 matrix;
     for (int i = 0; i < 16; ++i) {
-        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)].get<double>();
+        matrix[i / 4][i % 4] = numbers[static_cast<std::size_t>(i)].number();
     }
     if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0) {
         throw SceneError("its matrix does not end in a row of 0 0 0 1");
@@ -141,7 +132,7 @@ Transform read_translation_rotation_scale(const Json& node) {
     if (numbers.empty()) {
         return transform;
     }
-    const auto part = [&](std::size_t i) { return numbers[i].get<double>(); };
+    const auto part = [&](std::size_t i) { return numbers[i].number(); };
     const glm::dquat rotation(part(3), part(0), part(1), part(2));
     const double length = glm::length(rotation);
     if (length == 0.0) {
@@ -166,31 +157,29 @@ std::vector<Transform> read_transforms(const Json& node, int index) {
     }
 }
 
-Camera read_camera(const tinygltf::Camera& source, int index) {
-    const bool perspective = source.type == "perspective";
-    const double far_plane = perspective ? source.perspective.zfar : source.orthographic.zfar;
-    const bool endless = perspective && far_plane == 0.0;  // TinyGLTF's value if there is no zfar
+Camera read_camera(const CameraSource& source, int index) {
+    const bool endless = source.is_perspective && source.far_plane == 0.0;
     Camera camera;
-    camera.near_plane =
-        static_cast<float>(perspective ? source.perspective.znear : source.orthographic.znear);
-    camera.far_plane = endless ? std::numeric_limits<float>::infinity() : static_cast<float>(far_plane);
+    camera.near_plane = static_cast<float>(source.near_plane);
+    camera.far_plane =
+        endless ? std::numeric_limits<float>::infinity() : static_cast<float>(source.far_plane);
     if (camera.far_plane <= camera.near_plane) {
         throw SceneError(fmt::format("camera {}: its zfar of {} is not beyond its znear of {}", index,
                                      camera.far_plane, camera.near_plane));
     }
-    if (perspective) {
-        camera.vertical_fov = static_cast<float>(source.perspective.yfov);
+    if (source.is_perspective) {
+        camera.vertical_fov = static_cast<float>(source.vertical_fov);
     } else {
         camera.projection = Camera::Projection::orthographic;
-        camera.half_height = static_cast<float>(source.orthographic.ymag);
+        camera.half_height = static_cast<float>(source.half_height);
     }
     return camera;
 }
 
-SpotLight read_cones(const tinygltf::SpotLight& source, int index) {
+SpotLight read_cones(const LightSource& source, int index) {
     SpotLight light;
-    light.inner_cone = static_cast<float>(source.innerConeAngle);
-    light.outer_cone = std::min(static_cast<float>(source.outerConeAngle), half_pi);
+    light.inner_cone = static_cast<float>(source.inner_cone);
+    light.outer_cone = std::min(static_cast<float>(source.outer_cone), half_pi);
     if (light.inner_cone >= light.outer_cone) {
         throw SceneError(fmt::format("light {}: its inner cone of {} is not inside its outer cone of {}",
                                      index, light.inner_cone, light.outer_cone));
@@ -198,58 +187,52 @@ SpotLight read_cones(const tinygltf::SpotLight& source, int index) {
     return light;
 }
 
-bool casts_shadow(const tinygltf::Light& source) {
-    const auto extension = source.extensions.find(light_extension);
-    return extension == source.extensions.end() || !extension->second.Has("castsShadow") ||
-           extension->second.Get("castsShadow").Get<bool>();
-}
-
-decltype(StagedEntity::light) read_light(const tinygltf::Light& source, int index) {
+decltype(StagedEntity::light) read_light(const LightSource& source, int index) {
     glm::vec3 colour(1.0F);
-    for (std::size_t i = 0; i < source.color.size(); ++i) {
-        colour[static_cast<glm::length_t>(i)] = static_cast<float>(source.color[i]);
+    for (std::size_t i = 0; i < source.colour.size(); ++i) {
+        colour[static_cast<glm::length_t>(i)] = static_cast<float>(source.colour[i]);
     }
     const auto intensity = static_cast<float>(source.intensity);
     const float range =
         source.range > 0.0 ? static_cast<float>(source.range) : std::numeric_limits<float>::infinity();
 
     if (source.type == "directional") {
-        return DirectionalLight{colour, intensity, casts_shadow(source)};
+        return DirectionalLight{colour, intensity, source.casts_shadow};
     }
     if (source.type == "point") {
-        return PointLight{colour, intensity, range, casts_shadow(source)};
+        return PointLight{colour, intensity, range, source.casts_shadow};
     }
     if (source.type != "spot") {
         throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(source.type)));
     }
-    SpotLight light = read_cones(source.spot, index);
+    SpotLight light = read_cones(source, index);
     light.colour = colour;
     light.intensity = intensity;
     light.range = range;
-    light.casts_shadow = casts_shadow(source);
+    light.casts_shadow = source.casts_shadow;
     return light;
 }
 
 /// An index that the node holds; -1 for none.
-int index_of(const Json& node, const char* member) {
-    return node.value(member, -1);
+int index_of(const Json& node, std::string_view path) {
+    const Json* const index = node.find_path(path);
+    return index ? index->whole<int>() : -1;
 }
 
 /// Index of the node's light; -1 for none.
 int light_of(const Json& node) {
-    static const Json::json_pointer light(fmt::format("/extensions/{}/light", lights_extension));
-    return node.contains(light) ? node.at(light).get<int>() : -1;
+    return index_of(node, "extensions/KHR_lights_punctual/light");
 }
 
 std::string name_of(const Document& document, int index) {
     const Json& node = node_at(document, index);
-    if (node.contains("name")) {
-        return node.at("name").get<std::string>();
+    if (const Json* const name = node.find("name")) {
+        return name->text();
     }
     const auto name_in = [](const auto& list, int i) {
         return i < 0 ? std::string() : list[static_cast<std::size_t>(i)].name;
     };
-    const tinygltf::Model& model = document.model;
+    const Model& model = document.model;
     for (std::string name :
          {name_in(model.cameras, index_of(node, "camera")), name_in(model.lights, light_of(node)),
           name_in(model.meshes, index_of(node, "mesh"))}) {
@@ -262,7 +245,7 @@ std::string name_of(const Document& document, int index) {
 
 /// Adds the node's mesh, camera and light to its (innermost) entity.
 void equip(StagedEntity& entity, const Document& document, const Json& node) {
-    const tinygltf::Model& model = document.model;
+    const Model& model = document.model;
     entity.mesh = index_of(node, "mesh");
     if (const int camera = index_of(node, "camera"); camera >= 0) {
         entity.camera = read_camera(model.cameras[static_cast<std::size_t>(camera)], camera);
@@ -274,11 +257,11 @@ void equip(StagedEntity& entity, const Document& document, const Json& node) {
 
 }  // namespace
 
-const tinygltf::Scene& default_scene(const tinygltf::Model& model) {
+const SceneSource& default_scene(const Model& model) {
     if (model.scenes.empty()) {
         throw SceneError("it has no scene");
     }
-    return model.scenes[static_cast<std::size_t>(std::max(model.defaultScene, 0))];
+    return model.scenes[static_cast<std::size_t>(std::max(model.default_scene, 0))];
 }
 
 std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
@@ -305,7 +288,7 @@ std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& bud
         equip(entities.back(), document, node_at(document, node));
         const Json& children = children_of(document, node);
         for (std::size_t i = children.size(); i-- > 0;) {
-            ahead.push_back({children[i].get<int>(), level + 1, parent});
+            ahead.push_back({children[i].whole<int>(), level + 1, parent});
         }
     }
     return entities;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/readable.hpp"
@@ -19,8 +18,6 @@
 namespace candela::gltf {
 
 namespace {
-
-using Json = nlohmann::json;
 
 /// What is wrong with a value, worded to follow the value's name in a message; nullopt if it is valid.
 using Problem = std::optional<std::string>;
@@ -54,7 +51,7 @@ Problem check_number(const Json& value, const Range& range) {
     if (!value.is_number()) {
         return "is not a number";
     }
-    const auto number = value.get<double>();
+    const auto number = value.number();
     if (number < range.lowest || number > range.highest) {
         return fmt::format("is {}, which is out of range", number);
     }
@@ -70,7 +67,7 @@ Check numbers(std::size_t length, Range range) {
         if (!value.is_array() || value.size() != length) {
             return fmt::format("is not {} numbers", length);
         }
-        for (const Json& item : value) {
+        for (const Json& item : value.items()) {
             if (Problem error = check_number(item, range)) {
                 return "holds a member that " + *error;
             }
@@ -81,11 +78,11 @@ Check numbers(std::size_t length, Range range) {
 
 Check whole(std::uint64_t lowest, std::uint64_t highest) {
     return [lowest, highest](const Json& value, const Json&) -> Problem {
-        if (!value.is_number_integer()) {
+        if (!value.is_whole()) {
             return "is not a whole number";
         }
-        if (!value.is_number_unsigned() || value.get<std::uint64_t>() < lowest ||
-            value.get<std::uint64_t>() > highest) {
+        if (!value.is_not_negative() || value.whole<std::uint64_t>() < lowest ||
+            value.whole<std::uint64_t>() > highest) {
             return fmt::format("is {}, which is out of range", value.dump());
         }
         return {};
@@ -97,8 +94,8 @@ Check stride() {
         if (Problem error = whole(4, 252)(value, document)) {
             return error;
         }
-        if (value.get<int>() % 4 != 0) {
-            return fmt::format("is {}, not a multiple of 4", value.get<int>());
+        if (value.whole<int>() % 4 != 0) {
+            return fmt::format("is {}, not a multiple of 4", value.whole<int>());
         }
         return {};
     };
@@ -133,7 +130,7 @@ Check version() {
         if (!value.is_string()) {
             return "is not a string";
         }
-        const auto& number = value.get_ref<const std::string&>();
+        const auto& number = value.text();
         return number.starts_with("2.") ? Problem{}
                                         : fmt::format("is \"{}\"; only 2.0 is read", readable(number));
     };
@@ -144,7 +141,7 @@ Check one_of(std::vector<std::string_view> names) {
         if (!value.is_string()) {
             return "is not a string";
         }
-        const auto& name = value.get_ref<const std::string&>();
+        const auto& name = value.text();
         const bool known = std::ranges::find(names, name) != names.end();
         return known ? Problem{}
                      : fmt::format("is \"{}\", not one of {}", readable(name), fmt::join(names, ", "));
@@ -153,12 +150,13 @@ Check one_of(std::vector<std::string_view> names) {
 
 /// Checks for an index into the array at `path` of the document, which messages call `plural`.
 Check index_into(const char* path, const char* plural) {
-    return [pointer = Json::json_pointer(path), plural](const Json& value, const Json& document) -> Problem {
-        if (!value.is_number_integer()) {
+    return [path, plural](const Json& value, const Json& document) -> Problem {
+        if (!value.is_whole()) {
             return "is not an index";
         }
-        const std::size_t size = document.contains(pointer) ? document.at(pointer).size() : 0;
-        if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= size) {
+        const Json* const list = document.find_path(path);
+        const std::size_t size = list ? list->size() : 0;
+        if (!value.is_not_negative() || value.whole<std::uint64_t>() >= size) {
             return fmt::format("is {}, but there are {} {}", value.dump(), size, plural);
         }
         return {};
@@ -166,18 +164,18 @@ Check index_into(const char* path, const char* plural) {
 }
 
 std::vector<Rule> rules() {
-    const Check accessor = index_into("/accessors", "accessors");
-    const Check buffer = index_into("/buffers", "buffers");
-    const Check buffer_view = index_into("/bufferViews", "buffer views");
-    const Check camera = index_into("/cameras", "cameras");
-    const Check image = index_into("/images", "images");
-    const Check light = index_into("/extensions/KHR_lights_punctual/lights", "lights");
-    const Check material = index_into("/materials", "materials");
-    const Check mesh = index_into("/meshes", "meshes");
-    const Check node = index_into("/nodes", "nodes");
-    const Check sampler = index_into("/samplers", "samplers");
-    const Check scene = index_into("/scenes", "scenes");
-    const Check texture = index_into("/textures", "textures");
+    const Check accessor = index_into("accessors", "accessors");
+    const Check buffer = index_into("buffers", "buffers");
+    const Check buffer_view = index_into("bufferViews", "buffer views");
+    const Check camera = index_into("cameras", "cameras");
+    const Check image = index_into("images", "images");
+    const Check light = index_into("extensions/KHR_lights_punctual/lights", "lights");
+    const Check material = index_into("materials", "materials");
+    const Check mesh = index_into("meshes", "meshes");
+    const Check node = index_into("nodes", "nodes");
+    const Check sampler = index_into("samplers", "samplers");
+    const Check scene = index_into("scenes", "scenes");
+    const Check texture = index_into("textures", "textures");
     const Check size = whole(0, any_size);
     const Check index = whole(0, std::numeric_limits<int>::max());
 
@@ -345,10 +343,10 @@ void apply(const Rule& rule, std::string_view path, const Json& value, const Pla
             apply(rule, rest, value[i], {.parent = &place, .item = i}, document);
         }
     } else if (step == "{}") {
-        for (const auto& [key, member] : value.items()) {
+        for (const auto& [key, member] : value.members()) {
             apply(rule, rest, member, {.parent = &place, .member = key}, document);
         }
-    } else if (const auto member = value.find(step); member != value.end()) {
+    } else if (const Json* const member = value.find(step)) {
         apply(rule, rest, *member, {.parent = &place, .member = step}, document);
     }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include "engine/json/json.hpp"
 
 namespace candela::gltf {
 
@@ -8,6 +8,6 @@ namespace candela::gltf {
 /// numbers, and that every index refers to something that exists. TinyGLTF treats a member of the wrong type
 /// or with a negative value as absent, so later code could not detect it. Throws SceneError, which names the
 /// first invalid member, such as `nodes[3].mesh is 7, but there are 2 meshes`.
-void check_schema(const nlohmann::json& document);
+void check_schema(const Json& document);
 
 }  // namespace candela::gltf

@@ -1,22 +1,19 @@
 #include <candela/configuration.hpp>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
-
 #include <set>
 #include <type_traits>
 #include <utility>
 
-#include "engine/json_fault.hpp"
+#include <fmt/format.h>
+
+#include "engine/json/json.hpp"
 #include "engine/readable.hpp"
 
 namespace candela {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr auto path_names = [] {
     std::array<std::string_view, shading_paths.size()> names;
@@ -167,23 +164,20 @@ class Validator {
 };
 
 class Reader {
-    using Json =
-        nlohmann::json;  // sorted by name: reading a member of an ordered object is linear in its size
-
  public:
     Reader(const Json& root, std::vector<std::string>& errors) : json_(&root), errors_(&errors) {}
 
     template <class Members>
     void group(const char* name, Members members) {
         known_.insert(prefix_ + name);
-        const auto found = json_->find(name);
-        if (found == json_->end()) {
+        const Json* const found = json_->find(name);
+        if (!found) {
             return;
         }
         if (!found->is_object()) {
             return error(name, "is not an object");
         }
-        const Json* outer = std::exchange(json_, &*found);
+        const Json* outer = std::exchange(json_, found);
         const std::string outer_prefix = std::exchange(prefix_, fmt::format("{}{}.", prefix_, name));
         members();
         report_unknown();
@@ -193,13 +187,12 @@ class Reader {
     template <class T>
     void member(const char* name, T& value, Range range = {}) {
         known_.insert(prefix_ + name);
-        const auto found = json_->find(name);
-        if (found != json_->end()) {
+        if (const Json* const found = json_->find(name)) {
             read(name, *found, value, range);
         }
     }
     void report_unknown() {
-        for (const auto& [name, value] : json_->items()) {
+        for (const auto& [name, value] : json_->members()) {
             if (!known_.contains(prefix_ + name)) {
                 error(readable(name), "is unknown");
             }
@@ -214,22 +207,22 @@ class Reader {
         if (!json.is_boolean()) {
             return error(name, "is not true or false");
         }
-        value = json.get<bool>();
+        value = json.flag();
     }
     void read(const char* name, const Json& json, std::uint32_t& value, Range range) {
         const bool fits =
-            json.is_number_integer() && json.get<double>() >= range.least && json.get<double>() <= range.most;
+            json.is_whole() && json.number() >= range.least && json.number() <= range.most;
         if (!fits) {
             return error(name, fmt::format("is not a whole number from {} to {}", range.least, range.most));
         }
-        value = json.get<std::uint32_t>();
+        value = json.whole<std::uint32_t>();
     }
     void read(const char* name, const Json& json, float& value, Range range) {
-        const bool infinite = json.is_string() && json.get<std::string>() == "infinity";
+        const bool infinite = json.is("infinity");
         if (!json.is_number() && !infinite) {
             return error(name, "is not a number");
         }
-        const double number = infinite ? std::numeric_limits<double>::infinity() : json.get<double>();
+        const double number = infinite ? std::numeric_limits<double>::infinity() : json.number();
         const bool is_large_enough = static_cast<float>(number) >= static_cast<float>(range.least);
         if (!is_large_enough || number > range.most) {
             return error(name, fmt::format("is not from {} to {}", range.least, range.most));
@@ -237,7 +230,7 @@ class Reader {
         value = static_cast<float>(number);
     }
     void read(const char* name, const Json& json, std::optional<float>& value, Range range) {
-        if (json == "auto") {
+        if (json.is("auto")) {
             value.reset();
         } else {
             read(name, json, value.emplace(value.value_or(0.0F)), range);
@@ -249,7 +242,7 @@ class Reader {
         const auto names = names_of(value);
         std::string given;
         if (json.is_string()) {
-            given = json.get<std::string>();
+            given = json.text();
         } else if (json.is_number()) {
             given = json.dump();
         }
@@ -269,7 +262,7 @@ class Reader {
 };
 
 /// Changes the members that `json` has.
-void read_members(const nlohmann::json& json, Configuration& configuration,
+void read_members(const Json& json, Configuration& configuration,
                   std::vector<std::string>& errors) {
     if (!json.is_object()) {
         errors.emplace_back("not a JSON object");
@@ -286,9 +279,9 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     ConfigurationResult result;
     Configuration configuration = base;
     try {
-        read_members(nlohmann::json::parse(text), configuration, result.errors);
-    } catch (const Json::exception& error) {
-        result.errors.push_back(readable(json_fault(error)));
+        read_members(Json::parse(text), configuration, result.errors);
+    } catch (const JsonError& error) {
+        result.errors.push_back(readable(error.what()));
     }
     result.errors = first_ten(std::move(result.errors));
     // Rejected members kept their old values; this adds errors that depend on several values.

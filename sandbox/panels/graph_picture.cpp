@@ -5,13 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include <nlohmann/json.hpp>
+#include "engine/json/json.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
-using Json = nlohmann::json;
 using Indices = std::map<std::string, std::size_t, std::less<>>;
 
 GraphResource::Kind kind_of(std::string_view kind) {
@@ -21,8 +20,8 @@ GraphResource::Kind kind_of(std::string_view kind) {
 
 std::vector<std::size_t> indices_of(const Json& accesses, const Indices& resources) {
     std::vector<std::size_t> found;
-    for (const Json& access : accesses) {
-        const auto resource = resources.find(access["resource"].get<std::string>());
+    for (const Json& access : accesses.items()) {
+        const auto resource = resources.find(access.at("resource").text());
         if (resource != resources.end()) found.push_back(resource->second);
     }
     return found;
@@ -55,20 +54,20 @@ GraphPicture read_graph(std::string_view json) {
     // Names that begin with "inspect" are those of the view of resources itself.
     GraphPicture graph;
     Indices resources;
-    for (const Json& entry : document["resources"]) {
-        if (entry["name"].get<std::string>().starts_with("inspect")) continue;
-        resources.emplace(entry["name"].get<std::string>(), graph.resources.size());
-        graph.resources.push_back({.name = entry["name"],
-                                   .storage = entry["storage"],
-                                   .lifetime = entry["lifetime"],
-                                   .kind = kind_of(entry["kind"].get<std::string>())});
+    for (const Json& entry : document.at("resources").items()) {
+        if (entry.at("name").text().starts_with("inspect")) continue;
+        resources.emplace(entry.at("name").text(), graph.resources.size());
+        graph.resources.push_back({.name = entry.at("name").text(),
+                                   .storage = entry.at("storage").text(),
+                                   .lifetime = entry.at("lifetime").text(),
+                                   .kind = kind_of(entry.at("kind").text())});
     }
-    for (const Json& entry : document["passes"]) {
-        if (entry["name"].get<std::string>().starts_with("inspect")) continue;
-        GraphPass pass{.name = entry["name"],
-                       .gpu = entry["kind"] == "gpu",
-                       .reads = indices_of(entry["reads"], resources),
-                       .writes = indices_of(entry["writes"], resources)};
+    for (const Json& entry : document.at("passes").items()) {
+        if (entry.at("name").text().starts_with("inspect")) continue;
+        GraphPass pass{.name = entry.at("name").text(),
+                       .gpu = entry.at("kind").is("gpu"),
+                       .reads = indices_of(entry.at("reads"), resources),
+                       .writes = indices_of(entry.at("writes"), resources)};
         graph.passes.push_back(std::move(pass));
     }
     for (std::size_t position = 0; position < graph.passes.size(); ++position) add_edges(graph, position);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "sandbox/live_reference.hpp"
+#include "sandbox/reference/live_reference.hpp"
 
 namespace candela::sandbox {
 

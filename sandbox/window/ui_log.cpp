@@ -5,13 +5,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "engine/json/json.hpp"
 
 namespace candela::sandbox {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json to_json(const Rectangle& at) {
     return {at.corner.x, at.corner.y, at.size.x, at.size.y};
@@ -57,7 +56,7 @@ Json lasting(const UiRecord& record) {
             {"show", record.show},
             {"compare", to_string(record.compare)},
             {"view", to_json(record.view)},
-            {"errors", record.errors},
+            {"errors", Json::array({record.errors.begin(), record.errors.end()})},
             {"undo", record.undo},
             {"redo", record.redo},
             {"refined", record.refined},

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tests/reference/path_tracer.hpp"
+#include "sandbox/reference/path_tracer.hpp"
 
 namespace candela::reference {
 

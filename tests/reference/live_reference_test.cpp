@@ -1,4 +1,4 @@
-#include "sandbox/live_reference.hpp"
+#include "sandbox/reference/live_reference.hpp"
 
 #include <doctest/doctest.h>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sandbox/files/picture.hpp"
-#include "tests/reference/path_tracer.hpp"
+#include "sandbox/reference/path_tracer.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 namespace candela::reference {

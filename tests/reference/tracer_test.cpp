@@ -1,4 +1,4 @@
-#include "tests/reference/path_tracer.hpp"
+#include "sandbox/reference/path_tracer.hpp"
 
 #include <doctest/doctest.h>
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from scenes import ROOT
 
-SOURCES = ("engine", "renderer", "sandbox", "shaders", "tests/reference", "tests/study/*.[ch]pp")
+SOURCES = ("engine", "renderer", "sandbox", "shaders", "tests/study/*.[ch]pp")
 
 
 def cpu_model() -> str:

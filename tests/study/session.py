@@ -35,7 +35,7 @@ class Study:
         self.forecast = progress.Forecast()
         self.bar = progress.Bar(self.forecast)
         self.machine = machine.machine()
-        self.tracer = machine.sources_hash(scenes.ROOT / "tests" / "reference")
+        self.tracer = machine.sources_hash(scenes.ROOT / "sandbox" / "reference")
         self.program = machine.file_hash(STUDY)
         self.announced = False
 

@@ -1,0 +1,90 @@
+#include "sandbox/reference/lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include <candela/scene/components.hpp>
+#include <candela/scene/hierarchy.hpp>
+
+namespace candela::reference {
+
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// A point light with the entity's pose, which looks along its -Z. The callers fill in what differs.
+Light placed(WorldMatrices& world_matrices, Entity entity, glm::vec3 intensity, bool casts_shadow) {
+    const glm::mat4 to_world = world_matrices(entity);
+    return {.kind = Light::Kind::point,
+            .position = glm::vec3(to_world[3]),
+            .direction = glm::normalize(-glm::vec3(to_world[2])),
+            .intensity = intensity,
+            .range = infinity,
+            .solid_angle = 4.0F * pi,
+            .cone_scale = 0.0F,
+            .cone_offset = 1.0F,
+            .casts_shadow = casts_shadow};
+}
+
+Light point(WorldMatrices& world_matrices, Entity entity, const PointLight& source) {
+    Light light = placed(world_matrices, entity, source.colour * source.intensity, source.casts_shadow);
+    light.range = source.range;
+    return light;
+}
+
+Light spot(WorldMatrices& world_matrices, Entity entity, const SpotLight& source) {
+    Light light = placed(world_matrices, entity, source.colour * source.intensity, source.casts_shadow);
+    light.kind = Light::Kind::spot;
+    light.range = source.range;
+    // As in the reference code of KHR_lights_punctual, including its guard against equal cones.
+    const float ramp = std::cos(source.inner_cone) - std::cos(source.outer_cone);
+    light.cone_scale = 1.0F / std::max(ramp, 1e-3F);
+    light.solid_angle = 2.0F * pi * (1.0F - std::cos(source.outer_cone));
+    light.cone_offset = -std::cos(source.outer_cone) * light.cone_scale;
+    return light;
+}
+
+Light directional(WorldMatrices& world_matrices, Entity entity, const DirectionalLight& source) {
+    Light light = placed(world_matrices, entity, source.colour * source.illuminance, source.casts_shadow);
+    light.kind = Light::Kind::directional;
+    return light;
+}
+
+float cone(const Light& light, glm::vec3 to_light) {
+    const float cosine = -glm::dot(to_light, light.direction);
+    const float ramp = std::clamp(cosine * light.cone_scale + light.cone_offset, 0.0F, 1.0F);
+    return ramp * ramp;
+}
+
+}  // namespace
+
+std::vector<Light> lights_of(const World& world) {
+    std::vector<Light> lights;
+    WorldMatrices world_matrices(world);
+    for (auto [entity, source] : world.view<PointLight>())
+        lights.push_back(point(world_matrices, entity, source));
+    for (auto [entity, source] : world.view<SpotLight>())
+        lights.push_back(spot(world_matrices, entity, source));
+    for (auto [entity, source] : world.view<DirectionalLight>())
+        lights.push_back(directional(world_matrices, entity, source));
+    return lights;
+}
+
+Arrival arrival(const Light& light, glm::vec3 position) {
+    if (light.kind == Light::Kind::directional) return {-light.direction, infinity, light.intensity};
+    const glm::vec3 path = light.position - position;
+    const float squared = glm::dot(path, path);
+    if (squared == 0.0F || squared >= light.range * light.range) return {{}, 0.0F, glm::vec3(0.0F)};
+    const float distance = std::sqrt(squared);
+    const float ratio = squared / (light.range * light.range);
+    const float window = std::clamp(1.0F - ratio * ratio, 0.0F, 1.0F);
+    const glm::vec3 towards = path / distance;
+    return {towards, distance, light.intensity * (window * cone(light, towards) / squared)};
+}
+
+}  // namespace candela::reference

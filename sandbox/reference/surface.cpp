@@ -1,0 +1,67 @@
+#include "sandbox/reference/surface.hpp"
+
+#include <glm/geometric.hpp>
+
+namespace candela::reference {
+
+namespace {
+
+SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction, float light_through) {
+    const Triangle& triangle = geometry.triangle(hit.triangle);
+    const SurfaceMaterial& material = geometry.material(triangle);
+    const glm::vec2 uv = uv_at(triangle, hit.weights);
+    const glm::vec4 colour = colour_at(triangle, material, hit.weights);
+    const float side = glm::dot(triangle.front, direction) < 0.0F ? 1.0F : -1.0F;
+    const float cover = material.alpha_mode == AlphaMode::blend ? colour.a : 1.0F;
+    return {.surface = {.position = position_at(triangle, hit.weights),
+                        .face = side * triangle.front,
+                        .normal = side * glm::normalize(normal_at(triangle, hit.weights)),
+                        .albedo = glm::vec3(colour),
+                        .emission = material.emission(uv)},
+            .weight = light_through * cover,
+            .part = triangle.part};
+}
+
+}  // namespace
+
+std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray) {
+    Sight sight = geometry.look(ray);
+    if (sight.solid) sight.blended.push_back(*sight.solid);
+    std::vector<SeenSurface> seen;
+    float light_through = 1.0F;
+    for (const Hit& hit : sight.blended) {
+        seen.push_back(seen_surface(geometry, hit, ray.direction, light_through));
+        light_through -= seen.back().weight;
+    }
+    return seen;
+}
+
+Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction) {
+    const Triangle& triangle = geometry.triangle(hit.triangle);
+    const SurfaceMaterial& material = geometry.material(triangle);
+    const bool shows_front = glm::dot(triangle.front, direction) < 0.0F;
+    const glm::vec3 face = shows_front ? triangle.front : -triangle.front;
+    const bool is_lit = shows_front || material.double_sided;
+    const glm::vec2 uv = uv_at(triangle, hit.weights);
+    return {.position = position_at(triangle, hit.weights),
+            .face = face,
+            .normal = face,
+            .albedo = is_lit ? glm::vec3(colour_at(triangle, material, hit.weights)) : glm::vec3(0.0F),
+            .emission = is_lit ? material.emission(uv) : glm::vec3(0.0F)};
+}
+
+bool are_connected(const Geometry& geometry, const Surface& a, const Surface& b) {
+    const glm::vec3 between = b.position - a.position;
+    const bool face_each_other = glm::dot(a.normal, between) > 0.0F && glm::dot(a.face, between) > 0.0F &&
+                                 glm::dot(b.face, between) < 0.0F;
+    if (!face_each_other) return false;
+    // The ray ends above `b`, too: at a slant it would otherwise hit the triangle of `b` itself.
+    const float offset = geometry.ray_offset();
+    const glm::vec3 origin = a.position + offset * a.face;
+    const glm::vec3 way = b.position + offset * b.face - origin;
+    const float share = offset / glm::length(way);
+    return !geometry.is_blocked(
+        {.origin = origin, .direction = way, .nearest = share, .farthest = 1.0F - share});
+}
+
+}  // namespace candela::reference
