@@ -12,7 +12,7 @@ using namespace candela;
 
 namespace {
 
-constexpr glm::uvec2 size{8, 6};
+constexpr glm::uvec2 size{4, 3};
 
 /// A view of the back wall so narrow that the light of a VPL is the same in the whole picture.
 Scene patch_of_wall() {
@@ -58,9 +58,9 @@ TEST_SUITE("bounded work") {
         const Scene scene = patch_of_wall();
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
-        configuration.vpls.placement = VplPlacement::paths;
+        configuration.vpls = {.placement = VplPlacement::paths, .bounces = 2};
         SUBCASE("so many that they exceed the bound") {
-            configuration.vpls.count = 100'000;
+            configuration.vpls.count = 70'000;
         }
         SUBCASE("with visibility rays, each of which traverses a tree") {
             configuration.visibility.method = VplVisibility::rays;
@@ -69,14 +69,14 @@ TEST_SUITE("bounded work") {
         // Each of the 64 classes gathers so few VPLs that no bound applies, and on a plane they add up to all
         // VPLs.
         configuration.interleave = Interleave::eight;
-        constexpr glm::uvec2 whole_classes{16, 12};
+        constexpr glm::uvec2 whole_classes{8, 8};
         const Picture shared = picture(scene, configuration, whole_classes);
         CHECK(mean(shared) > 0.01);
         configuration.interleave = Interleave::one;
         for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
             CAPTURE(to_string(path));
             configuration.path = path;
-            // The light of the nearest VPL varies by 1e-4 over the picture, and 100,000 floats are added up
+            // The light of the nearest VPL varies by 1e-4 over the picture, and 70,000 floats are added up
             // in another order.
             CHECK(worst_error(picture(scene, configuration, whole_classes), shared, 1e-12) < 1e-3);
         }
@@ -84,7 +84,7 @@ TEST_SUITE("bounded work") {
 
     TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however many there are") {
         constexpr std::uint32_t lights = 70'000;
-        constexpr std::uint32_t part = 7'000;
+        constexpr std::uint32_t part = 14'000;
         float range = 0.0F;
         SUBCASE("without a range, so that they light every surface") {
             range = std::numeric_limits<float>::infinity();
