@@ -19,7 +19,7 @@ namespace {
 constexpr int samples_across = 4;
 // An even width and an odd height: the edges of rooms run along the diagonals of their pictures and would
 // otherwise pass through pixel centres, where rounding decides which of two walls is seen.
-constexpr glm::uvec2 sampled_size{640, 479};
+constexpr glm::uvec2 sampled_size{320, 239};
 
 /// relMSE of the renderer's direct light.
 struct DirectErrors {

@@ -22,7 +22,7 @@ using namespace candela;
 
 namespace {
 
-constexpr glm::uvec2 size{24, 18};
+constexpr glm::uvec2 size{16, 12};
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -264,8 +264,8 @@ std::vector<FaultCase> sky_faults() {
 
 Configuration small_configuration() {
     Configuration configuration = linear_configuration();
-    configuration.vpls.count = 32;
-    configuration.shadows = {.cube_resolution = 32, .map_resolution = 32};
+    configuration.vpls.count = 8;
+    configuration.shadows = {.cube_resolution = 16, .map_resolution = 16};
     return configuration;
 }
 
@@ -435,7 +435,7 @@ TEST_SUITE("bad input") {
         Configuration configuration = before;
         configuration.vpls.placement = VplPlacement::paths;
         configuration.vpls.count = 1U << 20U;
-        configuration.visibility.method = VplVisibility::maps;
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 64};
         const std::vector<std::string> errors = renderer.renderer().configure(configuration);
         REQUIRE(errors.size() == 1);
         CHECK(errors[0].starts_with("depth maps of 1048576 VPLs, 64 texels a side, fill 16384 layers"));

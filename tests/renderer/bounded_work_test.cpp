@@ -12,7 +12,7 @@ using namespace candela;
 
 namespace {
 
-constexpr glm::uvec2 size{8, 6};
+constexpr glm::uvec2 size{4, 3};
 
 /// A view of the back wall so narrow that the light of a VPL is the same in the whole picture.
 Scene patch_of_wall() {
@@ -49,49 +49,32 @@ class BoundedWork : public PathFixture {
         renderer.invalidate();  // the scene may have the address of the previous one
         return render(scene, of_size);
     }
-};
 
-}  // namespace
-
-TEST_SUITE("bounded work") {
-    TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs, however many there are") {
+    void check_vpls(std::uint32_t count, VplVisibility method) {
         const Scene scene = patch_of_wall();
         Configuration configuration = linear_configuration();
         configuration.show = Show::indirect;
-        configuration.vpls.placement = VplPlacement::paths;
-        SUBCASE("so many that they exceed the bound") {
-            configuration.vpls.count = 100'000;
-        }
-        SUBCASE("with visibility rays, each of which traverses a tree") {
-            configuration.visibility.method = VplVisibility::rays;
-            configuration.vpls.count = 8192;
-        }
+        configuration.vpls = {.placement = VplPlacement::paths, .count = count, .bounces = 2};
+        configuration.visibility.method = method;
         // Each of the 64 classes gathers so few VPLs that no bound applies, and on a plane they add up to all
         // VPLs.
         configuration.interleave = Interleave::eight;
-        constexpr glm::uvec2 whole_classes{16, 12};
+        constexpr glm::uvec2 whole_classes{8, 8};
         const Picture shared = picture(scene, configuration, whole_classes);
         CHECK(mean(shared) > 0.01);
         configuration.interleave = Interleave::one;
         for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
             CAPTURE(to_string(path));
             configuration.path = path;
-            // The light of the nearest VPL varies by 1e-4 over the picture, and 100,000 floats are added up
-            // in another order.
+            // The light of the nearest VPL varies by 1e-4 over the picture, and 70,000 floats are added up in
+            // another order.
             CHECK(worst_error(picture(scene, configuration, whole_classes), shared, 1e-12) < 1e-3);
         }
     }
 
-    TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however many there are") {
+    void check_lights(float range) {
         constexpr std::uint32_t lights = 70'000;
-        constexpr std::uint32_t part = 7'000;
-        float range = 0.0F;
-        SUBCASE("without a range, so that they light every surface") {
-            range = std::numeric_limits<float>::infinity();
-        }
-        SUBCASE("with a range, in lists that are as long") {
-            range = 16.0F;
-        }
+        constexpr std::uint32_t part = 14'000;
         std::vector<Picture> parts;
         for (std::uint32_t first = 0; first < lights; first += part) {
             parts.push_back(picture(lit_ground(first, first + part, range), direct_only()));
@@ -107,6 +90,26 @@ TEST_SUITE("bounded work") {
             // most 7e4 · 2⁻²⁵.
             CHECK(worst_error(picture(scene, configuration), expected, 1e-12) < 2.5e-3);
         }
+    }
+};
+
+}  // namespace
+
+TEST_SUITE("bounded work") {
+    TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs, however many there are") {
+        check_vpls(70'000, VplVisibility::none);
+    }
+
+    TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs with rays, each of which traverses a tree") {
+        check_vpls(8192, VplVisibility::rays);
+    }
+
+    TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however many light every surface") {
+        check_lights(std::numeric_limits<float>::infinity());
+    }
+
+    TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however long their lists are") {
+        check_lights(16.0F);
     }
 
     TEST_CASE_FIXTURE(BoundedWork,

@@ -101,7 +101,7 @@ TEST_SUITE("edge cases") {
         }
     }
 
-    TEST_CASE_FIXTURE(EdgeCases, "without VPLs or without bounces the picture is the direct light") {
+    TEST_CASE_FIXTURE(EdgeCases, "without indirect light, VPLs or bounces the picture is the direct light") {
         const Scene scene = cornell_box();
         Configuration configuration = linear_configuration();
         configuration.show = Show::direct;
@@ -112,6 +112,9 @@ TEST_SUITE("edge cases") {
         configuration.vpls = {.count = 256, .bounces = 0};
         CHECK(render_both(scene, configuration) == direct);
         CHECK(renderer.report().vpls->alive == 0);
+        configuration.indirect = false;
+        CHECK(render_both(scene, configuration) == direct);
+        CHECK_FALSE(renderer.report().vpls);
     }
 
     TEST_CASE_FIXTURE(EdgeCases, "a light exactly on a surface, an edge and a corner") {
@@ -229,7 +232,9 @@ TEST_SUITE("edge cases") {
             for (glm::vec3& pixel : picture.pixels) pixel /= factor;
             CHECK(worst_error(picture, usual, 1e-6) < 1e-3);
             if (factor < 1.0F) continue;
-            configure({});
+            Configuration curve = linear_configuration();
+            curve.tone_map.enabled = true;
+            configure(curve);
             // All lit pixels are white, not black or random, as they would be if the tone curve divided
             // infinity by itself.
             CHECK(worst_error(render(scene, size), lit, 1.0) < 1e-5);
@@ -272,6 +277,7 @@ TEST_SUITE("edge cases") {
             SpotLight{.intensity = 0.6F, .casts_shadow = false});
         Configuration configuration = linear_configuration();
         // A cube map of 512² texels takes 6 MiB, a map of 1024² takes 4 MiB.
+        configuration.shadows = {.cube_resolution = 512, .map_resolution = 1024};
         struct Case {
             std::uint32_t budget, with, without;
         };

@@ -17,7 +17,7 @@ using namespace candela;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr glm::uvec2 size{96, 64};
+constexpr glm::uvec2 size{48, 32};
 
 /// A square lamp, 0.6 m wide, 1 m above the ground.
 constexpr float half = 0.3F;
@@ -81,7 +81,7 @@ class EmissionFixture : public PathFixture {
 /// The lamp's box with few surfels.
 Configuration small_configuration(Show show = Show::total) {
     Configuration configuration = linear_configuration();
-    configuration.vpls.count = 64;
+    configuration.vpls.count = 16;
     configuration.show = show;
     return configuration;
 }
@@ -124,38 +124,13 @@ TEST_SUITE("emission") {
         }
     }
 
-    TEST_CASE_FIXTURE(EmissionFixture, "all paths agree on a scene that only a lamp lights") {
-        Scene scene = shipped_scene("lamp");
-        Configuration configuration = small_configuration();
-        configuration.visibility = {VplVisibility::maps, 16};
-        check_paths(scene, size, configuration);
-        configuration.interleave = Interleave::four;
-        check_paths(scene, size, configuration);
-    }
-
-    TEST_CASE_FIXTURE(EmissionFixture, "direct and indirect light add up to the total") {
-        const Scene scene = shipped_scene("lamp");
-        std::array<Picture, 3> shown;
-        for (const Show show : {Show::total, Show::direct, Show::indirect}) {
-            configure(small_configuration(show));
-            shown[static_cast<std::size_t>(show)] = render(scene, size);
-        }
-        Picture sum = shown[1];
-        for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
-            sum.pixels[i] += shown[2].pixels[i];
-        }
-        // The order of the sums differs: a few hundred roundings.
-        CHECK(worst_error(sum, shown[0], 1e-3 * mean(shown[0])) < 1e-3);
-        CHECK(mean(shown[1]) > mean(shown[2]));
-        CHECK(mean(shown[2]) > 0.0);
-    }
-
     TEST_CASE_FIXTURE(EmissionFixture, "the light of a closed lamp is all absorbed") {
         Scene scene = furnace_box(0.5F);
         scene.world.destroy(scene.light);
         add(scene.world, upside_down_at({0.0F, 0.99F, 0.0F}),
             MeshInstance{square(0.25F, emitter(glm::vec3(2.0F)))});
         Configuration configuration = linear_configuration();
+        configuration.vpls.count = 512;  // with fewer, more of the light is lost between them
         configuration.visibility.method = VplVisibility::maps;
         configure(configuration);
         static_cast<void>(render(scene, {4, 4}));
@@ -174,9 +149,9 @@ TEST_SUITE("emission") {
         configure(small_configuration());
         static_cast<void>(render(scene, size));
         scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.5F; });
-        CHECK(render(scene, size) == fresh_picture(scene, size));
+        CHECK(render(scene, size) == from_scratch(scene, size));
         scene.world.set(scene.light, MeshInstance{square(half, emitter({0.0F, 2.0F, 1.0F}))});
-        CHECK(render(scene, size) == fresh_picture(scene, size));
+        CHECK(render(scene, size) == from_scratch(scene, size));
         CHECK(ran("emission"));
         scene.world.destroy(scene.light);
         CHECK(mean(render(scene, size)) == 0.0);

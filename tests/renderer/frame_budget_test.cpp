@@ -15,13 +15,13 @@ using namespace candela;
 
 namespace {
 
-constexpr glm::uvec2 size{96, 64};
+constexpr glm::uvec2 size{48, 32};
 
 class FrameBudgetTests : public PathFixture {
  protected:
     /// Pass a budget that no frame can keep, or one that every frame keeps.
     void start(float budget_ms) {
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         configuration.frame_budget_ms = budget_ms;
         configure(configuration);
     }
@@ -72,7 +72,7 @@ TEST_SUITE("frame budget") {
 
     TEST_CASE_FIXTURE(FrameBudgetTests, "the passes that the budget names exist in the graphs") {
         std::string graphs;
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         configuration.refinement.enabled = true;
         configuration.interleave = Interleave::eight;
         for (const ShadingPath path : all_shading_paths) {

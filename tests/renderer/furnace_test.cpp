@@ -13,7 +13,7 @@ using namespace candela;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr glm::uvec2 size{48, 48};
+constexpr glm::uvec2 size{32, 32};
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A light of 3 cd at the centre of a sphere of radius 2 m, and a camera inside, off the centre.

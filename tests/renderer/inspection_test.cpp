@@ -192,7 +192,7 @@ TEST_SUITE("inspection") {
     }
 
     TEST_CASE_FIXTURE(InspectionTests, "depth maps of VPLs hold the distances in a closed box") {
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         configuration.visibility.method = VplVisibility::maps;
         configure(configuration);
         const InspectionResult result = look(furnace_box(0.5F), {.resource = "vpl maps", .longest = 512});
@@ -343,7 +343,7 @@ TEST_SUITE("inspection") {
 
     TEST_CASE_FIXTURE(InspectionTests, "every resource of every path can be inspected") {
         const Scene scene = cornell_box();
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         configuration.visibility.method = VplVisibility::maps;
         configuration.interleave = Interleave::two;
         configuration.refinement = {.enabled = true, .frames = 4};
@@ -374,7 +374,7 @@ TEST_SUITE("inspection") {
     TEST_CASE_FIXTURE(InspectionTests,
                       "the picture is the same with and without, and only what changes runs") {
         const Scene scene = cornell_box();
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         configuration.refinement = {.enabled = true, .frames = 6};
         configure(configuration);
         const auto frames = [&](bool inspects) {
@@ -408,7 +408,7 @@ TEST_SUITE("inspection") {
 
     TEST_CASE_FIXTURE(InspectionTests, "a resource that a graph does not have is said to be missing") {
         const Scene scene = cornell_box();
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         CHECK(inspector.result().description.empty());
         configure(configuration);
         CHECK(look(scene, {.resource = "albedo"}).texture != 0);
@@ -466,7 +466,7 @@ TEST_SUITE("inspection") {
     TEST_CASE_FIXTURE(InspectionTests, "its passes declare all that they depend on") {
         renderer.verify(true);
         Scene scene = cornell_box();
-        Configuration configuration = few_vpls();
+        Configuration configuration = linear_configuration();
         configuration.path = ShadingPath::clustered_deferred;
         configure(configuration);
         for (const char* const name : {"depth", "shadow cubes", "radiance", "light-clusters count"}) {
@@ -484,7 +484,7 @@ TEST_SUITE("inspection") {
         const std::array<const char*, 4> names{"radiance", "shadow cubes", "light-tiles count", "nothing"};
         const auto round = [&] {
             for (const ShadingPath path : {ShadingPath::tiled_deferred, ShadingPath::forward}) {
-                Configuration configuration = few_vpls();
+                Configuration configuration = linear_configuration();
                 configuration.path = path;
                 configure(configuration);
                 for (const char* const name : names) {

@@ -15,8 +15,8 @@ using namespace candela;
 
 namespace {
 
-constexpr glm::uvec2 size{640, 480};  // pixels of about the size of a texel, many of them on creases
-constexpr glm::uvec2 small{160, 120};
+constexpr glm::uvec2 size{160, 120};  // pixels are smaller than texels, and many of them are on creases
+constexpr glm::uvec2 small{48, 36};
 
 std::ptrdiff_t lit_pixels(const Picture& picture) {
     return std::ranges::count_if(picture.pixels,
@@ -45,8 +45,8 @@ Configuration direct_light(ShadingPath path) {
 Configuration vpl_light(VplPlacement placement, VplVisibility method) {
     Configuration configuration = linear_configuration();
     configuration.show = Show::indirect;
-    configuration.vpls = {.placement = placement, .count = 256, .bounces = 4};
-    configuration.visibility.method = method;
+    configuration.vpls = {.placement = placement, .count = 128, .bounces = 4};
+    configuration.visibility = {.method = method, .map_resolution = 64};
     return configuration;
 }
 
@@ -119,32 +119,30 @@ TEST_SUITE("light leaks") {
     TEST_CASE_FIXTURE(LightLeakTests, "no pixel of a closed room of single walls is lit by a lamp outside") {
         Scene scene = furnace_box(0.5F);
         for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
-            check_dark(direct_light(path), scene, [](glm::vec3 lamp) { return at(lamp); });
-        }
-        scene.world.remove<PointLight>(scene.light);
-        SUBCASE("a spot light with a cube map") {
-            scene.world.set(scene.light, SpotLight{.inner_cone = 1.2F, .outer_cone = 1.3F});
-        }
-        SUBCASE("a spot light with a flat map") {
-            scene.world.set(scene.light, SpotLight{.inner_cone = 0.8F, .outer_cone = 0.9F});
-        }
-        SUBCASE("a directional light") {
-            scene.world.set(scene.light, DirectionalLight{.illuminance = 5.0F});
-        }
-        for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
-            check_dark(direct_light(path), scene, towards_room);
+            const Configuration configuration = direct_light(path);
+            check_dark(configuration, scene, [](glm::vec3 lamp) { return at(lamp); });
+            Scene other = scene;
+            other.world.remove<PointLight>(other.light);
+            // A cube map, a flat map, and that of parallel light.
+            other.world.set(other.light, SpotLight{.inner_cone = 1.2F, .outer_cone = 1.3F});
+            check_dark(configuration, other, towards_room);
+            other.world.set(other.light, SpotLight{.inner_cone = 0.8F, .outer_cone = 0.9F});
+            check_dark(configuration, other, towards_room);
+            other.world.remove<SpotLight>(other.light);
+            other.world.set(other.light, DirectionalLight{.illuminance = 5.0F});
+            check_dark(configuration, other, towards_room);
         }
     }
 
     TEST_CASE_FIXTURE(LightLeakTests, "a closed room stays dark, at the origin and 100 km away") {
-        for (const glm::vec3 offset :
-             {glm::vec3(0.0F), glm::vec3(1e5F, 0.0F, 0.0F), glm::vec3(1e5F, -1e5F, 1e5F)}) {
+        for (const glm::vec3 offset : {glm::vec3(0.0F), glm::vec3(1e5F, -1e5F, 1e5F)}) {
             CAPTURE(offset.x);
             CAPTURE(offset.y);
             check_dark_at(offset, direct_light(ShadingPath::deferred), 0.0);
             Configuration indirect = linear_configuration();
             indirect.show = Show::indirect;
-            indirect.visibility.method = VplVisibility::rays;
+            indirect.visibility = {.method = VplVisibility::rays, .map_resolution = 64};
+            indirect.vpls.count = 128;
             indirect.vpls.placement = VplPlacement::paths;
             check_dark_at(offset, indirect, 0.0);
             // Far away the points of surfels at the foot of a wall are rounded onto the other wall.
@@ -201,11 +199,12 @@ TEST_SUITE("light leaks") {
                     const double bright = mean(render(scene, small));
                     REQUIRE(bright > 0.1);
                     // Texels that see both the wall and the floor in front of it let some light through.
-                    const double most = method == VplVisibility::maps ? 1e-3 * bright : 0.0;
+                    const bool maps = method == VplVisibility::maps;
+                    const double most = maps ? 1e-3 * bright : 0.0;
                     for (const Transform& view : {looking({-0.5F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}),
                                                   looking({0.2F, -0.2F, 0.1F}, {1.0F, -1.0F, 0.7F})}) {
                         scene.world.set(scene.camera, view);
-                        CHECK(mean(render(scene, size)) <= most);
+                        CHECK(mean(render(scene, maps ? size : size / 2U)) <= most);
                     }
                 }
             }
@@ -216,6 +215,7 @@ TEST_SUITE("light leaks") {
         std::vector<std::string> lines;
         TestedRenderer renderer(context->get_proc(),
                                 {.log = [&](std::string_view line) { lines.emplace_back(line); }});
+        REQUIRE(renderer.configure(linear_configuration()).empty());
         const RenderTarget target(device, {16, 12});
         for (const float away : {0.0F, 1e3F, 1e5F, 1.1e5F}) {
             Scene scene = room_above_ground();

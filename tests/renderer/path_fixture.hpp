@@ -42,7 +42,5 @@ class PathFixture : public RenderFixture {
 
 /// Linear radiance, without indirect light and shadows.
 [[nodiscard]] Configuration direct_only();
-/// Linear radiance with a few VPLs and small shadow maps.
-[[nodiscard]] Configuration few_vpls();
 
 }  // namespace candela

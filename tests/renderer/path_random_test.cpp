@@ -150,7 +150,7 @@ Scene build(const ScenePlan& plan) {
 }
 
 Configuration configuration_of(const ScenePlan& plan) {
-    Configuration configuration = few_vpls();
+    Configuration configuration = linear_configuration();
     configuration.indirect = plan.has_vpls;
     configuration.interleave = entry(interleaves, plan.interleave);
     configuration.shadows = {

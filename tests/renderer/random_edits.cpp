@@ -2,9 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <memory>
 #include <string_view>
 #include <utility>
+
+#include <candela/scene/deformed_mesh.hpp>
 
 namespace candela {
 namespace {
@@ -18,10 +19,37 @@ Entity last_mesh(const World& world) {
     return last;
 }
 
+/// A material with an image of random texels, some of them holes.
+std::shared_ptr<const Material> textured(std::uint32_t texture_size, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    Image image{.width = texture_size, .height = texture_size, .texels = {}};
+    for (std::uint32_t i = 0; i < texture_size * texture_size; ++i) {
+        const auto texel = static_cast<std::uint32_t>(random());
+        image.texels.emplace_back(texel & 255U, texel >> 8U & 255U, texel >> 16U & 255U, texel >> 24U);
+    }
+    Material material;
+    material.base_colour_texture = std::make_shared<const Image>(std::move(image));
+    material.double_sided = true;
+    material.alpha_mode = seed % 4 == 0 ? AlphaMode::mask : AlphaMode::opaque;
+    return std::make_shared<const Material>(std::move(material));
+}
+
+/// A sky with a bright side.
+std::shared_ptr<const SkyPicture> sky_picture() {
+    SkyPicture picture{.width = 8, .height = 4, .texels = std::vector(32, glm::vec3(0.3F, 0.4F, 0.5F))};
+    picture.texels[9] = glm::vec3(5.0F);
+    return std::make_shared<const SkyPicture>(std::move(picture));
+}
+
 }  // namespace
 
 RandomEdits::RandomEdits(Scene edited, const Configuration& rendered, unsigned seed)
-    : scene(std::move(edited)), configuration(rendered), random_(seed), block_(last_mesh(scene.world)) {
+    : scene(std::move(edited)),
+      configuration(rendered),
+      random_(seed),
+      block_(last_mesh(scene.world)),
+      shared_(textured(16, 1)),
+      shared_mesh_(square(0.15F, shared_)) {
     parent_ = add(scene.world, Transform{.translation = {0.0F, 1.0F, 0.0F}, .scale = {-1.0F, 0.8F, 1.2F}});
     add(scene.world, Transform{.translation = {0.4F, 0.1F, 0.2F}, .parent = parent_},
         MeshInstance{square(0.2F, diffuse({0.2F, 0.5F, 0.9F}))});
@@ -43,13 +71,17 @@ std::string RandomEdits::next() {
                                       Edit{"a spot comes", &RandomEdits::add_spot},
                                       Edit{"a sun comes", &RandomEdits::add_sun},
                                       Edit{"a mesh comes", &RandomEdits::add_mesh},
+                                      Edit{"a mesh coincides with another", &RandomEdits::add_coinciding},
                                       Edit{"a mesh is painted", &RandomEdits::paint_mesh},
+                                      Edit{"a mesh becomes another", &RandomEdits::replace_mesh},
+                                      Edit{"a mesh deforms", &RandomEdits::deform_mesh},
                                       Edit{"something goes", &RandomEdits::remove_something},
                                       Edit{"something moves", &RandomEdits::move_something},
                                       Edit{"the camera moves", &RandomEdits::move_camera},
                                       Edit{"resize", &RandomEdits::resize},
                                       Edit{"path", &RandomEdits::switch_path},
                                       Edit{"shadows", &RandomEdits::switch_shadows},
+                                      Edit{"VPLs", &RandomEdits::switch_vpls},
                                       Edit{"a sky comes", &RandomEdits::add_sky},
                                       Edit{"a lamp comes", &RandomEdits::add_lamp}};
     const std::size_t left_out = emission ? 0 : 2;
@@ -102,7 +134,8 @@ void RandomEdits::add_sun() {
 
 void RandomEdits::add_sky() {
     extra_.push_back(add(scene.world, Transform{},
-                         Environment{.radiance = glm::vec3(std::abs(offset())), .picture = nullptr}));
+                         Environment{.radiance = glm::vec3(std::abs(offset())),
+                                     .picture = draw(2) == 0 ? nullptr : sky_picture()}));
 }
 
 void RandomEdits::add_lamp() {
@@ -110,13 +143,37 @@ void RandomEdits::add_lamp() {
                          MeshInstance{square(0.2F, emitter(glm::vec3(1.0F, 0.5F, 0.2F)))}));
 }
 
+std::shared_ptr<const Mesh> RandomEdits::any_mesh() {
+    const auto colour = diffuse({0.9F, std::abs(offset()), 0.1F}, true);
+    switch (draw(6)) {
+        case 0:
+            return soup(draw(1000) + 1, draw(1000), 0.2F);
+        case 1:
+            return box_inwards(0.15F, colour);
+        case 2:  // shares its material with others
+            return square(0.2F, shared_);
+        case 3:  // shares all with others
+            return shared_mesh_;
+        case 4:
+            return square(0.2F, textured(4U << draw(5), draw(1000)));
+        default:
+            return square(0.2F, colour);
+    }
+}
+
 void RandomEdits::add_mesh() {
     const float x = offset();
-    extra_.push_back(add(scene.world, at({x, 0.6F - x, offset()}),
-                         MeshInstance{square(0.2F, diffuse({0.9F, 0.5F, 0.1F}, true))}));
+    meshes_.push_back(add(scene.world, at({x, 0.6F - x, offset()}), MeshInstance{any_mesh()}));
+}
+
+void RandomEdits::add_coinciding() {
+    const Entity other = any(meshes_).value_or(block_);
+    const Transform pose = scene.world.get<Transform>(other);
+    meshes_.push_back(add(scene.world, pose, MeshInstance{square(0.2F, diffuse({0.2F, 0.9F, 0.1F}, true))}));
 }
 
 void RandomEdits::paint_mesh() {
+    if (!scene.world.find<MeshInstance>(block_)) return;
     Mesh painted = *scene.world.get<MeshInstance>(block_).mesh;
     const auto colour = diffuse({0.3F, std::abs(offset()), 0.4F}, true);
     for (Primitive& primitive : painted.primitives) {
@@ -125,18 +182,47 @@ void RandomEdits::paint_mesh() {
     scene.world.set(block_, MeshInstance{std::make_shared<const Mesh>(std::move(painted))});
 }
 
-void RandomEdits::remove_something() {
-    if (extra_.empty()) {
+void RandomEdits::replace_mesh() {
+    if (const auto mesh = any(meshes_)) {
+        scene.world.remove<DeformedMesh>(*mesh);
+        scene.world.set(*mesh, MeshInstance{any_mesh()});
+    }
+}
+
+void RandomEdits::deform_mesh() {
+    const auto mesh = any(meshes_);
+    if (!mesh) return;
+    if (draw(4) == 0) {
+        scene.world.remove<DeformedMesh>(*mesh);
         return;
     }
-    const auto gone = extra_.begin() + draw(static_cast<std::uint32_t>(extra_.size()));
-    scene.world.destroy(*gone);
-    extra_.erase(gone);
+    DeformedMesh::Vertices vertices;
+    for (const Primitive& primitive : scene.world.get<MeshInstance>(*mesh).mesh->primitives) {
+        vertices.push_back(primitive.vertices);
+        for (Vertex& vertex : vertices.back()) vertex.position *= 1.0F + offset();
+    }
+    scene.world.set(*mesh, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(std::move(vertices))});
+}
+
+std::optional<Entity> RandomEdits::any(const std::vector<Entity>& entities) {
+    if (entities.empty()) return std::nullopt;
+    return entities[draw(static_cast<std::uint32_t>(entities.size()))];
+}
+
+void RandomEdits::remove_something() {
+    std::vector<Entity>& entities = draw(2) == 0 ? meshes_ : extra_;
+    if (const auto gone = any(entities)) {
+        scene.world.destroy(*gone);
+        std::erase(entities, *gone);
+    }
 }
 
 void RandomEdits::move_something() {
-    if (!extra_.empty()) {
-        shift(extra_[draw(static_cast<std::uint32_t>(extra_.size()))]);
+    const auto moved = any(draw(2) == 0 ? meshes_ : extra_);
+    if (!moved) return;
+    shift(*moved);
+    if (scene.world.find<Environment>(*moved)) {
+        scene.world.edit<Environment>(*moved, [](Environment& sky) { sky.rotation += 1.0F; });
     }
 }
 
@@ -157,6 +243,12 @@ void RandomEdits::switch_path() {
 
 void RandomEdits::switch_shadows() {
     configuration.shadows.enabled = !configuration.shadows.enabled;
+}
+
+void RandomEdits::switch_vpls() {
+    configuration.vpls.count = std::array{0U, 8U, 24U}.at(draw(3));
+    configuration.vpls.placement = draw(2) == 0 ? VplPlacement::surfels : VplPlacement::paths;
+    configuration.visibility.method = static_cast<VplVisibility>(draw(3));
 }
 
 }  // namespace candela

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -30,6 +32,9 @@ class RandomEdits {
     std::uint32_t draw(std::uint32_t choices) { return static_cast<std::uint32_t>(random_()) % choices; }
     float offset() { return 0.1F * (static_cast<float>(draw(9)) - 4.0F); }
     void shift(Entity entity);
+    [[nodiscard]] std::optional<Entity> any(const std::vector<Entity>& entities);
+    /// Of anything from two to a thousand triangles, with an image or without.
+    [[nodiscard]] std::shared_ptr<const Mesh> any_mesh();
 
     void move_light() { shift(scene.light); }
     void move_mesh() { shift(block_); }
@@ -42,18 +47,25 @@ class RandomEdits {
     void add_sky();
     void add_lamp();
     void add_mesh();
+    void add_coinciding();
     void paint_mesh();
+    void replace_mesh();
+    void deform_mesh();
     void remove_something();
     void move_something();
     void move_camera();
     void resize();
     void switch_path();
     void switch_shadows();
+    void switch_vpls();
 
     std::mt19937 random_;
     Entity block_;
     Entity parent_;
-    std::vector<Entity> extra_;  ///< lights and meshes that were added
+    std::vector<Entity> meshes_;  ///< that were added
+    std::vector<Entity> extra_;   ///< lights, skies and lamps that were added
+    std::shared_ptr<const Material> shared_;
+    std::shared_ptr<const Mesh> shared_mesh_;
 };
 
 }  // namespace candela

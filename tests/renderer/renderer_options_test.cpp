@@ -75,6 +75,7 @@ TEST_SUITE("renderer options") {
             {
                 Renderer renderer(context->get_proc());
                 CHECK(debug_state(gl) == before);
+                REQUIRE(renderer.configure(linear_configuration()).empty());
                 const RenderTarget target(device_of(renderer), size);
                 renderer.render(scene.world, scene.camera, target.target());
                 CHECK(debug_state(gl) == before);

@@ -299,7 +299,9 @@ Configuration linear_configuration(ShadingPath path) {
     configuration.path = path;
     configuration.tone_map.enabled = false;
     configuration.interleave = Interleave::one;
-    configuration.visibility.method = VplVisibility::none;
+    configuration.vpls.count = 32;
+    configuration.visibility = {.method = VplVisibility::none, .map_resolution = 16};
+    configuration.shadows.cube_resolution = configuration.shadows.map_resolution = 64;
     return configuration;
 }
 
@@ -318,6 +320,16 @@ Picture RenderFixture::fresh_picture(const Scene& scene, glm::uvec2 size) {
     REQUIRE(fresh.configure(renderer.configuration()).empty());
     const RenderTarget target(device, size);
     fresh.render(scene.world, scene.camera, target.target());
+    return target.read();
+}
+
+Picture RenderFixture::from_scratch(const Scene& scene, glm::uvec2 size) {
+    if (!other_)
+        other_ = std::make_unique<Renderer>(context->get_proc(), RendererOptions{.debug_output = true});
+    REQUIRE(other_->configure(renderer.configuration()).empty());
+    other_->invalidate();
+    const RenderTarget target(device, size);
+    other_->render(scene.world, scene.camera, target.target());
     return target.read();
 }
 

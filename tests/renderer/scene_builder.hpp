@@ -112,8 +112,8 @@ class RenderTarget {
     gl::Framebuffer framebuffer_;
 };
 
-/// A configuration that writes linear radiance, without VPL visibility: tests of visibility turn it on, and
-/// all others are faster without it.
+/// A configuration that writes linear radiance, with few VPLs, small maps, and without VPL visibility: tests
+/// that need more say so, and all others are faster without it.
 [[nodiscard]] Configuration linear_configuration(ShadingPath path = ShadingPath::deferred);
 
 /// A renderer in its own context.
@@ -127,10 +127,15 @@ class RenderFixture : public GlFixture {
     }
     /// The picture of the scene by a new renderer with the same configuration.
     [[nodiscard]] Picture fresh_picture(const Scene& scene, glm::uvec2 size);
+    /// The same by a renderer that is kept and invalidated, so that it need not compile its shaders again.
+    [[nodiscard]] Picture from_scratch(const Scene& scene, glm::uvec2 size);
     /// Whether the pass ran in the last frame; the graph must have it.
     [[nodiscard]] bool ran(std::string_view pass) const;
 
     TestedRenderer renderer{context->get_proc()};
+
+ private:
+    std::unique_ptr<Renderer> other_;  // of from_scratch, which has nothing to verify
 };
 
 }  // namespace candela

@@ -1,4 +1,4 @@
-// Meshes, images and materials that come and go: what is uploaded, and the pictures.
+// Meshes, images and materials that come and go: what is uploaded, and what memory is taken.
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "tests/renderer/path_fixture.hpp"
-#include "tests/seed.hpp"
 #include "tests/uploads.hpp"
 
 using namespace candela;
@@ -32,70 +31,6 @@ std::shared_ptr<const Material> textured(std::uint32_t texture_size, std::uint32
     return std::make_shared<const Material>(std::move(material));
 }
 
-/// Random additions, removals and moves of meshes above the ground, each of which may be anything from two
-/// to a thousand triangles, with an image or without.
-class MeshEdits {
- public:
-    MeshEdits(World& world, unsigned seed) : world_(&world), random_(seed) {}
-
-    void next() {
-        const std::uint32_t choice = draw(8);
-        if (meshes_.empty() || choice < 3) {
-            meshes_.push_back(add(*world_, somewhere(), MeshInstance{mesh()}));
-        } else if (choice == 3) {
-            // Coincides with another one.
-            const Entity other = any();
-            meshes_.push_back(add(*world_, world_->get<Transform>(other),
-                                  MeshInstance{square(0.3F, diffuse(colour(), true))}));
-        } else if (choice < 6) {
-            const auto gone = meshes_.begin() + draw(static_cast<std::uint32_t>(meshes_.size()));
-            world_->destroy(*gone);
-            meshes_.erase(gone);
-        } else if (choice == 6) {
-            world_->set(any(), somewhere());
-        } else {
-            world_->set(any(), MeshInstance{mesh()});
-        }
-    }
-
- private:
-    std::uint32_t draw(std::uint32_t choices) { return static_cast<std::uint32_t>(random_()) % choices; }
-    float number() { return 0.01F * static_cast<float>(draw(100)); }
-    glm::vec3 colour() {
-        const float r = number(), g = number();
-        return {r, g, number()};
-    }
-    Entity any() { return meshes_[draw(static_cast<std::uint32_t>(meshes_.size()))]; }
-
-    Transform somewhere() {
-        const float x = number() - 0.5F, y = 0.2F + 0.5F * number(), angle = 6.0F * number();
-        return {.translation = {x, y, number() - 0.5F},
-                .rotation = glm::angleAxis(angle, glm::normalize(glm::vec3(1, 2, 1))),
-                .scale = {draw(4) == 0 ? -0.3F : 0.3F, 0.3F, 0.3F}};
-    }
-
-    std::shared_ptr<const Mesh> mesh() {
-        switch (draw(5)) {
-            case 0:
-                return soup(draw(1000) + 1, draw(1000), 0.2F);
-            case 1:
-                return box_inwards(0.5F, diffuse(colour(), true));
-            case 2:  // shares its material with others
-                return square(1.0F, shared_);
-            case 3:  // shares all with others
-                return shared_mesh_;
-            default:
-                return square(1.0F, textured(4U << draw(5), draw(1000)));
-        }
-    }
-
-    World* world_;
-    std::mt19937 random_;
-    std::vector<Entity> meshes_;
-    std::shared_ptr<const Material> shared_ = textured(16, 1);
-    std::shared_ptr<const Mesh> shared_mesh_ = square(0.7F, shared_);
-};
-
 Scene lit_ground() {
     Scene scene = ground();
     scene.world.set(scene.light, at({0.3F, 2.0F, 0.4F}));
@@ -104,7 +39,7 @@ Scene lit_ground() {
 }
 
 Configuration traced(VplPlacement placement) {
-    Configuration configuration = few_vpls();
+    Configuration configuration = linear_configuration();
     configuration.vpls.placement = placement;
     configuration.visibility.method = VplVisibility::rays;
     return configuration;
@@ -113,21 +48,6 @@ Configuration traced(VplPlacement placement) {
 }  // namespace
 
 TEST_SUITE("scene edits") {
-    TEST_CASE_FIXTURE(RenderFixture, "after random edits of meshes the picture is that of a new renderer") {
-        for (const VplPlacement placement : {VplPlacement::paths, VplPlacement::surfels}) {
-            CAPTURE(placement);
-            configure(traced(placement));
-            Scene scene = lit_ground();
-            MeshEdits edits(scene.world, test_seed(11));
-            for (int frame = 0; frame < 25; ++frame) {
-                CAPTURE(frame);
-                edits.next();
-                if (frame % 3 == 0) edits.next();
-                REQUIRE(render(scene, picture_size) == fresh_picture(scene, picture_size));
-            }
-        }
-    }
-
     TEST_CASE_FIXTURE(GlFixture, "only what comes or moves is uploaded") {
         TestedRenderer renderer(Uploads::counting(context->get_proc()));
         Configuration configuration = traced(VplPlacement::paths);

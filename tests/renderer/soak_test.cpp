@@ -36,8 +36,9 @@ int soak_frames() {
 }
 
 Configuration small_configuration() {
-    Configuration configuration = few_vpls();
+    Configuration configuration = linear_configuration();
     configuration.visibility.method = VplVisibility::rays;
+    configuration.vpls.count = 8;
     return configuration;
 }
 

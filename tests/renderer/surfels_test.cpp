@@ -276,21 +276,6 @@ TEST_SUITE("surfels: light") {
         CHECK(lit_from(1.0F) == doctest::Approx(lit_from(0.999F)).epsilon(0.05));
     }
 
-    TEST_CASE_FIXTURE(
-        SurfelTests,
-        "after a scene has grown to more than twice its size, frames equal those of a new renderer") {
-        // Rays then start farther from all surfaces.
-        Configuration configuration = surfels(96);
-        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
-        configure(configuration);
-        Scene scene = cornell_box();
-        const Entity far =
-            add(scene.world, at({0, 0, -1.5F}), MeshInstance{square(0.1F, diffuse({1, 1, 1}))});
-        static_cast<void>(render(scene, {40, 30}));
-        scene.world.set(far, at({0, 0, -40.0F}));
-        CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
-    }
-
     TEST_CASE_FIXTURE(SurfelTests, "light from a floor does not leak through a wall that stands on it") {
         // With few surfels, whose cells extend under the wall. Behind the wall there are only the floor,
         // which does not light itself, and the back of the wall.
@@ -312,37 +297,6 @@ TEST_SUITE("surfels: light") {
             const double lit = mean(render(before, {32, 24}));
             CHECK(lit > 0.05);
             CHECK(behind < 1e-3 * lit);
-        }
-    }
-
-    TEST_CASE_FIXTURE(
-        SurfelTests,
-        "after meshes and lights have moved, frames equal those of a new renderer, bit for bit") {
-        for (const auto method : {VplVisibility::maps, VplVisibility::none}) {
-            Configuration configuration = surfels(96);
-            configuration.visibility = {.method = method, .map_resolution = 16};
-            configure(configuration);
-            Scene scene = cornell_box();
-            Entity block;
-            for (const auto& [entity, name] : scene.world.view<Name>()) {
-                if (name.value == "tall block") block = entity;
-            }
-            static_cast<void>(render(scene, {40, 30}));
-            for (int step = 0; step < 4; ++step) {
-                CAPTURE(step);
-                scene.world.edit<Transform>(block, [](Transform& pose) {
-                    pose.translation += glm::vec3(0.05F, 0.02F, 0.03F);
-                    pose.rotation = glm::angleAxis(0.2F, glm::vec3(0, 1, 0)) * pose.rotation;
-                });
-                CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
-            }
-            // A light moves between two moves of the block.
-            scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.2F; });
-            CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
-            CHECK_FALSE(ran("surfels"));
-            CHECK_FALSE(ran("surfel-visibility"));
-            scene.world.edit<Transform>(block, [](Transform& pose) { pose.translation.z -= 0.1F; });
-            CHECK(render(scene, {40, 30}) == fresh_picture(scene, {40, 30}));
         }
     }
 }

@@ -47,7 +47,7 @@ TEST_SUITE("vertex colours") {
             for (const ShadingPath path : all_shading_paths) {
                 CAPTURE(to_string(placement));
                 CAPTURE(to_string(path));
-                Configuration configuration = few_vpls();
+                Configuration configuration = linear_configuration();
                 configuration.path = path;
                 configuration.vpls.placement = placement;
                 configure(configuration);

@@ -70,8 +70,8 @@ TEST_SUITE("views") {
     TEST_CASE_FIXTURE(ViewsTests, "each view shows what a frame of its own would show") {
         configure(small_configuration(ShadingPath::forward_plus));
         render_both(scene.camera, other_camera);
-        CHECK(first.read() == fresh_picture(scene, size));
-        CHECK(second.read() == fresh_picture({scene.world, other_camera, scene.light}, size));
+        CHECK(first.read() == from_scratch(scene, size));
+        CHECK(second.read() == from_scratch({scene.world, other_camera, scene.light}, size));
         CHECK(first.read() != second.read());
     }
 

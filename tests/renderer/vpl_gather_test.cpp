@@ -210,16 +210,6 @@ TEST_SUITE("interleaved gathering") {
         CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.02));
     }
 
-    TEST_CASE_FIXTURE(VplGatherTests, "all paths agree at each interleaving") {
-        Scene scene = shipped_scene("glass");
-        for (const Interleave interleave : interleaved) {
-            Configuration configuration = few_vpls();
-            configuration.interleave = interleave;
-            configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
-            check_paths(scene, {80, 60}, configuration);
-        }
-    }
-
     TEST_CASE_FIXTURE(VplGatherTests, "pictures of one pixel, one row and one column are correct") {
         const Scene scene = cornell_box();
         for (const glm::uvec2 size : {glm::uvec2(1, 1), glm::uvec2(37, 1), glm::uvec2(1, 37)}) {

@@ -254,30 +254,6 @@ TEST_SUITE("VPL visibility") {
         }
     }
 
-    TEST_CASE_FIXTURE(VplVisibilityTests, "all paths agree under each method") {
-        Scene scene = cornell_box();
-        for (const VplVisibility method : {VplVisibility::none, VplVisibility::maps}) {
-            CAPTURE(to_string(method));
-            check_paths(scene, {60, 45}, indirect_only(method));
-        }
-        // At the edge of a shadow, the rounding of a position decides about a whole VPL.
-        Configuration configuration = indirect_only(VplVisibility::rays);
-        configuration.vpls.count = 64;
-        configuration.path = ShadingPath::forward;
-        const Picture reference = picture(scene, configuration);
-        for (const ShadingPath path : all_shading_paths) {
-            CAPTURE(to_string(path));
-            configuration.path = path;
-            const Picture other = picture(scene, configuration);
-            std::size_t off = 0;
-            for (std::size_t i = 0; i < other.pixels.size(); ++i) {
-                const glm::vec3 difference = glm::abs(other.pixels[i] - reference.pixels[i]);
-                off += glm::length(difference) > 1e-3F * glm::length(reference.pixels[i]) ? 1 : 0;
-            }
-            CHECK(off <= other.pixels.size() / 500);
-        }
-    }
-
     TEST_CASE_FIXTURE(VplVisibilityTests, "a closed convex box has no shadows") {
         const Scene scene = furnace_box(0.5F);
         Configuration configuration = indirect_only(VplVisibility::none);
