@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sandbox/capture.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/messages.hpp"
 
@@ -71,6 +70,14 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
     fmt::print("{}", to_table(run.frames.back(), run.state));
     if (out) fmt::print("picture          {}\n", fs::absolute(numbered(*out, frames - 1)).string());
     check_energy(run.scene, run.state);
+}
+
+Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, Entity camera, int samples) {
+    Configuration whole = renderer.configuration();
+    whole.frame_budget_ms = 0.0F;
+    apply(renderer, whole);
+    CaptureReport ignored;
+    return capture.render(world, camera, samples, ignored);
 }
 
 void write_documents(const Options& options, const RunReport& report, const Renderer& renderer) {

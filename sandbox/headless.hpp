@@ -5,6 +5,7 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
+#include "sandbox/capture.hpp"
 #include "sandbox/options.hpp"
 #include "sandbox/report.hpp"
 #include "sandbox/scene.hpp"
@@ -30,5 +31,10 @@ void write_documents(const Options& options, const RunReport& report, const Rend
 
 /// Sets a configuration, which must be valid, on a new renderer. Throws std::runtime_error.
 void apply(Renderer& renderer, const Configuration& configuration);
+
+/// Like Capture::render, but at full quality, whatever the frame budget is. The renderer has none from then
+/// on.
+[[nodiscard]] Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, Entity camera,
+                                    int samples);
 
 }  // namespace candela::sandbox

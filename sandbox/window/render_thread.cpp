@@ -88,11 +88,12 @@ struct RenderThread::Shared {
 /// What only the render thread uses.
 class RenderThread::Worker {
  public:
-    Worker(Shared& shared, RendererOptions options, std::function<void()> notify)
+    Worker(Shared& shared, gl::GetProc functions, RendererOptions options, std::function<void()> notify)
         : shared_(shared),
+          functions_(std::move(functions)),
           options_(std::move(options)),
           notify_(std::move(notify)),
-          device_(SharedContext::get_proc(), gl::DebugOutput::off),
+          device_(functions_, gl::DebugOutput::off),
           renderer_(make_renderer()) {}
 
     void work() {
@@ -118,7 +119,7 @@ class RenderThread::Worker {
     };
 
     [[nodiscard]] std::unique_ptr<Renderer> make_renderer() const {
-        return std::make_unique<Renderer>(SharedContext::get_proc(), options_);
+        return std::make_unique<Renderer>(functions_, options_);
     }
 
     [[nodiscard]] bool has_frame_to_render() const {
@@ -336,6 +337,7 @@ class RenderThread::Worker {
     }
 
     Shared& shared_;
+    gl::GetProc functions_;
     RendererOptions options_;
     std::function<void()> notify_;
     gl::Device device_;
@@ -355,13 +357,13 @@ class RenderThread::Worker {
     std::vector<std::string> graph_passes_;
 };
 
-RenderThread::RenderThread(std::unique_ptr<SharedContext> context, RendererOptions options,
+RenderThread::RenderThread(std::unique_ptr<ThreadContext> context, RendererOptions options,
                            std::function<void()> notify)
     : shared_(std::make_unique<Shared>()), context_(std::move(context)) {
     thread_ = std::thread([this, options = std::move(options), notify = std::move(notify)]() mutable {
         context_->make_current();
         try {
-            Worker(*shared_, std::move(options), notify).work();
+            Worker(*shared_, context_->functions(), std::move(options), notify).work();
         } catch (...) {
             const std::lock_guard lock(shared_->mutex);
             shared_->failure = std::current_exception();

@@ -17,7 +17,7 @@
 #include <candela/renderer.hpp>
 #include "renderer/inspection.hpp"
 #include "sandbox/files/picture.hpp"
-#include "sandbox/window/window.hpp"
+#include "sandbox/window/thread_context.hpp"
 
 namespace candela::sandbox {
 
@@ -88,7 +88,7 @@ class RenderThread {
  public:
     /// Creates the renderer in the new thread. `notify` is called from that thread whenever a frame is ready
     /// or the thread has failed; `warn` receives the renderer's warnings there.
-    RenderThread(std::unique_ptr<SharedContext> context, RendererOptions options,
+    RenderThread(std::unique_ptr<ThreadContext> context, RendererOptions options,
                  std::function<void()> notify);
     /// Waits for the frame in progress.
     ~RenderThread();
@@ -124,7 +124,7 @@ class RenderThread {
     struct Shared;
 
     std::unique_ptr<Shared> shared_;
-    std::unique_ptr<SharedContext> context_;
+    std::unique_ptr<ThreadContext> context_;
     std::thread thread_;
 };
 

@@ -54,8 +54,8 @@ void SharedContext::release() {
     glfwMakeContextCurrent(nullptr);
 }
 
-gl::GetProc SharedContext::get_proc() {
-    return glfwGetProcAddress;
+gl::GetProc SharedContext::functions() const {
+    return Window::functions();
 }
 
 Window::Library::Library() {
@@ -121,6 +121,10 @@ void Window::listen() {
     glfwSetWindowIconifyCallback(handle_, [](GLFWwindow* handle, int) { of(handle).exposed_ = true; });
     glfwSetWindowContentScaleCallback(handle_,
                                       [](GLFWwindow* handle, float, float) { of(handle).exposed_ = true; });
+}
+
+gl::GetProc Window::functions() {
+    return glfwGetProcAddress;
 }
 
 glm::ivec2 Window::size() const {

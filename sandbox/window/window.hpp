@@ -10,6 +10,7 @@
 #include <glm/vec4.hpp>
 
 #include "renderer/gl/functions.hpp"
+#include "sandbox/window/thread_context.hpp"
 
 struct GLFWwindow;
 
@@ -32,16 +33,14 @@ struct InputEvent {
 
 /// A GL context without a window, which shares textures and buffers with that of a window. For another
 /// thread; made and destroyed in the thread of the window.
-class SharedContext {
+class SharedContext : public ThreadContext {
  public:
     explicit SharedContext(GLFWwindow* window);
-    ~SharedContext();
-    SharedContext(const SharedContext&) = delete;
-    SharedContext& operator=(const SharedContext&) = delete;
+    ~SharedContext() override;
 
-    void make_current();
-    static void release();
-    [[nodiscard]] static gl::GetProc get_proc();
+    void make_current() override;
+    void release() override;
+    [[nodiscard]] gl::GetProc functions() const override;
 
  private:
     GLFWwindow* handle_ = nullptr;
@@ -58,6 +57,7 @@ class Window {
     Window& operator=(const Window&) = delete;
 
     [[nodiscard]] GLFWwindow* handle() const { return handle_; }
+    [[nodiscard]] static gl::GetProc functions();
     [[nodiscard]] std::unique_ptr<SharedContext> share() const {
         return std::make_unique<SharedContext>(handle_);
     }

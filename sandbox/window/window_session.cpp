@@ -677,16 +677,11 @@ class WindowSession {
         check_energy(run.scene, run.state);
     }
 
-    /// At full quality, whatever the frame budget of the window is.
     void write_picture(Renderer& renderer, glm::ivec2 size) {
-        Configuration whole = renderer.configuration();
-        whole.frame_budget_ms = 0.0F;
-        apply(renderer, whole);
         Capture capture(renderer, size);
-        CaptureReport ignored;
         const std::filesystem::path path = numbered(*options_.out, std::max(frame_ - 1, 0));
-        capture.write(path, capture.render(document_->scene.world, document_->interaction.viewer(),
-                                           options_.samples, ignored));
+        capture.write(path, whole_picture(renderer, capture, document_->scene.world,
+                                          document_->interaction.viewer(), options_.samples));
         fmt::print("picture          {}\n", std::filesystem::absolute(path).string());
     }
 
@@ -695,7 +690,7 @@ class WindowSession {
     const Options& options_;
     SaveWatch shader_saves_;
     Gui gui_;
-    gl::Device device_{SharedContext::get_proc(), gl::DebugOutput::off};
+    gl::Device device_{Window::functions(), gl::DebugOutput::off};
     PictureWriter writer_{Window::wake};
     ReferenceView reference_;
     Lines warnings_;

@@ -291,7 +291,10 @@ TEST_SUITE("interaction") {
         "what is the app's is returned, presets with their number, repeats only where they are useful") {
         User user;
         CHECK(user.key(GLFW_KEY_Q, GLFW_MOD_CONTROL) == Command{Action::quit});
-        CHECK(user.key(GLFW_KEY_3) == Command{Action::preset, 3});
+        for (int number = 1; number <= 4; ++number)
+            CHECK(user.key(GLFW_KEY_0 + number) == Command{Action::preset, number});
+        CHECK(user.key(GLFW_KEY_SPACE) == Command{Action::play_pause});
+        CHECK(user.key(GLFW_KEY_PERIOD) == Command{Action::step_frame});
         CHECK(user.key(GLFW_KEY_P, 0, true) == Command{Action::next_path});
         CHECK_FALSE(user.key(GLFW_KEY_F11, 0, true));
         CHECK_FALSE(user.key(GLFW_KEY_G));

@@ -143,6 +143,41 @@ TEST_SUITE("session") {
         CHECK(before * 0.25F == frame(1)[10 * 33 + 16]);
     }
 
+    TEST_CASE("indirect light moves with the light") {
+        const TemporaryFolder folder;
+        const TemporaryFolder inputs;
+        std::ofstream(inputs / "a.json") << R"({"frames": 2, "tracks": [
+            {"node": "ceiling light", "translation": [[0, [0, 1.6, 0]], [1, [0.4, 1.6, 0]]]}]})";
+        Options options = small_headless();
+        options.size = glm::ivec2(96, 72);
+        options.show = Show::indirect;
+        options.vpls = 32;
+        options.bounces = 1;
+        options.animate = inputs / "a.json";
+        options.out = folder / "%d.pfm";
+        REQUIRE(run(options) == 0);
+        const Picture before = read_pfm(folder / "0.pfm");
+        const Picture after = read_pfm(folder / "1.pfm");
+        const auto light_of = [](const Picture& picture, int from, int to) {
+            float sum = 0.0F;
+            for (int y = 0; y < 72; ++y) {
+                for (int x = from; x < to; ++x) {
+                    const auto i = static_cast<std::size_t>(96 * y + x);
+                    sum += glm::dot(picture.pixels[i], glm::vec3(1.0F));
+                }
+            }
+            return sum;
+        };
+        // More light on the wall that the light has approached, less on the one that it moved away from.
+        CHECK(light_of(after, 48, 96) > light_of(before, 48, 96));
+        CHECK(light_of(after, 0, 48) < light_of(before, 0, 48));
+        // To the left and right of the box nothing is ever lit.
+        for (const Picture* picture : {&before, &after}) {
+            CHECK(light_of(*picture, 0, 12) == 0.0F);
+            CHECK(light_of(*picture, 84, 96) == 0.0F);
+        }
+    }
+
     TEST_CASE("errors end with status 2 and leave no files") {
         const TemporaryFolder folder;
         const TemporaryFolder inputs;

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "sandbox/choose_configuration.hpp"
+
 namespace candela::sandbox {
 
 namespace {
@@ -59,6 +61,15 @@ TEST_SUITE("view commands") {
             CHECK(view.state.comparison.mode == mode);
         }
         CHECK(view.state.comparison.other.vpls.count == 77);
+    }
+
+    TEST_CASE("the presets 1 to 4 are those by purpose") {
+        View view;
+        int number = 0;
+        for (const char* const name : {"draft", "balanced", "best", "report"}) {
+            CHECK(view.carry_out(Action::preset, ++number));
+            CHECK(name_of(view.state.configuration) == name);
+        }
     }
 
     TEST_CASE("presets are numbered, a number without a preset and other commands change nothing") {

@@ -14,7 +14,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
+#include <numeric>
+#include <sstream>
 #include <thread>
 
 #include "sandbox/files/picture.hpp"
@@ -26,6 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
+
+using Clock = std::chrono::steady_clock;
 
 constexpr int status_height = 22;  // at a scale of 1
 
@@ -48,16 +51,8 @@ std::array<std::uint8_t, 3> channels(unsigned long pixel) {
 
 }  // namespace
 
-double mean(const Shot& shot, int left, int right) {
-    double sum = 0.0;
-    for (int y = 0; y < shot.height; ++y) {
-        for (int x = left; x < right; ++x) sum += shot.at(x, y);
-    }
-    return sum / (static_cast<double>(shot.height) * (right - left));
-}
-
 double mean(const Shot& shot) {
-    return mean(shot, 0, shot.width);
+    return std::reduce(shot.pixels.begin(), shot.pixels.end(), 0.0) / static_cast<double>(shot.pixels.size());
 }
 
 int changed_pixels(const Shot& a, const Shot& b, int tolerance) {
@@ -69,17 +64,18 @@ int changed_pixels(const Shot& a, const Shot& b, int tolerance) {
 }
 
 bool wait_until(const std::function<bool()>& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + 60s;
-    while (std::chrono::steady_clock::now() < deadline) {
+    const auto deadline = Clock::now() + 60s;
+    while (Clock::now() < deadline) {
         if (condition()) return true;
-        std::this_thread::sleep_for(20ms);
+        std::this_thread::sleep_for(5ms);
     }
     return false;
 }
 
 std::string text_of(const fs::path& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
 }
 
 void TextFile::write(const std::string& text) const {
@@ -88,6 +84,9 @@ void TextFile::write(const std::string& text) const {
 
 App::App(Start start) : display_(XOpenDisplay(nullptr)) {
     REQUIRE_MESSAGE(display_, "no display: run under xvfb-run");
+    // That a window is gone shows when it does not answer; Xlib would end the test without a word.
+    XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
+    XSelectInput(display_.get(), DefaultRootWindow(display_.get()), SubstructureNotifyMask);
     const auto pixels = [&](int length) {
         return static_cast<int>(std::lround(start.scale * static_cast<float>(length)));
     };
@@ -141,8 +140,13 @@ std::vector<Json> App::history() const {
 }
 
 Json App::log() const {
-    std::vector<Json> records = history();
-    return records.empty() ? Json() : std::move(records.back());
+    const std::string lines = text_of(folder_ / "log.jsonl");
+    // The last line may not be complete yet.
+    const std::size_t end = lines.rfind('\n');
+    if (end == std::string::npos) return {};
+    const std::size_t before = end == 0 ? std::string::npos : lines.rfind('\n', end - 1);
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    return Json::parse(lines.substr(begin, end - begin));
 }
 
 Json App::wait_for(std::string_view what, const std::function<bool(const Json&)>& condition) {
@@ -184,9 +188,13 @@ Shot App::shoot(const Area& area) const {
 }
 
 Shot App::settled() {
+    // While only the pointer moves, the app draws no more often than 20 times per second.
+    std::this_thread::sleep_until(last_move_ + 60ms);
     Shot last;
     const bool rested = wait_until([&] {
-        std::this_thread::sleep_for(150ms);
+        // The second answer comes after the frame that the input before the first one has asked for.
+        await_answer();
+        await_answer();
         // In this order: what the log calls settled is on the screen already.
         const bool rests = log()["settled"];
         Shot now = shoot();
@@ -238,19 +246,6 @@ void App::drag(double from_x, double from_y, double to_x, double to_y, unsigned 
     release_button(pressed);
 }
 
-void App::click(double x, double y, unsigned clicked) {
-    press_button(x, y, clicked);
-    release_button(clicked);
-}
-
-void App::wheel(double x, double y, int notches) {
-    move(x, y);
-    for (int i = 0; i < std::abs(notches); ++i) {
-        button(notches > 0 ? Button4 : Button5, true);
-        button(notches > 0 ? Button4 : Button5, false);
-    }
-}
-
 void App::click(const std::string& label) {
     const Area at = control(label);
     // Sliders and fields stand at the left of their labels.
@@ -267,17 +262,17 @@ void App::open_tab(const std::string& tab, const std::string& expected) {
 void App::press_key(KeySym pressed, std::vector<KeySym> modifiers) {
     for (const KeySym modifier : modifiers) key(modifier, true);
     key(pressed, true);
+    await_answer();
     key(pressed, false);
     for (const KeySym modifier : modifiers) key(modifier, false);
-    sync();
+    await_answer();
 }
 
-void App::hold_key(KeySym held, std::chrono::milliseconds time) {
+void App::hold_key(KeySym held, std::string_view what, const std::function<bool(const Json&)>& condition) {
     key(held, true);
-    XSync(display_.get(), False);
-    std::this_thread::sleep_for(time);
+    wait_for(what, condition);
     key(held, false);
-    sync();
+    await_answer();
 }
 
 void App::type(char letter) {
@@ -287,11 +282,14 @@ void App::type(char letter) {
 
 void App::resize(int width, int height) {
     XResizeWindow(display_.get(), window_, static_cast<unsigned>(width), static_cast<unsigned>(height));
-    sync();
+    await_answer();
 }
 
 int App::quit() {
-    press_key(XK_q, {XK_Control_L});
+    for (const bool down : {true, false}) {
+        key(XK_Control_L, down);
+        key(XK_q, down);
+    }
     return wait_for_end();
 }
 
@@ -331,23 +329,44 @@ void App::move_pointer(int x, int y) {
     XTranslateCoordinates(display_.get(), window_, DefaultRootWindow(display_.get()), 0, 0, &left, &top,
                           &child);
     XTestFakeMotionEvent(display_.get(), -1, left + x, top + y, CurrentTime);
-    sync();
+    await_answer();
+    last_move_ = Clock::now();
 }
 
 void App::button(unsigned number, bool down) {
     XTestFakeButtonEvent(display_.get(), number, down ? True : False, CurrentTime);
-    sync();
+    await_answer();
 }
 
 void App::key(KeySym symbol, bool down) {
     XTestFakeKeyEvent(display_.get(), XKeysymToKeycode(display_.get(), symbol), down ? True : False,
                       CurrentTime);
+    XSync(display_.get(), False);
 }
 
-/// Waits a little, like a user.
-void App::sync() const {
+/// Waits until the app has taken all input so far from its queue. Window managers ask programs in this way
+/// whether they are alive: _NET_WM_PING in the Extended Window Manager Hints.
+void App::await_answer() {
     XSync(display_.get(), False);
-    std::this_thread::sleep_for(30ms);
+    const Window root = DefaultRootWindow(display_.get());
+    XEvent question{};
+    question.xclient.type = ClientMessage;
+    question.xclient.window = window_;
+    question.xclient.message_type = XInternAtom(display_.get(), "WM_PROTOCOLS", False);
+    question.xclient.format = 32;
+    question.xclient.data.l[0] = static_cast<long>(XInternAtom(display_.get(), "_NET_WM_PING", False));
+    question.xclient.data.l[1] = ++questions_;
+    question.xclient.data.l[2] = static_cast<long>(window_);
+    XSendEvent(display_.get(), window_, False, NoEventMask, &question);
+    XFlush(display_.get());
+    const bool answered = wait_until([&] {
+        XEvent answer{};
+        while (XCheckTypedWindowEvent(display_.get(), root, ClientMessage, &answer) == True) {
+            if (answer.xclient.data.l[1] == questions_) return true;
+        }
+        return false;
+    });
+    REQUIRE_MESSAGE(answered, "the window does not answer; stderr: ", errors());
 }
 
 }  // namespace candela::sandbox

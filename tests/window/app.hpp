@@ -41,8 +41,7 @@ struct Shot {
     bool operator==(const Shot&) const = default;
 };
 
-/// The mean brightness of the columns from `left` up to `right`.
-[[nodiscard]] double mean(const Shot& shot, int left, int right);
+/// The mean brightness.
 [[nodiscard]] double mean(const Shot& shot);
 /// The number of pixels whose brightness differs by more than `tolerance`.
 [[nodiscard]] int changed_pixels(const Shot& a, const Shot& b, int tolerance);
@@ -99,14 +98,14 @@ class App {
     void press_button(double x, double y, unsigned button = Button1);
     void release_button(unsigned button = Button1);
     void move(double x, double y);
-    void click(double x, double y, unsigned button = Button1);
-    void wheel(double x, double y, int notches);
     /// Clicks on a control of the panel.
     void click(const std::string& label);
     /// Opens a tab of the panel, and waits for a control in it.
     void open_tab(const std::string& tab, const std::string& control);
     void press_key(KeySym key, std::vector<KeySym> modifiers = {});
-    void hold_key(KeySym key, std::chrono::milliseconds time);
+    /// Holds a key until there is a record that meets the condition.
+    void hold_key(KeySym key, std::string_view what,
+                  const std::function<bool(const nlohmann::json&)>& condition);
     void type(char letter);
 
     void resize(int width, int height);
@@ -125,7 +124,7 @@ class App {
     void move_pointer(int x, int y);
     void button(unsigned button, bool down);
     void key(KeySym key, bool down);
-    void sync() const;
+    void await_answer();
 
     struct CloseDisplay {
         void operator()(Display* display) const { XCloseDisplay(display); }
@@ -134,6 +133,8 @@ class App {
     std::unique_ptr<Display, CloseDisplay> display_;
     Window window_ = 0;
     pid_t process_ = 0;
+    long questions_ = 0;
+    std::chrono::steady_clock::time_point last_move_;
 };
 
 /// A file with this text, in a folder of its own.

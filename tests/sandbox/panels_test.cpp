@@ -1,0 +1,170 @@
+// Panels without a window: clicks on their controls, and what these change.
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+#include "sandbox/choose_configuration.hpp"
+#include "sandbox/panels/controls.hpp"
+#include "sandbox/panels/graph_panel.hpp"
+#include "sandbox/panels/open_panel.hpp"
+#include "sandbox/panels/quality_panel.hpp"
+#include "sandbox/panels/view_panel.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+/// Dear ImGui with a pointer and without a screen.
+class Screen {
+ public:
+    explicit Screen(std::function<void()> draw) : draw_(std::move(draw)) {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.DisplaySize = {600.0F, 1600.0F};
+        io.DeltaTime = 1.0F / 60.0F;
+        unsigned char* pixels = nullptr;
+        glm::ivec2 size(0);
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &size.x, &size.y);
+        settle();
+    }
+    Screen(const Screen&) = delete;
+    Screen& operator=(const Screen&) = delete;
+    ~Screen() { ImGui::DestroyContext(); }
+
+    [[nodiscard]] bool has(std::string_view label) const { return places_.contains(label); }
+    void click(std::string_view label) {
+        const auto place = places_.find(label);
+        REQUIRE_MESSAGE(place != places_.end(), label);
+        const glm::vec2 at = place->second.corner + 0.5F * place->second.size;
+        ImGui::GetIO().MousePos = {at.x, at.y};
+        settle();
+        for (const bool down : {true, false}) {
+            ImGui::GetIO().MouseDown[0] = down;
+            settle();
+        }
+    }
+
+ private:
+    /// Windows need a frame to find their size.
+    void settle() {
+        for (int frame = 0; frame < 2; ++frame) {
+            static_cast<void>(take_control_places());
+            ImGui::NewFrame();
+            draw_();
+            ImGui::Render();
+            places_ = take_control_places();
+        }
+    }
+
+    std::function<void()> draw_;
+    ControlPlaces places_;
+};
+
+/// Draws in a window that fills the screen.
+std::function<void()> in_panel(std::function<void()> draw) {
+    return [draw = std::move(draw)] {
+        ImGui::SetNextWindowPos({0.0F, 0.0F});
+        ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+        ImGui::Begin("panel");
+        draw();
+        ImGui::End();
+    };
+}
+
+}  // namespace
+
+TEST_SUITE("panels") {
+    TEST_CASE("what the picture shows is chosen by a click") {
+        AppState state;
+        const ReferenceView none(nullptr);
+        Screen screen(in_panel([&] { draw_view_panel(state, none, 0.0); }));
+        for (const Show show :
+             {Show::direct, Show::albedo, Show::indirect, Show::irradiance, Show::normals, Show::total}) {
+            CHECK(state.configuration.show != show);
+            screen.click(to_string(show));
+            CHECK(state.configuration.show == show);
+        }
+    }
+
+    TEST_CASE("a comparison begins with two equal configurations, is shown in two ways, and ends") {
+        AppState state;
+        state.configuration.vpls.count = 77;
+        const ReferenceView none(nullptr);
+        Screen screen(in_panel([&] { draw_view_panel(state, none, 0.0); }));
+        CHECK_FALSE(screen.has("swap A and B"));
+        screen.click("divider");
+        CHECK(state.comparison.mode == CompareMode::divider);
+        CHECK(state.comparison.other == state.configuration);
+        state.configuration.vpls.count = 78;
+        screen.click("difference");
+        CHECK(state.comparison.mode == CompareMode::difference);
+        CHECK(state.comparison.other.vpls.count == 77);
+        screen.click("swap A and B");
+        CHECK(state.comparison.other.vpls.count == 78);
+        CHECK(state.configuration.vpls.count == 77);
+        screen.click("B = A");
+        CHECK(state.comparison.other.vpls.count == 77);
+        screen.click("no comparison");
+        CHECK(state.comparison.mode == CompareMode::off);
+        CHECK_FALSE(screen.has("swap A and B"));
+    }
+
+    TEST_CASE("presets and paths are chosen by a click") {
+        Configuration configuration;
+        Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }));
+        for (const char* const preset : {"draft", "best", "report", "balanced"}) {
+            screen.click(preset);
+            CHECK(name_of(configuration) == preset);
+        }
+        for (const ShadingPath path : all_shading_paths) {
+            screen.click(to_string(path));
+            CHECK(configuration.path == path);
+        }
+    }
+
+    TEST_CASE("a click on a pass lists its resources, and a click on one of these shows it, or no more") {
+        GraphPicture graph;
+        using Resource = GraphResource::Kind;
+        graph.resources = {{"albedo", "", "", Resource::texture},
+                           {"plan", "", "", Resource::value},
+                           {"lights", "", "", Resource::buffer}};
+        graph.passes = {{.name = "gbuffer", .gpu = true, .reads = {1}, .writes = {0}},
+                        {.name = "deferred", .gpu = true, .reads = {0, 2}, .writes = {}}};
+        GraphSelection selection;
+        const PassCosts costs;
+        Screen screen(in_panel([&] { draw_graph_panel(selection, graph, costs); }));
+        CHECK_FALSE(screen.has("albedo"));
+        screen.click("gbuffer");
+        CHECK(selection.pass == "gbuffer");
+        CHECK_FALSE(screen.has("lights"));
+        screen.click("plan");  // a value has no picture
+        CHECK_FALSE(selection.resource.has_value());
+        screen.click("albedo");
+        CHECK(selection.resource == "albedo");
+        screen.click("deferred");
+        screen.click("lights");
+        CHECK(selection.resource == "lights");
+        screen.click("lights");
+        CHECK_FALSE(selection.resource.has_value());
+        screen.click("deferred");
+        CHECK_FALSE(selection.pass.has_value());
+        CHECK_FALSE(screen.has("lights"));
+    }
+
+    TEST_CASE("a scene is picked from a list, and the window of the list goes") {
+        OpenPanel panel;
+        std::optional<std::filesystem::path> chosen;
+        Screen screen([&] {
+            if (const auto file = panel.draw()) chosen = file;
+        });
+        CHECK_FALSE(screen.has("file name"));
+        panel.show({{"recent", {}}, {"shipped", {"scenes/a.gltf", "scenes/b.gltf"}}});
+        screen.click("b.gltf");
+        CHECK(chosen == "scenes/b.gltf");
+        CHECK_FALSE(panel.is_shown());
+    }
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,43 @@
+#include <doctest/doctest.h>
+
+#include "sandbox/headless.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+constexpr glm::ivec2 size(48, 36);
+
+/// The picture that is written after some frames of a moving light under this budget.
+std::vector<glm::vec3> written(float budget_ms) {
+    const auto context = HeadlessContext::create(ContextKind::egl);
+    context->make_current();
+    Scene scene = load_scene(shipped_file("scenes", "cornell.gltf"));
+    const Entity camera = choose_camera(scene.world, std::nullopt, 4.0F / 3.0F);
+    const Entity light = std::get<0>(*scene.world.view<PointLight>().begin());
+    Renderer renderer(context->get_proc());
+    Configuration configuration;
+    configuration.vpls.count = 16;
+    configuration.frame_budget_ms = budget_ms;
+    apply(renderer, configuration);
+    Capture capture(renderer, size);
+    for (int frame = 0; frame < 4; ++frame) {
+        scene.world.edit<Transform>(light, [](Transform& pose) { pose.translation.x += 0.05F; });
+        CaptureReport ignored;
+        static_cast<void>(capture.render(scene.world, camera, 1, ignored));
+    }
+    CHECK((renderer.quality().scale < 1.0F) == (budget_ms > 0.0F));
+    return whole_picture(renderer, capture, scene.world, camera, 1).pixels;
+}
+
+}  // namespace
+
+TEST_SUITE("whole picture") {
+    TEST_CASE("written pictures have full quality, however small the frame budget is") {
+        const std::vector<glm::vec3> whole = written(0.0F);
+        CHECK(whole.size() == 48 * 36);
+        CHECK(written(0.001F) == whole);
+    }
+}
+
+}  // namespace candela::sandbox
