@@ -23,7 +23,7 @@ std::uint64_t hash_contents(const std::filesystem::path& scene) {
     for (const gltf::Buffer& buffer : document.buffers) {
         state = add(state, buffer.bytes);
     }
-    for (const tinygltf::Image& image : document.model.images) {
+    for (const gltf::EncodedImage& image : document.model.images) {
         if (!image.uri.empty()) {
             state = add(state, *files.read(image.uri));
         }
