@@ -155,13 +155,14 @@ class WorldWriter {
         for (const Entity entity : nodes_) {
             naming(entity, [&] { draft_.add("nodes", describe_node(entity)); });
         }
-        Json& scene = draft_.document["scenes"][0] = Json::object();
-        draft_.document["scene"] = 0;
+        Json scene = Json::object();
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
             const Entity parent = parent_of(world_, nodes_[i]);
             Json& list = parent ? draft_.document["nodes"][node_of(parent)]["children"] : scene["nodes"];
             list.push_back(i);
         }
+        draft_.document["scenes"].push_back(std::move(scene));
+        draft_.document["scene"] = 0;
     }
 
     void write_environment(std::span<const Entity> without) {

@@ -123,7 +123,8 @@ class Json {
     /// The member of this name. Throws std::out_of_range if there is none.
     [[nodiscard]] const Json& at(std::string_view name) const;
 
-    /// The member of this name, which is added if it is missing. Null becomes an object.
+    /// The member of this name, which is added if it is missing: references to other members are then invalid. Null
+    /// becomes an object.
     Json& operator[](std::string_view name);
     /// Null becomes an array.
     void push_back(Json item);

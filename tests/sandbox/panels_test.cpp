@@ -35,6 +35,7 @@ class Screen {
 
     [[nodiscard]] bool has(std::string_view label) const { return places_.contains(label); }
     void click(std::string_view label) {
+        settle();  // what was changed since the last click
         const auto place = places_.find(label);
         REQUIRE_MESSAGE(place != places_.end(), label);
         const glm::vec2 at = place->second.corner + 0.5F * place->second.size;

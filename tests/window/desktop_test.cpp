@@ -133,6 +133,15 @@ Label label_at_scale(float scale) {
     return label;
 }
 
+/// Seconds from an input to the picture that shows its effect, for each such picture so far.
+std::vector<double> latencies_of(const App& app) {
+    std::vector<double> latencies;
+    for (const Json& record : app.history()) {
+        if (!record["latency"].is_null()) latencies.push_back(record["latency"]);
+    }
+    return latencies;
+}
+
 /// Drags the light through the shipped Cornell box: a camera at (0, 1, 3.9) with this field of view looks
 /// along -Z, and the light is at (0, 1.6, 0).
 void check_latency(App& app) {
@@ -140,18 +149,17 @@ void check_latency(App& app) {
     const double per_metre = scene.height / (2.0 * 3.9 * std::tan(0.685914 / 2.0));
     const double x = scene.width / 2.0;
     const double y = scene.height / 2.0 - 0.6 * per_metre;
-    const std::size_t records = app.history().size();
     app.press_button(x, y);
-    for (int step = 0; step < 40; ++step) app.move(x + 4.0 * step, y + step);
-    app.release_button();
     std::vector<double> latencies;
-    for (const Json& record : app.history()) {
-        if (!record["latency"].is_null()) latencies.push_back(record["latency"]);
+    for (int step = 0; step < 1000 && latencies.size() < 7; ++step) {
+        app.move(x + 4.0 * (step % 40), y + step % 40);
+        std::this_thread::sleep_for(20ms);
+        if (step % 40 == 39) latencies = latencies_of(app);
     }
-    REQUIRE(app.history().size() > records);
-    REQUIRE(latencies.size() > 2);
+    app.release_button();
+    REQUIRE_MESSAGE(latencies.size() >= 7, app.log().dump());
     std::ranges::sort(latencies);
-    // Measured alone: 0.07 to 0.13 s. Ten times that: machines may do other work.
+    // Measured alone: 0.45 s, on two cores. Three times that: machines may do other work.
     CHECK(latencies[latencies.size() / 2] < 1.4);
     MESSAGE("median latency ", latencies[latencies.size() / 2], " s, greatest ", latencies.back(), " s");
 }
