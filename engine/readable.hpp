@@ -14,19 +14,22 @@ namespace candela {
 /// Characters of a text from outside that messages quote.
 inline constexpr std::size_t longest_quote = 200;
 
-/// The bytes of the UTF-8 character that `text` begins with, 1 to 4; 0 if it begins with none.
+/// The bytes of the UTF-8 character that `text`, which is not empty, begins with, 1 to 4; 0 if it begins with
+/// none. The Unicode Standard, table 3-7.
 [[nodiscard]] inline std::size_t utf8_length(std::string_view text) {
+    const auto is_within = [text](std::size_t i, unsigned least, unsigned most) {
+        const unsigned byte = i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+        return byte >= least && byte <= most;
+    };
     const auto first = static_cast<unsigned char>(text.front());
-    const std::size_t length = first < 0x80U   ? 1
-                               : first < 0xC2U ? 0
-                               : first < 0xE0U ? 2
-                               : first < 0xF0U ? 3
-                               : first < 0xF5U ? 4
-                                               : 0;
-    const std::string_view rest = text.substr(0, length).substr(std::min<std::size_t>(length, 1));
-    const bool is_whole = text.size() >= length && std::ranges::all_of(rest, [](char c) {
-                              return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
-                          });
+    if (first < 0x80U) return 1;
+    if (first < 0xC2U || first > 0xF4U) return 0;
+    // Limits of the second byte: neither longer than needed, nor a surrogate, nor beyond U+10FFFF.
+    const unsigned least = first == 0xE0U ? 0xA0U : first == 0xF0U ? 0x90U : 0x80U;
+    const unsigned most = first == 0xEDU ? 0x9FU : first == 0xF4U ? 0x8FU : 0xBFU;
+    const std::size_t length = first < 0xE0U ? 2 : first < 0xF0U ? 3 : 4;
+    const bool is_whole = is_within(1, least, most) && (length < 3 || is_within(2, 0x80U, 0xBFU)) &&
+                          (length < 4 || is_within(3, 0x80U, 0xBFU));
     return is_whole ? length : 0;
 }
 

@@ -10,6 +10,7 @@
 
 #include <candela/configuration.hpp>
 #include <candela/scene/gltf.hpp>
+#include "sandbox/command_line.hpp"
 #include "sandbox/environment.hpp"
 
 namespace candela::sandbox {
@@ -50,13 +51,6 @@ struct Options {
     std::optional<std::filesystem::path> describe_graph;  ///< .txt, .dot or .json
     std::optional<std::filesystem::path> ui_log;          ///< .jsonl
     bool list_configs = false;
-};
-
-/// The program must exit with `status` and print `text`: to stdout if `status` is 0, otherwise to stderr. An
-/// error is one line with its newline.
-struct EarlyExit {
-    int status = 0;
-    std::string text;
 };
 
 /// Parses the command line; `arguments[0]` is the program. Of the files it checks only whether the

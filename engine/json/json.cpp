@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/readable.hpp"
+
 namespace candela {
 
 namespace {
@@ -121,18 +123,33 @@ class JsonWriter {
         text += digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
     }
     void write_value(const std::string& string) {
-        const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
-        if (std::ranges::all_of(string, is_plain)) {
-            text += '"' + string + '"';
-            return;
+        text += '"';
+        for (std::size_t at = 0; at < string.size();) {
+            const std::size_t length = utf8_length(std::string_view(string).substr(at));
+            if (length == 0 && faulty_ == Json::Faulty::refused) {
+                throw JsonError(fmt::format("not UTF-8: '{}'", readable(string)));
+            }
+            if (length == 0) {
+                text += "\uFFFD";
+            } else if (length == 1) {
+                write_ascii(string[at]);
+            } else {
+                text.append(string, at, length);
+            }
+            at += std::max<std::size_t>(length, 1);
         }
-        using nlohmann::json;
-        const bool refuses = faulty_ == Json::Faulty::refused;
-        try {
-            text += json(string).dump(
-                -1, ' ', false, refuses ? json::error_handler_t::strict : json::error_handler_t::replace);
-        } catch (const json::type_error& error) {
-            throw error_of(error);
+        text += '"';
+    }
+    void write_ascii(char c) {
+        constexpr std::string_view special = "\"\\\b\f\n\r\t";
+        constexpr std::string_view letters = "\"\\bfnrt";
+        const std::size_t found = special.find(c);
+        if (found != std::string_view::npos) {
+            text += {'\\', letters[found]};
+        } else if (c < ' ') {
+            text += fmt::format("\\u{:04x}", c);
+        } else {
+            text += c;
         }
     }
     void write_value(const Json::Array& items) {
@@ -181,9 +198,8 @@ Json& Json::operator=(Json&& other) noexcept = default;
 Json::~Json() = default;
 
 Json::Json(std::initializer_list<Json> items) {
-    const bool names_all = std::ranges::all_of(items, [](const Json& item) {
-        return item.is_array() && item.size() == 2 && item[0].is_string();
-    });
+    const bool names_all = std::ranges::all_of(
+        items, [](const Json& item) { return item.is_array() && item.size() == 2 && item[0].is_string(); });
     if (!names_all) {
         value_ = Array(items);
         return;
