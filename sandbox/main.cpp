@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <variant>
 
-#include "sandbox/reference/live_reference.hpp"
 #include "sandbox/options.hpp"
+#include "sandbox/reference/live_reference.hpp"
 #include "sandbox/session.hpp"
 
 using namespace candela::sandbox;

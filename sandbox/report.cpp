@@ -55,9 +55,8 @@ Json to_json(const LightReport& lights) {
 Json to_json(const Environment& environment) {
     if (environment.radiance == glm::vec3(0.0F)) return nullptr;
     return {{"radiance", {environment.radiance.r, environment.radiance.g, environment.radiance.b}},
-            {"picture", environment.picture
-                            ? Json({environment.picture->width, environment.picture->height})
-                            : Json(nullptr)},
+            {"picture", environment.picture ? Json({environment.picture->width, environment.picture->height})
+                                            : Json(nullptr)},
             {"rotation", environment.rotation}};
 }
 
@@ -104,22 +103,21 @@ std::string vpl_table(const VplReport& vpls) {
 std::string to_json(const RunReport& report) {
     Json frames = Json::array();
     for (const FrameReport& frame : report.frames) frames.push_back(to_json(frame));
-    const Json json = {
-        {"version", CANDELA_VERSION},
-        {"gl_renderer", report.state.gl_renderer},
-        {"context", report.context},
-        {"scene", report.scene},
-        {"animation", report.animation ? Json(*report.animation) : Json(nullptr)},
-        {"environment", to_json(report.environment)},
-        {"triangles", report.state.triangles},
-        {"size", {report.size.x, report.size.y}},
-        {"config", Json::parse(write_configuration(report.configuration))},
-        {"frames", frames},
-        {"refined", report.state.refined},
-        {"rendered_size", {report.state.rendered_size.x, report.state.rendered_size.y}},
-        {"vpls", report.state.vpls ? to_json(*report.state.vpls) : Json(nullptr)},
-        {"lights", to_json(report.state.lights)},
-        {"memory", to_json(report.state.memory)}};
+    const Json json = {{"version", CANDELA_VERSION},
+                       {"gl_renderer", report.state.gl_renderer},
+                       {"context", report.context},
+                       {"scene", report.scene},
+                       {"animation", report.animation ? Json(*report.animation) : Json(nullptr)},
+                       {"environment", to_json(report.environment)},
+                       {"triangles", report.state.triangles},
+                       {"size", {report.size.x, report.size.y}},
+                       {"config", Json::parse(write_configuration(report.configuration))},
+                       {"frames", frames},
+                       {"refined", report.state.refined},
+                       {"rendered_size", {report.state.rendered_size.x, report.state.rendered_size.y}},
+                       {"vpls", report.state.vpls ? to_json(*report.state.vpls) : Json(nullptr)},
+                       {"lights", to_json(report.state.lights)},
+                       {"memory", to_json(report.state.memory)}};
     // A path may contain bytes that are not valid UTF-8.
     return json.dump(2, Json::Faulty::replaced) + "\n";
 }

@@ -201,18 +201,17 @@ Json pass_json(const CompiledGraph& graph, std::uint32_t position) {
     const std::uint32_t pass = graph.plan().order[position];
     const detail::PassNode& node = graph.declared().passes[pass];
     Json json{{"name", node.name},
-                                {"kind", uses_gpu(graph, pass) ? "gpu" : "cpu"},
-                                {"side_effect", node.side_effect},
-                                {"barrier", to_string(graph.plan().barrier[position])},
-                                {"world", Json::array()},
-                                {"reads", Json::array()},
-                                {"writes", Json::array()}};
+              {"kind", uses_gpu(graph, pass) ? "gpu" : "cpu"},
+              {"side_effect", node.side_effect},
+              {"barrier", to_string(graph.plan().barrier[position])},
+              {"world", Json::array()},
+              {"reads", Json::array()},
+              {"writes", Json::array()}};
     for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
         json["world"].push_back(read.name);
     }
     for (const Access& access : graph.declared().accesses_of(pass)) {
-        Json entry{{"resource", name_of(graph, access.resource)},
-                                     {"version", access.version}};
+        Json entry{{"resource", name_of(graph, access.resource)}, {"version", access.version}};
         const bool value = graph.declared().resources[access.resource].kind == ResourceKind::value;
         if (!value) {
             entry["usage"] = to_string(access.usage);
@@ -283,9 +282,7 @@ std::string describe_dot(const CompiledGraph& graph) {
 }
 
 std::string describe_json(const CompiledGraph& graph) {
-    Json json{{"passes", Json::array()},
-                                {"culled", Json::array()},
-                                {"resources", Json::array()}};
+    Json json{{"passes", Json::array()}, {"culled", Json::array()}, {"resources", Json::array()}};
     for (std::uint32_t position = 0; position < graph.pass_count(); ++position) {
         json["passes"].push_back(pass_json(graph, position));
     }
@@ -297,10 +294,10 @@ std::string describe_json(const CompiledGraph& graph) {
         const Resource& resource = graph.declared().resources[index];
         const detail::Span span = graph.plan().lifetime[index];
         Json entry{{"name", resource.name},
-                                     {"storage", storage_text(graph, resource)},
-                                     {"lifetime", to_string(resource.lifetime)},
-                                     {"first", span.first},
-                                     {"last", span.last}};
+                   {"storage", storage_text(graph, resource)},
+                   {"lifetime", to_string(resource.lifetime)},
+                   {"first", span.first},
+                   {"last", span.last}};
         const std::uint32_t object = numbers[graph.plan().object[index]];
         if (object != none) {
             entry["object"] = object;

@@ -32,8 +32,7 @@ struct Attribute {
 constexpr Attribute position{"POSITION", offsetof(Vertex, position), floating_point, "VEC3"};
 constexpr Attribute normal{"NORMAL", offsetof(Vertex, normal), floating_point, "VEC3"};
 constexpr Attribute uv{"TEXCOORD_0", offsetof(Vertex, uv), floating_point, "VEC2"};
-constexpr Attribute colour{"COLOR_0", offsetof(Vertex, colour), unsigned_short,
-                           "VEC4"};
+constexpr Attribute colour{"COLOR_0", offsetof(Vertex, colour), unsigned_short, "VEC4"};
 
 /// glTF requires the bounds of positions.
 void add_bounds(Json& accessor, const std::vector<Vertex>& vertices) {
@@ -54,9 +53,8 @@ bool has_colours(const std::vector<Vertex>& vertices) {
 
 /// The accessors of the attributes.
 Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
-    const std::size_t view =
-        draft.add_view(std::as_bytes(std::span(vertices)),
-                       {{"byteStride", sizeof(Vertex)}, {"target", vertices_target}});
+    const std::size_t view = draft.add_view(std::as_bytes(std::span(vertices)),
+                                            {{"byteStride", sizeof(Vertex)}, {"target", vertices_target}});
     Json attributes;
     const auto add = [&](const Attribute& attribute, Json accessor) {
         accessor.update({{"bufferView", view},
@@ -78,8 +76,7 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
 }
 
 std::size_t add_indices(const std::vector<std::uint32_t>& indices, Draft& draft) {
-    const std::size_t view =
-        draft.add_view(std::as_bytes(std::span(indices)), {{"target", indices_target}});
+    const std::size_t view = draft.add_view(std::as_bytes(std::span(indices)), {{"target", indices_target}});
     return draft.add("accessors", {{"bufferView", view},
                                    {"componentType", unsigned_int},
                                    {"type", "SCALAR"},

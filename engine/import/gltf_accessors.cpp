@@ -83,8 +83,7 @@ std::uint32_t load_unsigned(const unsigned char* bytes, int component_type) {
 }
 
 bool is_unsigned(int component_type) {
-    return component_type == unsigned_byte ||
-           component_type == unsigned_short ||
+    return component_type == unsigned_byte || component_type == unsigned_short ||
            component_type == unsigned_int;
 }
 
@@ -106,10 +105,9 @@ void apply_sparse(const Document& document, int index, const Selection& selectio
     const Elements indices =
         locate(document, {fmt::format("accessor {} (its sparse indices)", index), sparse.indices.buffer_view,
                           sparse.indices.offset, sparse.count, index_size, index_size});
-    const Elements values =
-        locate(document, {fmt::format("accessor {} (its sparse values)", index), sparse.values.buffer_view,
-                          sparse.values.offset, sparse.count, component_size(sparse.values.component_type),
-                          element_size});
+    const Elements values = locate(document, {fmt::format("accessor {} (its sparse values)", index),
+                                              sparse.values.buffer_view, sparse.values.offset, sparse.count,
+                                              component_size(sparse.values.component_type), element_size});
     for (std::size_t i = 0; i < sparse.count; ++i) {
         const std::uint32_t at = load_unsigned(indices[i], index_type);
         if (at >= accessor.count) {
@@ -172,8 +170,7 @@ void check_finite(const std::vector<Vector>& elements, int index, const Selectio
 /// Whether the components are FLOAT, or normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
 bool has_real_components(const Accessor& accessor) {
     const int type = accessor.source.component_type;
-    const bool integers =
-        type == unsigned_byte || type == unsigned_short;
+    const bool integers = type == unsigned_byte || type == unsigned_short;
     return type == floating_point || (integers && accessor.normalized);
 }
 
@@ -249,12 +246,13 @@ std::vector<glm::u16vec4> read_colours(const Document& document, int index, cons
                         "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
                         index));
     }
-    const auto colours = read<glm::vec4>(
-        document, index, selection, [type = accessor.source.component_type, has_alpha](const unsigned char* bytes) {
-            return glm::vec4(real_component(bytes, 0, type), real_component(bytes, 1, type),
-                             real_component(bytes, 2, type),
-                             has_alpha ? real_component(bytes, 3, type) : 1.0F);
-        });
+    const auto colours =
+        read<glm::vec4>(document, index, selection,
+                        [type = accessor.source.component_type, has_alpha](const unsigned char* bytes) {
+                            return glm::vec4(real_component(bytes, 0, type), real_component(bytes, 1, type),
+                                             real_component(bytes, 2, type),
+                                             has_alpha ? real_component(bytes, 3, type) : 1.0F);
+                        });
     check_finite(colours, index, selection);
     std::vector<glm::u16vec4> rounded;
     rounded.reserve(colours.size());

@@ -40,9 +40,10 @@ std::optional<NamedEnvironment> read_environment(const Document& document, Impor
     if (!source) {
         return std::nullopt;
     }
-    return NamedEnvironment{source->name, Environment{.radiance = source->radiance,
-                                                      .picture = read_picture(document, *source, files, budget),
-                                                      .rotation = source->rotation}};
+    return NamedEnvironment{source->name,
+                            Environment{.radiance = source->radiance,
+                                        .picture = read_picture(document, *source, files, budget),
+                                        .rotation = source->rotation}};
 }
 
 }  // namespace candela::gltf

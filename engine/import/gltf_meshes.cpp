@@ -220,8 +220,8 @@ Primitive read_primitive(const Document& document, const PrimitiveSource& source
     return primitive;
 }
 
-Mesh read_mesh(const Document& document, const MeshSource& source,
-               const std::vector<ReadMaterial>& materials, Omissions& omissions, ImportBudget& budget) {
+Mesh read_mesh(const Document& document, const MeshSource& source, const std::vector<ReadMaterial>& materials,
+               Omissions& omissions, ImportBudget& budget) {
     Mesh mesh;
     mesh.name = source.name;
     for (const PrimitiveSource& part : source.primitives) {

@@ -25,7 +25,8 @@ inline constexpr int wrap_repeat = 10497;
 inline constexpr int wrap_clamp_to_edge = 33071;
 inline constexpr int wrap_mirrored_repeat = 33648;
 
-// What the import reads of a glTF document. Indices are -1 for none. Offsets, lengths and strides are in bytes.
+// What the import reads of a glTF document. Indices are -1 for none. Offsets, lengths and strides are in
+// bytes.
 
 struct BufferView {
     int buffer = -1;
@@ -49,10 +50,10 @@ struct SparseElements {
 };
 
 struct Accessor {
-    ElementSource source;    ///< without a buffer view all elements are zero
-    int components = 0;      ///< of SCALAR 1, of VEC2 to VEC4 2 to 4; 0 for matrices, which no attribute has
-    std::size_t count = 0;   ///< elements
-    bool normalized = false; ///< integers stand for fractions of the largest
+    ElementSource source;     ///< without a buffer view all elements are zero
+    int components = 0;       ///< of SCALAR 1, of VEC2 to VEC4 2 to 4; 0 for matrices, which no attribute has
+    std::size_t count = 0;    ///< elements
+    bool normalized = false;  ///< integers stand for fractions of the largest
     std::optional<SparseElements> sparse;
 };
 

@@ -50,8 +50,8 @@ std::vector<int> find_parents(const Document& document) {
         for (const Json& child : children_of(document, node).items()) {
             int& parent = parents[child.whole<std::size_t>()];
             if (parent >= 0) {
-                throw SceneError(
-                    fmt::format("node {} has two parents, nodes {} and {}", child.whole<int>(), parent, node));
+                throw SceneError(fmt::format("node {} has two parents, nodes {} and {}", child.whole<int>(),
+                                             parent, node));
             }
             parent = node;
         }

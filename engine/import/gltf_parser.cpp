@@ -67,11 +67,11 @@ Accessor translate(const tinygltf::Accessor& source, int no_view) {
     accessor.count = source.count;
     accessor.normalized = source.normalized;
     if (const auto& sparse = source.sparse; sparse.isSparse) {
-        accessor.sparse = {
-            static_cast<std::size_t>(sparse.count),
-            {sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
-             sparse.indices.componentType},
-            {sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset), source.componentType}};
+        accessor.sparse = {static_cast<std::size_t>(sparse.count),
+                           {sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
+                            sparse.indices.componentType},
+                           {sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
+                            source.componentType}};
     }
     return accessor;
 }
@@ -111,7 +111,12 @@ PrimitiveSource translate(const tinygltf::Primitive& source) {
 
 CameraSource translate(const tinygltf::Camera& source) {
     if (source.type == "perspective") {
-        return {source.name, true, source.perspective.yfov, 0.0, source.perspective.znear, source.perspective.zfar};
+        return {source.name,
+                true,
+                source.perspective.yfov,
+                0.0,
+                source.perspective.znear,
+                source.perspective.zfar};
     }
     const tinygltf::OrthographicCamera& lens = source.orthographic;
     return {source.name, false, 0.0, lens.ymag, lens.znear, lens.zfar};
@@ -121,10 +126,14 @@ LightSource translate(const tinygltf::Light& source) {
     const tinygltf::Value* const extension = find(source.extensions, light_extension);
     const bool casts_shadow =
         !extension || !extension->Has("castsShadow") || extension->Get("castsShadow").Get<bool>();
-    return {source.name,  source.type,
-            source.color, source.intensity,
-            source.range, source.spot.innerConeAngle,
-            source.spot.outerConeAngle, casts_shadow};
+    return {source.name,
+            source.type,
+            source.color,
+            source.intensity,
+            source.range,
+            source.spot.innerConeAngle,
+            source.spot.outerConeAngle,
+            casts_shadow};
 }
 
 EnvironmentSource translate_environment(const tinygltf::Value& source) {
@@ -155,10 +164,12 @@ Model translate(const tinygltf::Model& source, int no_view) {
     model.buffer_views = translated<BufferView>(source.bufferViews, same);
     model.accessors = translated<Accessor>(
         source.accessors, [no_view](const tinygltf::Accessor& each) { return translate(each, no_view); });
-    model.samplers = translated<Sampler>(
-        source.samplers, [](const tinygltf::Sampler& each) { return Sampler{each.wrapS, each.wrapT}; });
-    model.textures = translated<Texture>(
-        source.textures, [](const tinygltf::Texture& each) { return Texture{each.sampler, each.source}; });
+    model.samplers = translated<Sampler>(source.samplers, [](const tinygltf::Sampler& each) {
+        return Sampler{each.wrapS, each.wrapT};
+    });
+    model.textures = translated<Texture>(source.textures, [](const tinygltf::Texture& each) {
+        return Texture{each.sampler, each.source};
+    });
     model.materials = translated<MaterialSource>(source.materials, same);
     model.meshes = translated<MeshSource>(source.meshes, [same](const tinygltf::Mesh& each) {
         return MeshSource{each.name, translated<PrimitiveSource>(each.primitives, same)};
@@ -224,15 +235,16 @@ std::uint64_t parsing_memory(const Json& document) {
         const Json* const items = object.find(list);
         return items ? std::uint64_t{items->size()} : 0;
     };
-    std::uint64_t bytes = size_of(document, "accessors") * (sizeof(tinygltf::Accessor) + sizeof(Accessor)) +
-                          size_of(document, "bufferViews") * (sizeof(tinygltf::BufferView) + sizeof(BufferView)) +
-                          size_of(document, "cameras") * (sizeof(tinygltf::Camera) + sizeof(CameraSource)) +
-                          size_of(document, "images") * sizeof(EncodedImage) +
-                          size_of(document, "materials") * (sizeof(tinygltf::Material) + sizeof(MaterialSource)) +
-                          size_of(document, "meshes") * (sizeof(tinygltf::Mesh) + sizeof(MeshSource)) +
-                          size_of(document, "samplers") * (sizeof(tinygltf::Sampler) + sizeof(Sampler)) +
-                          size_of(document, "scenes") * (sizeof(tinygltf::Scene) + sizeof(SceneSource)) +
-                          size_of(document, "textures") * (sizeof(tinygltf::Texture) + sizeof(Texture));
+    std::uint64_t bytes =
+        size_of(document, "accessors") * (sizeof(tinygltf::Accessor) + sizeof(Accessor)) +
+        size_of(document, "bufferViews") * (sizeof(tinygltf::BufferView) + sizeof(BufferView)) +
+        size_of(document, "cameras") * (sizeof(tinygltf::Camera) + sizeof(CameraSource)) +
+        size_of(document, "images") * sizeof(EncodedImage) +
+        size_of(document, "materials") * (sizeof(tinygltf::Material) + sizeof(MaterialSource)) +
+        size_of(document, "meshes") * (sizeof(tinygltf::Mesh) + sizeof(MeshSource)) +
+        size_of(document, "samplers") * (sizeof(tinygltf::Sampler) + sizeof(Sampler)) +
+        size_of(document, "scenes") * (sizeof(tinygltf::Scene) + sizeof(SceneSource)) +
+        size_of(document, "textures") * (sizeof(tinygltf::Texture) + sizeof(Texture));
     if (const Json* const lights = document.find_path("extensions/KHR_lights_punctual")) {
         bytes += size_of(*lights, "lights") * (sizeof(tinygltf::Light) + sizeof(LightSource));
     }

@@ -15,8 +15,8 @@ namespace candela::gltf {
 /// Bytes that `parse_model` needs for a checked document, a multiple of those of the shortest JSON for it.
 [[nodiscard]] std::uint64_t parsing_memory(const Json& document);
 
-/// What TinyGLTF reads of a checked document (see check_schema): all but buffers, images, nodes, animations and skins.
-/// Throws SceneError if it refuses the document.
+/// What TinyGLTF reads of a checked document (see check_schema): all but buffers, images, nodes, animations
+/// and skins. Throws SceneError if it refuses the document.
 [[nodiscard]] Model parse_model(Json document);
 
 /// The bytes of a base64 data URI; none if it is empty or of an unknown kind.

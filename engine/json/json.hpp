@@ -16,9 +16,9 @@
 
 namespace candela {
 
-/// What is wrong with a text that could not be parsed, in one line: "invalid JSON: parse error at line 2, column
-/// 7: ..." and what was expected there. It does not quote the text, except a number too large for a double,
-/// which has no place. Also thrown by `Json::dump` for strings that are not UTF-8.
+/// What is wrong with a text that could not be parsed, in one line: "invalid JSON: parse error at line 2,
+/// column 7: ..." and what was expected there. It does not quote the text, except a number too large for a
+/// double, which has no place. Also thrown by `Json::dump` for strings that are not UTF-8.
 class JsonError : public std::runtime_error {
  public:
     using runtime_error::runtime_error;
@@ -33,8 +33,9 @@ struct JsonObject {
     bool sorted = true;  ///< by name
 };
 
-/// A JSON value: null, true or false, a number, a string, an array or an object. Members of an object keep the order in
-/// which they were added; those of a parsed text are sorted by name, so that looking up one of many is fast.
+/// A JSON value: null, true or false, a number, a string, an array or an object. Members of an object keep
+/// the order in which they were added; those of a parsed text are sorted by name, so that looking up one of
+/// many is fast.
 ///
 /// Only json.cpp includes the library that parses: its headers take seconds to compile.
 class Json {
@@ -47,8 +48,7 @@ class Json {
     template <std::same_as<bool> T>
     Json(T flag) : value_(flag) {}
     template <std::unsigned_integral T>
-    requires(!std::same_as<T, bool>)
-    Json(T number) : value_(std::uint64_t{number}) {}
+    requires(!std::same_as<T, bool>) Json(T number) : value_(std::uint64_t{number}) {}
     template <std::signed_integral T>
     Json(T number) {
         // A number from 0 is unsigned, wherever it comes from.
@@ -76,13 +76,16 @@ class Json {
     /// The value of a whole text. Throws JsonError; also if arrays and objects are nested more than 256 deep.
     [[nodiscard]] static Json parse(std::string_view text);
 
-    /// The text of the value; on several lines with so many spaces for each level unless `indent` is negative.
+    /// The text of the value; on several lines with so many spaces for each level unless `indent` is
+    /// negative.
     [[nodiscard]] std::string dump(int indent = -1, Faulty faulty = Faulty::refused) const;
 
     [[nodiscard]] bool is_null() const { return std::holds_alternative<std::monostate>(value_); }
     [[nodiscard]] bool is_boolean() const { return std::holds_alternative<bool>(value_); }
     [[nodiscard]] bool is_number() const { return is_whole() || std::holds_alternative<double>(value_); }
-    [[nodiscard]] bool is_whole() const { return is_not_negative() || std::holds_alternative<std::int64_t>(value_); }
+    [[nodiscard]] bool is_whole() const {
+        return is_not_negative() || std::holds_alternative<std::int64_t>(value_);
+    }
     /// A whole number from 0.
     [[nodiscard]] bool is_not_negative() const { return std::holds_alternative<std::uint64_t>(value_); }
     [[nodiscard]] bool is_string() const { return std::holds_alternative<std::string>(value_); }
@@ -118,13 +121,14 @@ class Json {
     /// The member of this name; null if there is none, or if this is no object.
     [[nodiscard]] const Json* find(std::string_view name) const;
     [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
-    /// The member that a path of names joined by slashes leads to: "extensions/KHR_lights_punctual". Null if there is none.
+    /// The member that a path of names joined by slashes leads to: "extensions/KHR_lights_punctual". Null if
+    /// there is none.
     [[nodiscard]] const Json* find_path(std::string_view names) const;
     /// The member of this name. Throws std::out_of_range if there is none.
     [[nodiscard]] const Json& at(std::string_view name) const;
 
-    /// The member of this name, which is added if it is missing: references to other members are then invalid. Null
-    /// becomes an object.
+    /// The member of this name, which is added if it is missing: references to other members are then
+    /// invalid. Null becomes an object.
     Json& operator[](std::string_view name);
     /// Null becomes an array.
     void push_back(Json item);
@@ -140,7 +144,8 @@ class Json {
 
     using Array = std::vector<Json>;
 
-    std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, JsonObject> value_;
+    std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array, JsonObject>
+        value_;
 };
 
 struct JsonMember {

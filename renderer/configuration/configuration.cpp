@@ -210,8 +210,7 @@ class Reader {
         value = json.flag();
     }
     void read(const char* name, const Json& json, std::uint32_t& value, Range range) {
-        const bool fits =
-            json.is_whole() && json.number() >= range.least && json.number() <= range.most;
+        const bool fits = json.is_whole() && json.number() >= range.least && json.number() <= range.most;
         if (!fits) {
             return error(name, fmt::format("is not a whole number from {} to {}", range.least, range.most));
         }
@@ -262,8 +261,7 @@ class Reader {
 };
 
 /// Changes the members that `json` has.
-void read_members(const Json& json, Configuration& configuration,
-                  std::vector<std::string>& errors) {
+void read_members(const Json& json, Configuration& configuration, std::vector<std::string>& errors) {
     if (!json.is_object()) {
         errors.emplace_back("not a JSON object");
         return;

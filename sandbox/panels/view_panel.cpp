@@ -68,7 +68,7 @@ void draw_comparison(AppState& state) {
 
 void draw_reference(AppState& state, const ReferenceView& reference, double frame_ms) {
     if (!reference.is_built_in()) {
-        ImGui::TextDisabled("The reference is not built in (see README.md).");
+        ImGui::TextDisabled("No reference: built without Embree (libembree-dev).");
         return;
     }
     checkbox("trace the reference", state.reference,

@@ -52,6 +52,11 @@ void check_limit(const Bytes& file, std::uint64_t ImportLimits::*limit, std::uin
 }
 
 /// The bytes of sixteen_bit_png.
+/// Three grey pixels.
+constexpr const char* three_pixels =
+    "data:image/"
+    "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAMAAAABCAAAAAA+i0toAAAADElEQVR4nGMQaPgAAAIkAYFvkeRkAAAAAElFTkSuQmCC";
+
 Bytes png() {
     Bytes bytes;
     std::string type;
@@ -93,6 +98,14 @@ TEST_SUITE("import limits") {
         check_limit(file, &ImportLimits::nodes, 3, "nodes");
         check_limit(file, &ImportLimits::depth, 2, "depth");
         check_limit(file, &ImportLimits::triangles, 1, "triangles");
+    }
+
+    TEST_CASE("the pixels of all pictures count together") {
+        GltfBuilder file = complete_scene();
+        file.document["images"] = {{{"uri", sixteen_bit_png}}, {{"uri", three_pixels}}};
+        file.document["textures"] = {{{"source", 0}}, {{"source", 1}}};
+        file.document["materials"][0]["emissiveTexture"]["index"] = 1;
+        check_limit(file.gltf(), &ImportLimits::pixels, 2 + 3, "pixels");
     }
 
     TEST_CASE("memory may be 64 MiB, or a multiple of the bytes of the files") {

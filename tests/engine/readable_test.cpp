@@ -24,7 +24,8 @@ TEST_SUITE("readable") {
                  {"\u00A0\u2030\u2065\u206A", "\u00A0\u2030\u2065\u206A"},  // next to those
                  {"\xFF\xC0\x80 a\xC3", "\\xFF\\xC0\\x80 a\\xC3"},          // not UTF-8
                  {std::string("a\0b", 3), "a\\x00b"},
-                 // The last characters of each length, then what is longer than needed, a surrogate, and beyond Unicode.
+                 // The last characters of each length, then what is longer than needed, a surrogate, and
+                 // beyond Unicode.
                  {"\u07FF\uFFFD\U0010FFFD", "\u07FF\uFFFD\U0010FFFD"},
                  {"\xE0\x9F\xBF", "\\xE0\\x9F\\xBF"},
                  {"\xF0\x8F\xBF\xBF", "\\xF0\\x8F\\xBF\\xBF"},

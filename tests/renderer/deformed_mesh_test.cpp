@@ -100,6 +100,17 @@ TEST_SUITE("deformed meshes") {
         }
     }
 
+    TEST_CASE_FIXTURE(RenderFixture, "a mesh is seen where its vertices are, also if it was made elsewhere") {
+        configure(lit(VplPlacement::paths, VplVisibility::rays));
+        const auto mesh = cloth(6, diffuse({0.8F, 0.3F, 0.2F}, true));
+        Mesh aside = *mesh;
+        for (Vertex& vertex : aside.primitives.front().vertices)
+            vertex.position.x += 50.0F;  // out of the view
+        ClothScene scene(std::make_shared<const Mesh>(std::move(aside)));
+        scene.world.set(scene.cloth, deformed(*mesh, [](Vertex&) {}));
+        CHECK(render(scene, deformed_size) == from_scratch(ClothScene(mesh), deformed_size));
+    }
+
     TEST_CASE_FIXTURE(RenderFixture, "a mesh whose vertices turn is lit like one that turns") {
         // The surfels are the same ones, moved by the triangles or by the item.
         configure(lit(VplPlacement::surfels, VplVisibility::rays));

@@ -135,6 +135,14 @@ TEST_SUITE("gl device") {
         CHECK(device.take_messages().empty());
     }
 
+    TEST_CASE_FIXTURE(
+        GlFixture, "the debug log keeps each error of another wording, whatever the driver's number for it") {
+        provoke_error(device);
+        device.gl().Disable(GL_RENDERER);
+        CHECK(device.gl().GetError() == GL_INVALID_ENUM);
+        CHECK(device.take_messages().size() == 2);
+    }
+
     TEST_CASE_FIXTURE(GlFixture, "performance messages are no errors, and notifications are not kept") {
         const auto say = [&](GLenum type, GLuint id, GLenum severity) {
             device.gl().DebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, type, id, severity, -1, "word");

@@ -56,6 +56,7 @@ TEST_SUITE("report") {
         CHECK(json["vpls"]["alive"] == 251);
         CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
         CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
+        CHECK(json["lights"]["with_shadow"] == 2);
         CHECK(json["lights"]["without_shadow"] == 1);
         CHECK(json["lights"]["global"] == 4);
         CHECK(json["lights"]["tile_max"] == 19);
