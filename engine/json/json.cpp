@@ -90,7 +90,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
             return items->emplace_back(std::move(value));
         }
         auto& object = std::get<JsonObject>(open_.back()->value_);
-        return object.members.emplace_back(std::move(name_), std::move(value)).value;
+        return object.members.emplace_back(JsonMember{std::move(name_), std::move(value)}).value;
     }
 
     std::vector<Json*> open_;  // arrays and objects, the innermost last; none grows while one inside is open
@@ -191,11 +191,12 @@ class JsonWriter {
     int level_ = 0;
 };
 
-Json::Json(const Json& other) = default;
-Json::Json(Json&& other) noexcept = default;
-Json& Json::operator=(const Json& other) = default;
-Json& Json::operator=(Json&& other) noexcept = default;
-Json::~Json() = default;
+JsonObject::JsonObject() = default;
+JsonObject::JsonObject(const JsonObject& other) = default;
+JsonObject::JsonObject(JsonObject&& other) noexcept = default;
+JsonObject& JsonObject::operator=(const JsonObject& other) = default;
+JsonObject& JsonObject::operator=(JsonObject&& other) noexcept = default;
+JsonObject::~JsonObject() = default;
 
 Json::Json(std::initializer_list<Json> items) {
     const bool names_all = std::ranges::all_of(

@@ -29,6 +29,14 @@ struct JsonMember;
 
 /// The members of an object. See Json.
 struct JsonObject {
+    // Written in json.cpp, where a member is a complete type.
+    JsonObject();
+    JsonObject(const JsonObject& other);
+    JsonObject(JsonObject&& other) noexcept;
+    JsonObject& operator=(const JsonObject& other);
+    JsonObject& operator=(JsonObject&& other) noexcept;
+    ~JsonObject();
+
     std::vector<JsonMember> members;
     bool sorted = true;  ///< by name
 };
@@ -64,11 +72,6 @@ class Json {
     Json(const char* text) : value_(std::string(text)) {}
     /// An object of members if each item is a name and a value, else an array: {{"x", 1}, {"y", 2}}, {1, 2}.
     Json(std::initializer_list<Json> items);
-    Json(const Json& other);
-    Json(Json&& other) noexcept;
-    Json& operator=(const Json& other);
-    Json& operator=(Json&& other) noexcept;
-    ~Json();
 
     [[nodiscard]] static Json array(std::vector<Json> items = {});
     [[nodiscard]] static Json object();
