@@ -33,13 +33,13 @@ void CommandLine::add_switch(const std::string& flag, const std::string& help, b
 }
 
 void CommandLine::add_value(const std::string& flag, const std::string& type, const std::string& help,
-                            Store store) {
-    library_->app.add_option_function<std::string>(flag, std::move(store), help)->type_name(type);
+                            const Store& store) {
+    library_->app.add_option_function<std::string>(flag, store, help)->type_name(type);
 }
 
 void CommandLine::add_values(const std::string& flag, const std::string& type, const std::string& help,
-                             Store store) {
-    const auto store_all = [store = std::move(store)](const std::vector<std::string>& values) {
+                             const Store& store) {
+    const auto store_all = [store](const std::vector<std::string>& values) {
         for (const std::string& value : values) store(value);
     };
     library_->app.add_option_function<std::vector<std::string>>(flag, store_all, help)->type_name(type);

@@ -39,9 +39,11 @@ class CommandLine {
     void add_switch(const std::string& flag, const std::string& help, bool& target);
     /// A flag with a value of this type, a word for the help. A name without dashes is an argument without a
     /// flag.
-    void add_value(const std::string& flag, const std::string& type, const std::string& help, Store store);
+    void add_value(const std::string& flag, const std::string& type, const std::string& help,
+                   const Store& store);
     /// A flag that may be given several times.
-    void add_values(const std::string& flag, const std::string& type, const std::string& help, Store store);
+    void add_values(const std::string& flag, const std::string& type, const std::string& help,
+                    const Store& store);
 
     /// Stores the values of all flags, then calls `check`, which may throw FlagError. Returns what ends the
     /// program: a fault, --help or --version. `arguments[0]` is the program.

@@ -36,6 +36,14 @@ void finish(JsonObject& object) {
     object.sorted = true;
 }
 
+/// The value of an object's member, null where there is none. `Object` is JsonObject, const or not.
+template <class Object>
+auto* value_in(Object& object, std::string_view name) {
+    const auto found = object.sorted ? std::ranges::lower_bound(object.members, name, {}, &JsonMember::name)
+                                     : std::ranges::find(object.members, name, &JsonMember::name);
+    return found != object.members.end() && found->name == name ? &found->value : nullptr;
+}
+
 }  // namespace
 
 /// Makes a value of what the library's parser finds.
@@ -182,7 +190,7 @@ class JsonWriter {
     void break_line() {
         if (indent_ >= 0) {
             text += '\n';
-            text.append(static_cast<std::size_t>(indent_ * level_), ' ');
+            text.append(static_cast<std::size_t>(indent_) * static_cast<std::size_t>(level_), ' ');
         }
     }
 
@@ -266,13 +274,7 @@ std::span<JsonMember> Json::members() {
 
 const Json* Json::find(std::string_view name) const {
     const auto* const object = std::get_if<JsonObject>(&value_);
-    if (!object) {
-        return nullptr;
-    }
-    const auto& members = object->members;
-    const auto found = object->sorted ? std::ranges::lower_bound(members, name, {}, &JsonMember::name)
-                                      : std::ranges::find(members, name, &JsonMember::name);
-    return found != members.end() && found->name == name ? &found->value : nullptr;
+    return object ? value_in(*object, name) : nullptr;
 }
 
 const Json* Json::find_path(std::string_view names) const {
@@ -293,15 +295,15 @@ const Json& Json::at(std::string_view name) const {
 }
 
 Json& Json::operator[](std::string_view name) {
-    if (const Json* const found = find(name)) {
-        return const_cast<Json&>(*found);
-    }
     if (is_null()) {
         value_ = JsonObject{};
     }
     auto& object = std::get<JsonObject>(value_);
+    if (Json* const found = value_in(object, name)) {
+        return *found;
+    }
     object.sorted = object.sorted && (object.members.empty() || object.members.back().name < name);
-    return object.members.emplace_back(std::string(name), Json()).value;
+    return object.members.emplace_back(JsonMember{std::string(name), Json()}).value;
 }
 
 void Json::push_back(Json item) {

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "sandbox/reference/constants.hpp"
 #include "sandbox/reference/sampling.hpp"
 
 namespace candela::reference {
 
 namespace {
-
-constexpr float pi = std::numbers::pi_v<float>;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 float flux(const Light& light, const Sphere& bounds) {
     const float intensity = light.intensity.r + light.intensity.g + light.intensity.b;

@@ -1,7 +1,6 @@
 #include "sandbox/reference/geometry.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,6 +11,8 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+
+#include "sandbox/reference/constants.hpp"
 
 namespace candela::reference {
 
@@ -141,7 +142,7 @@ void Geometry::group_by_alpha() {
 
 void Geometry::measure() {
     if (triangles_.empty()) return;
-    glm::vec3 lower(std::numeric_limits<float>::infinity());
+    glm::vec3 lower(infinity);
     glm::vec3 upper = -lower;
     for (const Triangle& triangle : triangles_) {
         for (const Triangle::Corner& corner : triangle.corners) {

@@ -2,20 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
 
+#include "sandbox/reference/constants.hpp"
+
 namespace candela::reference {
 
 namespace {
-
-constexpr float pi = std::numbers::pi_v<float>;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A point light with the entity's pose, which looks along its -Z. The callers fill in what differs.
 Light placed(WorldMatrices& world_matrices, Entity entity, glm::vec3 intensity, bool casts_shadow) {

@@ -12,8 +12,6 @@ namespace candela::reference {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 glm::dvec3 turned(glm::dvec3 v, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
@@ -58,9 +56,9 @@ SkyLight::SkyLight(const World& world) {
     double sum = 0.0;
     for (std::uint32_t i = 0; i < picture_->texels.size(); ++i) {
         const std::uint32_t row = i / picture_->width;
-        const double solid_angle =
-            2.0 * pi / picture_->width *
-            (std::cos(pi * row / picture_->height) - std::cos(pi * (row + 1) / picture_->height));
+        const double solid_angle = 2.0 * std::numbers::pi / picture_->width *
+                                   (std::cos(std::numbers::pi * row / picture_->height) -
+                                    std::cos(std::numbers::pi * (row + 1) / picture_->height));
         const double density = radiance_around(*picture_, i);
         sum += density * solid_angle;
         until_.push_back(sum);
@@ -73,8 +71,8 @@ SkyLight::SkyLight(const World& world) {
 /// From the top left corner of the picture, in texels.
 glm::vec2 SkyLight::texel_at(glm::vec3 direction) const {
     const glm::dvec3 d = turned(glm::normalize(glm::dvec3(direction)), -static_cast<double>(rotation_));
-    const double u = std::atan2(d.x, -d.z) / (2.0 * pi) + 0.5;
-    const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / pi;
+    const double u = std::atan2(d.x, -d.z) / (2.0 * std::numbers::pi) + 0.5;
+    const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi;
     return {static_cast<float>(u * picture_->width), static_cast<float>(v * picture_->height)};
 }
 
@@ -95,17 +93,18 @@ glm::vec3 SkyLight::radiance(glm::vec3 direction) const {
 }
 
 glm::vec3 SkyLight::draw(glm::vec2 u) const {
-    const double wanted = static_cast<double>(u.x);
+    const auto wanted = static_cast<double>(u.x);
     const auto found = std::ranges::upper_bound(until_, wanted);
     const auto i = std::min<std::size_t>(static_cast<std::size_t>(found - until_.begin()), until_.size() - 1);
     const double before = i == 0 ? 0.0 : until_[i - 1];
     const double inside = std::clamp((wanted - before) / (until_[i] - before), 0.0, 1.0);
-    const double azimuth =
-        2.0 * pi * ((static_cast<double>(i % picture_->width) + inside) / picture_->width - 0.5);
-    const double row = static_cast<double>(i / picture_->width);
+    const double azimuth = 2.0 * std::numbers::pi *
+                           ((static_cast<double>(i % picture_->width) + inside) / picture_->width - 0.5);
+    const std::size_t whole_row = i / picture_->width;
+    const auto row = static_cast<double>(whole_row);
     // Evenly over the solid angle of the texel.
-    const double upper = std::cos(pi * row / picture_->height),
-                 lower = std::cos(pi * (row + 1.0) / picture_->height);
+    const double upper = std::cos(std::numbers::pi * row / picture_->height),
+                 lower = std::cos(std::numbers::pi * (row + 1.0) / picture_->height);
     const double y = std::clamp(upper + static_cast<double>(u.y) * (lower - upper), -1.0, 1.0);
     const double across = std::sqrt(1.0 - y * y);
     const glm::dvec3 direction(std::sin(azimuth) * across, y, -std::cos(azimuth) * across);

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <limits>
 #include <vector>
 
+#include "sandbox/reference/constants.hpp"
 #include "sandbox/reference/geometry.hpp"
 
 namespace candela::reference {
@@ -41,7 +41,7 @@ struct SeenSurface {
     return {.origin = surface.position + offset * surface.face,
             .direction = direction,
             .nearest = offset,
-            .farthest = std::numeric_limits<float>::infinity()};
+            .farthest = infinity};
 }
 
 }  // namespace candela::reference
