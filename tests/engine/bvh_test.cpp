@@ -328,12 +328,12 @@ TEST_CASE("bvh: degenerate triangles are kept and never hit") {
     }
 }
 
-// Triangles with edge lengths and distances of 2^-149 ... 2^60 m along each axis, `copies` of each. Wherever
-// a plane is placed, almost all of them are on one side of it.
-Triangles geometric_progression(int copies) {
+// Triangles with edge lengths and distances of 2^lowest ... 2^highest m along each axis, `copies` of each.
+// Wherever a plane is placed, almost all of them are on one side of it.
+Triangles geometric_progression(int copies, int lowest = -149, int highest = 60) {
     Triangles triangles;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
-        for (int exponent = -149; exponent <= 60; ++exponent) {
+        for (int exponent = lowest; exponent <= highest; ++exponent) {
             glm::vec3 a(0.0F);
             a[axis] = std::ldexp(1.0F, exponent);
             triangles.insert(triangles.end(), static_cast<std::size_t>(copies), {a, 1.25F * a, 1.5F * a});
@@ -569,12 +569,15 @@ TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
         objects.add(geometric_progression(1));
     }
     check_joint(objects.joint(), objects.triangles());
-    // As deep as possible in both levels: single triangles in the same progression, over the objects.
-    objects.most_opened = 0;
-    for (const Triangle& triangle : geometric_progression(1)) {
-        objects.add({triangle});
+    // As deep as possible in both levels: single triangles around a small, deep object, which is at the
+    // deepest place of the top.
+    Objects nested;
+    nested.most_opened = 0;
+    nested.add(geometric_progression(1, -149, -61));
+    for (const Triangle& triangle : geometric_progression(1, -60, 60)) {
+        nested.add({triangle});
     }
-    CHECK(check_joint(objects.joint(), objects.triangles()) > object_max_depth);
+    CHECK(check_joint(nested.joint(), nested.triangles()) > object_max_depth);
 }
 
 }  // namespace

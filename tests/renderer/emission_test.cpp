@@ -96,6 +96,19 @@ TEST_SUITE("emission") {
         CHECK(worst_ground_error(scene, irradiance_of_lamp) < 0.01);
     }
 
+    TEST_CASE_FIXTURE(EmissionFixture, "emitted light is not reflected light") {
+        // The ground reflects light to the black lamp only.
+        const Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
+        configure(small_configuration(Show::indirect));
+        CHECK(mean(render(scene, size)) == 0.0);
+        configure(small_configuration(Show::direct));
+        const Picture direct = render(scene, size);
+        CHECK(mean(direct) > 0.0);
+        configure(small_configuration());
+        // The sums of the same terms are rounded in another order.
+        CHECK(worst_error(render(scene, size), direct, mean(direct)) < 1e-5);
+    }
+
     TEST_CASE_FIXTURE(EmissionFixture, "a sphere lights a plane like its solid angle") {
         Scene scene = ground();
         const float radius = 0.2F;

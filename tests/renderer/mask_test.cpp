@@ -230,6 +230,22 @@ TEST_SUITE("masks") {
         CHECK(direct_light(with, ShadingPath::forward) == picture);
     }
 
+    TEST_CASE_FIXTURE(Masks, "for traced light, too, an alpha equal to the cutoff is opaque") {
+        const auto traced = [&](float alpha) {
+            Scene scene = ground();
+            scene.world.set(scene.light, at({0.1F, 1.5F, 0.2F}));
+            scene.world.set(scene.light, PointLight{});
+            Material material = *masked(0.9F, alpha);
+            material.alpha_cutoff = 0.5F;
+            add(scene.world, at({0, 0.7F, 0}),
+                MeshInstance{square(1.0F, std::make_shared<const Material>(std::move(material)))});
+            return trace(scene, {.count = 500, .bounces = 1}).absorbed;
+        };
+        // The square absorbs 0.1 of what meets it, the ground 0.5.
+        CHECK(traced(0.5F) == traced(1.0F));
+        CHECK(traced(0.499F).r > traced(1.0F).r);
+    }
+
     TEST_CASE_FIXTURE(Masks, "traced light passes through the holes and no energy is lost") {
         // The light is 0.5 m below a square of half width 0.5 m, which covers a sixth of its directions (one
         // face of a cube around it). The checkerboard maps onto itself with solid blocks and holes exchanged
