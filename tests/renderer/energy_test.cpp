@@ -94,6 +94,24 @@ TEST_SUITE("energy") {
         CHECK(relative_error(flux.absorbed, 0.5 * met * flux.emitted) < 3e-3);
     }
 
+    TEST_CASE_FIXTURE(Energy, "rays find the colours of textures decoded from sRGB") {
+        const auto traced = [&](const Material& material) {
+            Scene scene;
+            add(scene.world, Transform{},
+                MeshInstance{square(4.0F, std::make_shared<const Material>(material))});
+            add(scene.world, at({0, 0.1F, 0}), PointLight{});
+            scene.camera = add(scene.world, looking({0.3F, 3.0F, 1.2F}, {0, 0, 0}), Camera{});
+            return trace(scene, {.count = 500, .bounces = 1}).flux;
+        };
+        Material textured = *diffuse(glm::vec3(1.0F));
+        const Image image{.width = 1, .height = 1, .texels = {{188, 188, 188, 255}}};
+        textured.base_colour_texture = std::make_shared<const Image>(image);
+        const double decoded = std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);  // IEC 61966-2-1
+        const EnergyAccount expected = traced(*diffuse(glm::vec3(static_cast<float>(decoded))));
+        // Colours are stored in half floats: 2^-11.
+        CHECK(relative_error(traced(textured).absorbed, expected.absorbed) < 1e-3);
+    }
+
     TEST_CASE_FIXTURE(Energy, "a light with a range does not light surfaces beyond it") {
         Scene scene = furnace_box(0.5F);
         scene.world.set(scene.light, at({0, 0, 0}));

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -141,6 +142,28 @@ TEST_SUITE("extensions") {
                 .extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 0.5F; }))
                 .empty());
         CHECK(relative_mean_square(frame(), usual) < 1e-10);
+    }
+
+    TEST_CASE_FIXTURE(
+        ExtensionTests,
+        "passes after shading come before blended surfaces, those before the tone map after them") {
+        Scene pane = ground();
+        pane.world.set(pane.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+        pane.world.set(pane.light, DirectionalLight{.illuminance = 1.0F});
+        Material material = *diffuse(glm::vec3(0.9F));
+        material.alpha_mode = AlphaMode::blend;
+        material.base_colour.a = 0.5F;
+        add(pane.world, at({0, 0.5F, 0}),
+            MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
+        Configuration configuration = renderer.configuration();
+        configuration.indirect = false;
+        configure(configuration);
+        const auto black = [](const World&) { return 0.0F; };
+        REQUIRE(renderer.extend(scaling("black", ExtensionPlace::after_shading, black)).empty());
+        // What the pane reflects, times its alpha; half floats.
+        CHECK(render(pane, size).at(12, 9).r == doctest::Approx(0.5 * 0.9 / std::numbers::pi).epsilon(2e-3));
+        REQUIRE(renderer.extend(scaling("black", ExtensionPlace::before_tone_map, black)).empty());
+        CHECK(mean(render(pane, size)) == 0.0);
     }
 
     TEST_CASE_FIXTURE(ExtensionTests, "extensions get the parts that they need, on every path") {

@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
 #include <vector>
 
 #include "renderer/device_of.hpp"
+#include "renderer/passes/view/view.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
@@ -51,6 +54,20 @@ class ViewsTests : public RenderFixture {
 }  // namespace
 
 TEST_SUITE("views") {
+    TEST_CASE("jitter moves the samples off the pixel centres, right and up") {
+        const glm::vec2 jitter(0.25F, -0.5F);
+        const CameraView view = make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F),
+                                          {.camera = {}, .size = size, .jitter = jitter});
+        // A point on the ray through the sample of pixel (7, 21), of a camera that looks along -Z.
+        const glm::vec2 centre(7.5F, 21.5F);
+        const glm::vec2 half_extent = std::tan(0.5F) * glm::vec2(4.0F / 3.0F, 1.0F);
+        const glm::vec2 place = half_extent * (2.0F * (centre + jitter) / glm::vec2(size) - 1.0F);
+        const glm::vec4 clip = view.clip_from_world * glm::vec4(5.0F * place, -5.0F, 1.0F);
+        const glm::vec2 pixel = (0.5F * glm::vec2(clip) / clip.w + 0.5F) * glm::vec2(size);
+        // Floats of up to 48 pixels.
+        CHECK(glm::length(pixel - centre) < 1e-4F);
+    }
+
     TEST_CASE_FIXTURE(ViewsTests, "equal cameras give equal pictures, with the scene's work done once") {
         for (const ShadingPath path : all_shading_paths) {
             CAPTURE(to_string(path));
