@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <glm/gtc/constants.hpp>
 #include <memory>
 #include <random>
 #include <utility>
@@ -82,6 +83,26 @@ TEST_SUITE("scene edits") {
 
         renderer.invalidate();
         CHECK(uploaded() > all / 2);
+    }
+
+    TEST_CASE_FIXTURE(PathFixture, "light does not leak through a wall under which the floor has moved") {
+        // Which part of a floor's cell lies behind the wall changes, though nothing has moved near the rays
+        // that find it: they run 0.15 m above the floor, and the floor is flat.
+        Scene scene = lit_ground();
+        const Entity floor =
+            add(scene.world, at({0, 0.05F, 0}), MeshInstance{square(1.0F, diffuse({0.9F, 0.5F, 0.2F}))});
+        const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
+        add(scene.world, Transform{.translation = {0.3F, 0.55F, 0}, .rotation = upright},
+            MeshInstance{square(0.5F, diffuse(glm::vec3(0.5F), true))});
+        Configuration configuration = traced(VplPlacement::surfels);
+        configuration.vpls.count = 200;
+        configure(configuration);
+        static_cast<void>(render(scene, picture_size));
+        for (const float x : {0.2F, 0.45F, -0.3F}) {
+            CAPTURE(x);
+            scene.world.set(floor, at({x, 0.05F, 0}));
+            CHECK(render(scene, picture_size) == from_scratch(scene, picture_size));
+        }
     }
 
     TEST_CASE_FIXTURE(GlFixture, "what is gone takes no memory for long") {
