@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "sandbox/files/output_file.hpp"
 

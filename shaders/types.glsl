@@ -1,4 +1,4 @@
-// Structs shared by the shaders and the CPU: renderer/gpu_types.hpp includes this file as C++. Layout std430, those of
+// Structs shared by the shaders and the CPU: renderer/gpu/gpu_types.hpp includes this file as C++. Layout std430, those of
 // uniform blocks also std140. A test compares every offset and stride with what the driver reports.
 // Flux is in lm or W, irradiance in lux or W/m², depending on the unit of the lights.
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "renderer/inspection.hpp"
+#include "renderer/facade/inspection.hpp"
 #include "sandbox/window/layout.hpp"
 
 namespace candela::sandbox {

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <utility>
 
-#include "renderer/difference.hpp"
+#include "renderer/facade/difference.hpp"
 #include "renderer/gl/device.hpp"
 #include "renderer/gl/texture.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 
 namespace candela::sandbox {
 

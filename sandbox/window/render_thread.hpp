@@ -15,7 +15,7 @@
 #include <glm/vec2.hpp>
 
 #include <candela/renderer.hpp>
-#include "renderer/inspection.hpp"
+#include "renderer/facade/inspection.hpp"
 #include "sandbox/files/picture.hpp"
 #include "sandbox/window/thread_context.hpp"
 

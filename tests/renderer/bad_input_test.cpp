@@ -14,7 +14,7 @@
 
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/scene_error.hpp>
-#include "renderer/scene_check.hpp"
+#include "renderer/passes/scene/scene_check.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/throws.hpp"
 

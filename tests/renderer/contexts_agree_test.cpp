@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "renderer/gl/program.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"

@@ -1,6 +1,6 @@
 // How the quality of frames is chosen under a time budget, and the pictures that result.
 
-#include "renderer/frame_budget.hpp"
+#include "renderer/frame/frame_budget.hpp"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "renderer/gl/objects.hpp"
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
 using namespace candela;

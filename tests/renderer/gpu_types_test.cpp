@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/gl/program.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
 using namespace candela;

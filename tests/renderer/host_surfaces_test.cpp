@@ -8,7 +8,7 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
 

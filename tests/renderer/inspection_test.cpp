@@ -14,9 +14,9 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/device_of.hpp"
-#include "renderer/difference.hpp"
-#include "renderer/inspection.hpp"
+#include "renderer/facade/device_of.hpp"
+#include "renderer/facade/difference.hpp"
+#include "renderer/facade/inspection.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
 

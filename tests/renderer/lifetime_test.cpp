@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/memory.hpp"
 #include "tests/renderer/scene_builder.hpp"
 

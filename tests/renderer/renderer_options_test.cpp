@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/throws.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/device_of.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/facade/device_of.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
 

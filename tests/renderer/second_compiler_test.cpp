@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "renderer/difference.hpp"
-#include "renderer/inspection.hpp"
+#include "renderer/facade/difference.hpp"
+#include "renderer/facade/inspection.hpp"
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/memory.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/random_edits.hpp"

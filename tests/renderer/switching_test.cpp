@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;

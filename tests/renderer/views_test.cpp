@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "tests/renderer/path_fixture.hpp"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
 #include "tests/renderer/path_fixture.hpp"
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include <candela/headless_context.hpp>
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "renderer/gl/texture.hpp"
 #include "sandbox/scene.hpp"
 

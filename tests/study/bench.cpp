@@ -5,7 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "sandbox/scene.hpp"
 
 namespace candela::study {

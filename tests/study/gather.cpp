@@ -6,7 +6,7 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/scene/gltf.hpp>
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <candela/headless_context.hpp>
-#include "renderer/configuration/build_frame.hpp"
+#include "renderer/frame/build_frame.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "sandbox/capture.hpp"
 #include "sandbox/scene.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/passes/upload.hpp"
+#include "renderer/gpu/upload.hpp"
 
 namespace candela {
 namespace {

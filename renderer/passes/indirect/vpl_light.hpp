@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"

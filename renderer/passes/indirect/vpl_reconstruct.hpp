@@ -1,7 +1,7 @@
 #pragma once
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
 
 namespace candela {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/view/view.hpp"
 

@@ -11,7 +11,7 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "renderer/passes/lights/lights.hpp"
-#include "renderer/scene_check.hpp"
+#include "renderer/passes/scene/scene_check.hpp"
 
 namespace candela {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/passes/upload.hpp"
+#include "renderer/gpu/upload.hpp"
 
 namespace candela {
 namespace {

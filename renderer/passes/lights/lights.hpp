@@ -5,10 +5,10 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/sky/sky.hpp"
-#include "renderer/scene_check.hpp"
 
 namespace candela {
 

@@ -4,7 +4,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/view.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 
 namespace candela {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 
 namespace candela {
 

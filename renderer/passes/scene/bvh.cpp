@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/upload.hpp"
 #include "renderer/passes/scene/buffer_ranges.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
-#include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {

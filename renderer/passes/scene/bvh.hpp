@@ -4,8 +4,8 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "engine/bvh/bvh.hpp"
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/scene_hierarchy.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 

@@ -10,7 +10,7 @@
 #define STB_IMAGE_RESIZE_STATIC
 #include <stb/stb_image_resize.h>
 
-#include "renderer/passes/upload.hpp"
+#include "renderer/gpu/upload.hpp"
 
 namespace candela {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "renderer/gpu/upload.hpp"
 #include "renderer/passes/scene/material_upload.hpp"
 #include "renderer/passes/scene/mesh_upload.hpp"
-#include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {

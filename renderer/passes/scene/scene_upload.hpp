@@ -10,8 +10,8 @@
 #include <candela/scene/components.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 #include "engine/bvh/box.hpp"
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 
 namespace candela {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/bvh/bvh.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 
 namespace candela {

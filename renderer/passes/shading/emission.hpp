@@ -1,7 +1,7 @@
 #pragma once
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/shading/forward.hpp"
 #include "renderer/passes/view/view.hpp"

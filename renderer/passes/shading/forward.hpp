@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/shading/lighting.hpp"
 #include "renderer/passes/view/view.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"

@@ -4,8 +4,8 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
+#include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/sky/sky_patches.hpp"
-#include "renderer/scene_check.hpp"
 
 namespace candela {
 

@@ -8,7 +8,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "renderer/passes/r2_sequence.hpp"
+#include "renderer/passes/view/r2_sequence.hpp"
 
 namespace candela {
 namespace {

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/scene/components.hpp>
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/sky/sky_grid.hpp"
 
 namespace candela {

@@ -1,7 +1,7 @@
 #include "renderer/passes/sky/sky_vpls.hpp"
 
 #include <candela/graph/execute.hpp>
-#include "renderer/passes/upload.hpp"
+#include "renderer/gpu/upload.hpp"
 
 namespace candela {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/sky/sky.hpp"
 #include "renderer/passes/view/refinement.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 
 namespace candela {

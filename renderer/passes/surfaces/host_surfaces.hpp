@@ -2,7 +2,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/view.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/surfaces/gbuffer.hpp"
 #include "renderer/passes/view/view.hpp"
 

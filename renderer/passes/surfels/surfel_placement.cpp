@@ -10,7 +10,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "renderer/passes/r2_sequence.hpp"
+#include "renderer/passes/view/r2_sequence.hpp"
 
 namespace candela {
 namespace {

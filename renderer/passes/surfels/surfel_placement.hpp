@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 
 namespace candela {
 

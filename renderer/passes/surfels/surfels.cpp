@@ -10,8 +10,8 @@
 #include <span>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/upload.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
-#include "renderer/passes/upload.hpp"
 
 namespace candela {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/surfels/surfel_placement.hpp"
 #include "renderer/passes/view/refinement.hpp"

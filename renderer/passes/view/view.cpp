@@ -9,8 +9,8 @@
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "engine/scene/check.hpp"
-#include "renderer/passes/r2_sequence.hpp"
-#include "renderer/passes/upload.hpp"
+#include "renderer/gpu/upload.hpp"
+#include "renderer/passes/view/r2_sequence.hpp"
 
 namespace candela {
 namespace {

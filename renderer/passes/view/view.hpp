@@ -10,8 +10,8 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/view.hpp>
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 
 namespace candela {
 

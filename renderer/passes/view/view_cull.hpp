@@ -5,7 +5,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "engine/bvh/box.hpp"
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/view/view.hpp"
 

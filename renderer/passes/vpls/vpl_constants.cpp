@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/passes/upload.hpp"
+#include "renderer/gpu/upload.hpp"
 
 namespace candela {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
-#include "renderer/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/vpls/vpl_paths.hpp"
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/vpls/vpl_paths.hpp"
 

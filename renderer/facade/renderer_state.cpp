@@ -1,4 +1,4 @@
-#include "renderer/renderer_state.hpp"
+#include "renderer/facade/renderer_state.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -10,9 +10,9 @@
 
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
+#include "renderer/facade/target_check.hpp"
 #include "renderer/gl/host_state.hpp"
 #include "renderer/passes/output/tone_map.hpp"
-#include "renderer/target_check.hpp"
 
 namespace candela {
 namespace {

@@ -1,9 +1,9 @@
-#include "renderer/difference.hpp"
+#include "renderer/facade/difference.hpp"
 
+#include "renderer/facade/gpu_of.hpp"
+#include "renderer/facade/target_check.hpp"
 #include "renderer/gl/host_state.hpp"
-#include "renderer/gpu_of.hpp"
 #include "renderer/passes/inspect/difference.hpp"
-#include "renderer/target_check.hpp"
 
 namespace candela {
 

@@ -13,11 +13,11 @@
 #include "renderer/passes/lights/lights.hpp"
 #include "renderer/passes/lights/shadow_maps.hpp"
 #include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/surfaces/host_surfaces.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
-#include "renderer/scene_check.hpp"
 
 namespace candela {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "renderer/device_of.hpp"
+#include "renderer/facade/device_of.hpp"
+#include "renderer/facade/gpu_of.hpp"
+#include "renderer/facade/renderer_state.hpp"
 #include "renderer/gl/shader_source.hpp"
-#include "renderer/gpu_of.hpp"
-#include "renderer/renderer_state.hpp"
 
 namespace candela {
 

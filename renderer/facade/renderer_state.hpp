@@ -10,10 +10,10 @@
 #include <candela/api.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/renderer.hpp>
-#include "renderer/configuration/build_frame.hpp"
-#include "renderer/frame_budget.hpp"
+#include "renderer/frame/build_frame.hpp"
+#include "renderer/frame/frame_budget.hpp"
 #include "renderer/gl/graph_backend.hpp"
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 
 namespace candela {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "renderer/configuration/build_frame.hpp"
+#include "renderer/frame/build_frame.hpp"
 #include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/shading/lighting.hpp"
 #include "renderer/passes/sky/sky.hpp"

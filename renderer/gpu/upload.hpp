@@ -4,7 +4,7 @@
 #include <span>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 
 namespace candela {
 

@@ -11,7 +11,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
 #include "engine/scene/check.hpp"
-#include "renderer/log.hpp"
+#include "renderer/gpu/log.hpp"
 
 namespace candela {
 

@@ -1,8 +1,8 @@
-#include "renderer/configuration/build_view.hpp"
+#include "renderer/frame/build_view.hpp"
 
 #include <algorithm>
 
-#include "renderer/frame_budget.hpp"
+#include "renderer/frame/frame_budget.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/output/accumulate.hpp"
 #include "renderer/passes/output/tone_map.hpp"

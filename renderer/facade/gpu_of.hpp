@@ -2,7 +2,7 @@
 
 #include <candela/renderer.hpp>
 
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 
 namespace candela {
 

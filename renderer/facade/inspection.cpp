@@ -1,4 +1,4 @@
-#include "renderer/inspection.hpp"
+#include "renderer/facade/inspection.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "renderer/gpu_of.hpp"
+#include "renderer/facade/gpu_of.hpp"
 #include "renderer/passes/inspect/inspect.hpp"
 #include "renderer/passes/inspect/inspect_range.hpp"
 #include "shaders/inspect/heat_colours.glsl"

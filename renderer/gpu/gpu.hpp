@@ -12,8 +12,8 @@
 #include "renderer/gl/program.hpp"
 #include "renderer/gl/shader_source.hpp"
 #include "renderer/gl/texture.hpp"
-#include "renderer/log.hpp"
-#include "renderer/scene_check.hpp"
+#include "renderer/gpu/log.hpp"
+#include "renderer/passes/scene/scene_check.hpp"
 
 namespace candela {
 

@@ -1,4 +1,4 @@
-#include "renderer/scene_check.hpp"
+#include "renderer/passes/scene/scene_check.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "renderer/frame_budget.hpp"
+#include "renderer/frame/frame_budget.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
-#include "renderer/configuration/build_frame.hpp"
+#include "renderer/frame/build_frame.hpp"
 
 #include <candela/scene/hierarchy.hpp>
-#include "renderer/configuration/build_view.hpp"
+#include "renderer/frame/build_view.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/sky/sky_vpls.hpp"
 #include "renderer/passes/surfels/surfel_light.hpp"

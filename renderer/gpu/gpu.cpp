@@ -1,4 +1,4 @@
-#include "renderer/gpu.hpp"
+#include "renderer/gpu/gpu.hpp"
 
 #include <fmt/ranges.h>
 #include <array>

@@ -1,4 +1,4 @@
-#include "renderer/target_check.hpp"
+#include "renderer/facade/target_check.hpp"
 
 #include <fmt/format.h>
 
