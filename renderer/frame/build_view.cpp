@@ -51,7 +51,7 @@ struct FoundSurfaces {
 
 /// `asked`: parts that passes other than that which shades need.
 FoundSurfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
-                            const FrameView& view, const FrameParts& asked) {
+                            const ViewData& view, const FrameParts& asked) {
     if (stage == SurfaceStage::gbuffer || asked.albedo) {
         return FoundSurfaces(add_gbuffer(graph, gpu, seen, view));
     }
@@ -63,7 +63,7 @@ FoundSurfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, con
 
 /// The light lists of the shading path; none if each surface evaluates all lights. `depth` bounds tiles.
 std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                                    const LitScene& lit, const FrameView& view,
+                                    const LitScene& lit, const ViewData& view,
                                     std::optional<TextureHandle> depth) {
     const LightList list = info_of(configuration.path).lights;
     switch (shows_light(configuration.show) ? list : LightList::all) {
@@ -84,7 +84,7 @@ std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configura
 
 /// Irradiance that is gathered from the VPLs before surfaces are shaded.
 TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& visible, const SharedVpls& vpls,
-                          const FrameView& view, ViewHandles& out) {
+                          const ViewData& view, ViewHandles& out) {
     const GatheredVpls gathered =
         add_vpl_gather(graph, gpu, visible, vpls.light, vpls.order, view, out.interleave);
     if (out.interleave == 1) {
@@ -133,7 +133,7 @@ void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, 
     }
 }
 
-ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const FrameView& view,
+ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewData& view,
                       const FoundSurfaces& found) {
     ViewFrame parts{.index = index,
                     .size = view.size,
@@ -150,7 +150,7 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const FrameV
 
 /// The light that solid surfaces reflect: sets the parts `radiance` and `depth`.
 void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
-           const FrameView& view, const ViewHandles& out, ViewFrame& parts) {
+           const ViewData& view, const ViewHandles& out, ViewFrame& parts) {
     Lighting lighting = lighting_of(shared, out.lists);
     if (parts.indirect) {
         lighting.indirect = parts.indirect;
@@ -168,7 +168,7 @@ void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneDa
 
 /// What the surfaces and the sky emit.
 void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
-                 const FrameView& view, ViewFrame& parts) {
+                 const ViewData& view, ViewFrame& parts) {
     if (shows_emitters(shared)) {
         parts.radiance = add_emission(graph, gpu, seen, view, {*parts.radiance, *parts.depth});
     }
@@ -183,7 +183,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                 std::size_t index, ViewHandles& out) {
     const Configuration& configuration = shared.configuration;
     const ShadingPathInfo& path = info_of(configuration.path);
-    const FrameView view =
+    const ViewData view =
         add_view_upload(graph, gpu, out.camera, rendered_size(shape.target, shared.quality));
     const SceneData seen = add_view_cull(graph, gpu, shared.lit.scene, out.camera);
 

@@ -101,7 +101,7 @@ BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, Valu
 }
 
 GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                            const VplLight& light, BufferHandle<std::uint32_t> order, const FrameView& view,
+                            const VplLight& light, BufferHandle<std::uint32_t> order, const ViewData& view,
                             std::uint32_t interleave) {
     return graph.add("vpl-gather", [&](Pass& pass) {
         pass.read(surfaces.normal, {Usage::sampled, UNIT_NORMAL});

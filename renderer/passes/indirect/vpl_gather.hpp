@@ -42,6 +42,6 @@ struct GatheredVpls {
 /// view. `order`: of add_vpl_deal. `interleave`: n.
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                                           const VplLight& light, BufferHandle<std::uint32_t> order,
-                                          const FrameView& view, std::uint32_t interleave);
+                                          const ViewData& view, std::uint32_t interleave);
 
 }  // namespace candela

@@ -8,7 +8,7 @@ namespace {
 /// Inputs of all nodes.
 struct Pixels {
     VisibleSurfaces surfaces;
-    FrameView view;
+    ViewData view;
     std::uint32_t interleave;
     glm::uvec2 size;
 };
@@ -120,8 +120,7 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
 }  // namespace
 
 IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                                  const GatheredVpls& gathered, const VplLight& light,
-                                  const FrameView& view) {
+                                  const GatheredVpls& gathered, const VplLight& light, const ViewData& view) {
     const Pixels pixels{surfaces, view, gathered.interleave, view.size};
     const TextureHandle rows = add_rows(graph, gpu, pixels, gathered.irradiance);
     const Columns columns = add_columns(graph, gpu, pixels, rows);

@@ -23,6 +23,6 @@ struct IndirectLight {
 /// gathered light, the VPLs and the view.
 [[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
                                                 const GatheredVpls& gathered, const VplLight& light,
-                                                const FrameView& view);
+                                                const ViewData& view);
 
 }  // namespace candela

@@ -135,7 +135,7 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
 }
 
 BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
-                                             const FrameView& view, const LightGrid& grid) {
+                                             const ViewData& view, const LightGrid& grid) {
     return graph.add("tile-depths", [&](Pass& pass) {
         pass.read(depth, {Usage::sampled, UNIT_DEPTH});
         pass.read(grid.cells);

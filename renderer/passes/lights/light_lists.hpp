@@ -26,7 +26,7 @@ struct LightGrid {
 /// What light lists are made of.
 struct ListInputs {
     SceneLights lights;
-    FrameView view;
+    ViewData view;
     LightGrid grid;
 };
 

@@ -6,7 +6,7 @@
 namespace candela {
 
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
-                           const FrameView& view) {
+                           const ViewData& view) {
     return graph.add("deferred", [&](Pass& pass) {
         pass.read(gbuffer.albedo, {Usage::sampled, UNIT_ALBEDO});
         pass.read(gbuffer.normal, {Usage::sampled, UNIT_NORMAL});

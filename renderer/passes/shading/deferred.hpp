@@ -13,6 +13,6 @@ namespace candela {
 /// lighting_parts. Depends on the G-buffer, the lighting and the view. Returns reflected radiance, rgba32f,
 /// `view.size` pixels, alpha 1 where there is a surface.
 [[nodiscard]] TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer,
-                                         const Lighting& lighting, const FrameView& view);
+                                         const Lighting& lighting, const ViewData& view);
 
 }  // namespace candela

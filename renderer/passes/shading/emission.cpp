@@ -5,7 +5,7 @@
 
 namespace candela {
 
-TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view,
+TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
                            const ShadedSurfaces& surfaces) {
     return graph.add("emission", [&](Pass& pass) {
         read_surfaces(pass, scene);

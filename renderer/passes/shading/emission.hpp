@@ -12,6 +12,6 @@ namespace candela {
 /// emit. Blended surfaces add it themselves: add_transparent. Depends on meshes, materials, view, and the
 /// shaded surfaces. Returns the radiance, modified in place.
 [[nodiscard]] TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                         const FrameView& view, const ShadedSurfaces& surfaces);
+                                         const ViewData& view, const ShadedSurfaces& surfaces);
 
 }  // namespace candela

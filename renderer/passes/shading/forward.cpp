@@ -6,7 +6,7 @@
 namespace candela {
 
 ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                           const FrameView& view, std::optional<TextureHandle> prepass_depth) {
+                           const ViewData& view, std::optional<TextureHandle> prepass_depth) {
     return graph.add("forward", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_lighting(pass, lighting);

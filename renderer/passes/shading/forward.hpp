@@ -21,7 +21,7 @@ struct ShadedSurfaces {
 /// lighting_parts. With the depth of a pre-pass, only visible fragments are shaded. Depends on meshes,
 /// materials, lighting, view and `prepass_depth`. Textures of `view.size` pixels.
 [[nodiscard]] ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                         const Lighting& lighting, const FrameView& view,
+                                         const Lighting& lighting, const ViewData& view,
                                          std::optional<TextureHandle> prepass_depth);
 
 }  // namespace candela

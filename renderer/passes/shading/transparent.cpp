@@ -62,7 +62,7 @@ void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
 }  // namespace
 
 TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                              const FrameView& view, const ShadedSurfaces& surfaces, bool emission) {
+                              const ViewData& view, const ShadedSurfaces& surfaces, bool emission) {
     return graph.add("transparent", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_lighting(pass, lighting);

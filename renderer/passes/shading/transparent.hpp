@@ -22,7 +22,7 @@ namespace candela {
 /// order of the mesh. Blended surfaces receive direct and indirect light and shadows, but cast no shadows and
 /// place no VPLs. While the scene has any, gl::GlError is thrown for more than 16,384 lights.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                            const Lighting& lighting, const FrameView& view,
+                                            const Lighting& lighting, const ViewData& view,
                                             const ShadedSurfaces& surfaces, bool emission);
 
 }  // namespace candela

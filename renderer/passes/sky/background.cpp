@@ -52,7 +52,7 @@ TextureHandle add_sky_picture(FrameGraph& graph, Gpu& gpu, const Sky& sky) {
 
 }  // namespace
 
-TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const FrameView& view,
+TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const ViewData& view,
                              const ShadedSurfaces& surfaces) {
     const TextureHandle picture = add_sky_picture(graph, gpu, sky);
     return graph.add("background", [&](Pass& pass) {

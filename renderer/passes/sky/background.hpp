@@ -11,7 +11,7 @@ namespace candela {
 /// Adds nodes `sky-picture` (upload: the picture of the sky, rgba16f; radiance above 65,504 is cut to it) and
 /// `background` (raster): writes the radiance of the sky, alpha 0, where there is no surface. Depends on sky,
 /// view and depth.
-[[nodiscard]] TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const FrameView& view,
+[[nodiscard]] TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const ViewData& view,
                                            const ShadedSurfaces& surfaces);
 
 }  // namespace candela

@@ -5,8 +5,7 @@
 
 namespace candela {
 
-VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                  const FrameView& view) {
+VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
     return graph.add("depth-prepass", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_view(pass, view);

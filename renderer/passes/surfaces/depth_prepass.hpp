@@ -16,6 +16,6 @@ struct VisibleSurfaces {
 /// Adds node `depth-prepass` (raster): depth and normals of the opaque and masked surfaces, without holes of
 /// masks. Depends on meshes, materials and view. Textures of `view.size` pixels.
 [[nodiscard]] VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
-                                                const FrameView& view);
+                                                const ViewData& view);
 
 }  // namespace candela

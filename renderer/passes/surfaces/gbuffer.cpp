@@ -11,7 +11,7 @@ Gbuffer write_gbuffer(FrameGraph& graph, Pass& pass, glm::uvec2 size) {
             .depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target)};
 }
 
-Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view) {
+Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
     return graph.add("gbuffer", [&](Pass& pass) {
         read_surfaces(pass, scene);
         read_view(pass, view);

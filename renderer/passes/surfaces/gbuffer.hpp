@@ -20,6 +20,6 @@ struct Gbuffer {
 /// Adds node `gbuffer` (raster): the opaque and masked surfaces, without holes of masks. Depends on meshes,
 /// materials and view. Textures of `view.size` pixels. The octahedral encoding of normals is that of Cigolle
 /// et al. (2014): shaders/maths.glsl.
-[[nodiscard]] Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const FrameView& view);
+[[nodiscard]] Gbuffer add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view);
 
 }  // namespace candela

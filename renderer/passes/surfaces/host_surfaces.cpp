@@ -18,7 +18,7 @@ HostSurfaceInputs import_host_surfaces(FrameGraph& graph) {
 }
 
 Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
-                          const FrameView& view) {
+                          const ViewData& view) {
     return graph.add("host-surfaces", [&](Pass& pass) {
         pass.read(inputs.albedo, {Usage::sampled, UNIT_ALBEDO});
         pass.read(inputs.normal, {Usage::sampled, UNIT_NORMAL});

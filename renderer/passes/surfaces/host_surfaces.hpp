@@ -20,6 +20,6 @@ struct HostSurfaceInputs {
 /// Adds node `host-surfaces` (raster): a G-buffer from surfaces that the host has drawn. Each pixel takes the
 /// texel of the host's at its centre. Depends on the host's textures and the view.
 [[nodiscard]] Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
-                                        const FrameView& view);
+                                        const ViewData& view);
 
 }  // namespace candela

@@ -143,8 +143,7 @@ ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> req
     });
 }
 
-FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
-                          glm::uvec2 size) {
+ViewData add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera, glm::uvec2 size) {
     return graph.add("view-upload", [&](Pass& pass) {
         pass.read(camera);
         pass.parameter(size);
@@ -153,11 +152,11 @@ FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraV
         pass.run([=, &gpu](Execution& run) {
             upload_one(gpu, run, constants, view_constants(run.value(camera), size));
         });
-        return FrameView{camera, constants, size};
+        return ViewData{camera, constants, size};
     });
 }
 
-void read_view(Pass& pass, const FrameView& view) {
+void read_view(Pass& pass, const ViewData& view) {
     pass.read(view.constants, {Usage::uniform, UNIFORMS_VIEW});
 }
 

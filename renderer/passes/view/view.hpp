@@ -45,8 +45,8 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request);
 /// Adds node `view` (CPU): the requested view. Depends on the request, Camera and Transform.
 [[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);
 
-/// The view of a frame, for the CPU and for shaders.
-struct FrameView {
+/// What passes read of the view that they render, on the CPU and in shaders.
+struct ViewData {
     ValueHandle<CameraView> camera;
     BufferHandle<gpu::ViewConstants> constants;
     glm::uvec2 size{1};  ///< of the rendered picture, pixels
@@ -54,10 +54,10 @@ struct FrameView {
 
 /// Adds node `view-upload` (CPU, then upload): the constants in shaders/view/view.glsl, for a picture of
 /// `size` pixels. Depends on `camera`.
-[[nodiscard]] FrameView add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
-                                        glm::uvec2 size);
+[[nodiscard]] ViewData add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraView> camera,
+                                       glm::uvec2 size);
 
 /// For a pass whose shader includes view.glsl.
-void read_view(Pass& pass, const FrameView& view);
+void read_view(Pass& pass, const ViewData& view);
 
 }  // namespace candela
