@@ -37,26 +37,15 @@ bool shows_emitters(const SharedFrame& shared) {
     return shared.contents.emitters && shows_sources(shared.configuration.show);
 }
 
-/// Surfaces that are found before they are shaded, if any.
-struct FoundSurfaces {
-    std::optional<TextureHandle> depth;
-    std::optional<TextureHandle> normal;
-    std::optional<TextureHandle> albedo;
-
-    FoundSurfaces() = default;
-    explicit FoundSurfaces(const Gbuffer& gbuffer)
-        : depth(gbuffer.depth), normal(gbuffer.normal), albedo(gbuffer.albedo) {}
-    explicit FoundSurfaces(const VisibleSurfaces& visible) : depth(visible.depth), normal(visible.normal) {}
-};
-
-/// `asked`: parts that passes other than that which shades need.
-FoundSurfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
-                            const ViewData& view, const FrameParts& asked) {
+/// The surfaces as far as they are found before they are shaded. `asked`: parts that passes other than that
+/// which shades need.
+Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
+                       const ViewData& view, const FrameParts& asked) {
     if (stage == SurfaceStage::gbuffer || asked.albedo) {
-        return FoundSurfaces(add_gbuffer(graph, gpu, seen, view));
+        return add_gbuffer(graph, gpu, seen, view);
     }
     if (stage == SurfaceStage::forward_after_prepass || asked.depth || asked.normal) {
-        return FoundSurfaces(add_depth_prepass(graph, gpu, seen, view));
+        return add_depth_prepass(graph, gpu, seen, view);
     }
     return {};
 }
@@ -83,14 +72,14 @@ std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configura
 }
 
 /// Irradiance that is gathered from the VPLs before surfaces are shaded.
-TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& visible, const SharedVpls& vpls,
+TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const SharedVpls& vpls,
                           const ViewData& view, ViewHandles& out) {
     const GatheredVpls gathered =
-        add_vpl_gather(graph, gpu, visible, vpls.light, vpls.order, view, out.interleave);
+        add_vpl_gather(graph, gpu, surfaces, vpls.light, vpls.order, view, out.interleave);
     if (out.interleave == 1) {
         return gathered.irradiance;
     }
-    out.indirect = add_vpl_reconstruct(graph, gpu, visible, gathered, vpls.light, view);
+    out.indirect = add_vpl_reconstruct(graph, gpu, surfaces, gathered, vpls.light, view);
     return out.indirect->irradiance;
 }
 
@@ -134,18 +123,23 @@ void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, 
 }
 
 ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewData& view,
-                      const FoundSurfaces& found) {
+                      const Surfaces& surfaces) {
     ViewFrame parts{.index = index,
                     .size = view.size,
                     .view = view.camera,
-                    .depth = found.depth,
-                    .normal = found.normal,
-                    .albedo = found.albedo,
+                    .depth = surfaces.depth,
+                    .normal = surfaces.normal,
+                    .albedo = surfaces.albedo,
                     .lights = shared.lit.buffers.lights};
     if (shared.vpls) {
         parts.vpls = shared.vpls->light.vpls.vpls;
     }
     return parts;
+}
+
+/// The surfaces, of which extensions may have replaced parts.
+Surfaces surfaces_of(const ViewFrame& parts) {
+    return {.depth = parts.depth, .normal = parts.normal, .albedo = parts.albedo};
 }
 
 /// The light that solid surfaces reflect: sets the parts `radiance` and `depth`.
@@ -157,23 +151,23 @@ void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneDa
         lighting.vpls.reset();
     }
     if (out.host || info_of(shared.configuration.path).surfaces == SurfaceStage::gbuffer) {
-        const Gbuffer gbuffer{*parts.albedo, *parts.normal, *parts.depth};
-        parts.radiance = add_deferred(graph, gpu, gbuffer, lighting, view);
+        parts.radiance = add_deferred(graph, gpu, surfaces_of(parts), lighting, view);
         return;
     }
-    const ShadedSurfaces shaded = add_forward(graph, gpu, seen, lighting, view, parts.depth);
+    const ForwardResults shaded = add_forward(graph, gpu, seen, lighting, view, surfaces_of(parts));
     parts.radiance = shaded.radiance;
-    parts.depth = shaded.depth;
+    parts.depth = shaded.surfaces.depth;
 }
 
 /// What the surfaces and the sky emit.
 void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
                  const ViewData& view, ViewFrame& parts) {
     if (shows_emitters(shared)) {
-        parts.radiance = add_emission(graph, gpu, seen, view, {*parts.radiance, *parts.depth});
+        parts.radiance = add_emission(graph, gpu, seen, view, surfaces_of(parts), *parts.radiance);
     }
     if (shared.lit.sky && shows_sources(shared.configuration.show)) {
-        parts.radiance = add_background(graph, gpu, *shared.lit.sky, view, {*parts.radiance, *parts.depth});
+        parts.radiance =
+            add_background(graph, gpu, *shared.lit.sky, view, surfaces_of(parts), *parts.radiance);
     }
 }
 
@@ -197,8 +191,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                                          shared.vpls->count > most_asked(shared.vpls->light));
     asked.depth |= gathers;
 
-    const FoundSurfaces found = out.host ? FoundSurfaces(add_host_surfaces(graph, gpu, *out.host, view))
-                                         : find_surfaces(graph, gpu, path.surfaces, seen, view, asked);
+    const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
+                                    : find_surfaces(graph, gpu, path.surfaces, seen, view, asked);
     ViewFrame parts = first_parts(shared, index, view, found);
     extend(graph, shared, ExtensionPlace::after_surfaces, parts);
 
@@ -211,7 +205,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.list_entries = out.lists->entries;
     }
     if (gathers) {
-        parts.indirect = gather_vpls(graph, gpu, {*parts.depth, *parts.normal}, *shared.vpls, view, out);
+        parts.indirect = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, out);
     }
 
     shade(graph, gpu, shared, seen, view, out, parts);
@@ -221,8 +215,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {
         const Lighting lighting = lighting_of_blended(graph, gpu, shared, out);
-        parts.radiance = add_transparent(graph, gpu, seen, lighting, view, {*parts.radiance, *parts.depth},
-                                         shows_emitters(shared));
+        parts.radiance = add_transparent(graph, gpu, seen, lighting, view, surfaces_of(parts),
+                                         *parts.radiance, shows_emitters(shared));
     }
     if (out.averaged) {
         parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);

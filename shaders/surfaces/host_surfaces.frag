@@ -13,8 +13,8 @@ uniform float empty_depth;
 uniform uint normal_encoding;    // see NormalEncoding
 uniform mat3 world_from_normal;
 
-layout(location = 0) out vec4 albedo;
-layout(location = 1) out vec2 packed_normal;
+layout(location = 0) out vec2 packed_normal;
+layout(location = 1) out vec4 albedo;
 
 vec3 decoded_normal(vec3 stored) {
     if (normal_encoding == 2u) return octahedral_decode(stored.xy);

@@ -100,12 +100,11 @@ BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, Valu
     });
 }
 
-GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
-                            const VplLight& light, BufferHandle<std::uint32_t> order, const ViewData& view,
+GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const VplLight& light,
+                            BufferHandle<std::uint32_t> order, const ViewData& view,
                             std::uint32_t interleave) {
     return graph.add("vpl-gather", [&](Pass& pass) {
-        pass.read(surfaces.normal, {Usage::sampled, UNIT_NORMAL});
-        pass.read(surfaces.depth, {Usage::sampled, UNIT_DEPTH});
+        read_geometry(pass, surfaces);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
         read_vpl_light(pass, light);
         read_view(pass, view);

@@ -8,7 +8,7 @@
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/indirect/vpl_light.hpp"
-#include "renderer/passes/surfaces/depth_prepass.hpp"
+#include "renderer/passes/surfaces/surfaces.hpp"
 #include "renderer/passes/view/view.hpp"
 
 namespace candela {
@@ -38,9 +38,9 @@ struct GatheredVpls {
 
 /// Adds node `vpl-gather` (compute): each pixel sums the light of the VPLs in the share of its class (Wald et
 /// al., "Interactive Global Illumination using Fast Ray Tracing", 2002; Segovia et al., "Non-interleaved
-/// Deferred Shading of Interleaved Sample Patterns", 2006). Depends on the VPLs, the visible surfaces and the
-/// view. `order`: of add_vpl_deal. `interleave`: n.
-[[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+/// Deferred Shading of Interleaved Sample Patterns", 2006). Depends on the VPLs, depth and normal of the
+/// surfaces, and the view. `order`: of add_vpl_deal. `interleave`: n.
+[[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                           const VplLight& light, BufferHandle<std::uint32_t> order,
                                           const ViewData& view, std::uint32_t interleave);
 

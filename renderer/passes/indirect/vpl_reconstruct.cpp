@@ -7,15 +7,14 @@ namespace {
 
 /// Inputs of all nodes.
 struct Pixels {
-    VisibleSurfaces surfaces;
+    Surfaces surfaces;
     ViewData view;
     std::uint32_t interleave;
     glm::uvec2 size;
 };
 
 void read_pixels(Pass& pass, const Pixels& pixels) {
-    pass.read(pixels.surfaces.normal, {Usage::sampled, UNIT_NORMAL});
-    pass.read(pixels.surfaces.depth, {Usage::sampled, UNIT_DEPTH});
+    read_geometry(pass, pixels.surfaces);
     read_view(pass, pixels.view);
     pass.parameter(pixels.interleave);
 }
@@ -119,7 +118,7 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
 
 }  // namespace
 
-IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                   const GatheredVpls& gathered, const VplLight& light, const ViewData& view) {
     const Pixels pixels{surfaces, view, gathered.interleave, view.size};
     const TextureHandle rows = add_rows(graph, gpu, pixels, gathered.irradiance);

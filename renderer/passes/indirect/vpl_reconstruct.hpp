@@ -19,9 +19,9 @@ struct IndirectLight {
 /// nodes `vpl-reconstruct-rows` and `vpl-reconstruct` (compute): separable filters along rows, then along
 /// columns. Each class of pixels counts once, interpolated linearly between its nearest pixels that lie on
 /// the same surface. Adds nodes `vpl-lacking` and `vpl-fill` (compute): pixels for which too few classes have
-/// such pixels are listed, and evaluate half of the VPLs themselves. They depend on the visible surfaces, the
-/// gathered light, the VPLs and the view.
-[[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const VisibleSurfaces& surfaces,
+/// such pixels are listed, and evaluate half of the VPLs themselves. They depend on depth and normal of the
+/// surfaces, the gathered light, the VPLs and the view.
+[[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                                 const GatheredVpls& gathered, const VplLight& light,
                                                 const ViewData& view);
 

@@ -269,7 +269,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         return out;
     });
     return graph.add("shadow-maps", [&](Pass& pass) {
-        const std::vector<ResourceHandle> surfaces = read_surfaces(pass, scene);
+        const std::vector<ResourceHandle> surfaces = read_meshes(pass, scene);
         pass.read(plan);
         pass.parameter(settings);
         const ShadowPrograms programs{

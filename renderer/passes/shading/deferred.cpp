@@ -5,12 +5,10 @@
 
 namespace candela {
 
-TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Gbuffer& gbuffer, const Lighting& lighting,
+TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const Lighting& lighting,
                            const ViewData& view) {
     return graph.add("deferred", [&](Pass& pass) {
-        pass.read(gbuffer.albedo, {Usage::sampled, UNIT_ALBEDO});
-        pass.read(gbuffer.normal, {Usage::sampled, UNIT_NORMAL});
-        pass.read(gbuffer.depth, {Usage::sampled, UNIT_DEPTH});
+        read_geometry_and_material(pass, surfaces);
         read_lighting(pass, lighting);
         read_view(pass, view);
         const gl::Program& program = gpu.program({"shading/deferred.comp"}, lighting_variant(lighting));

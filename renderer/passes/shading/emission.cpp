@@ -6,19 +6,19 @@
 namespace candela {
 
 TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
-                           const ShadedSurfaces& surfaces) {
+                           const Surfaces& surfaces, TextureHandle radiance) {
     return graph.add("emission", [&](Pass& pass) {
-        read_surfaces(pass, scene);
+        read_meshes(pass, scene);
         read_view(pass, view);
-        pass.read(surfaces.depth, Usage::depth_target);
+        test_depth(pass, surfaces);
         const SurfacePrograms programs = surface_programs(gpu, "shading/emission.frag", {"EMISSION"});
-        const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
+        const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu](Execution& run) {
             gpu.gl().Enable(GL_DEPTH_TEST);
             begin_adding(gpu);
             draw_surfaces(gpu, run, scene, programs, [](const auto& group) { return group.emits; });
         });
-        return radiance;
+        return out;
     });
 }
 

@@ -5,25 +5,24 @@
 
 namespace candela {
 
-ShadedSurfaces add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                           const ViewData& view, std::optional<TextureHandle> prepass_depth) {
+ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
+                           const ViewData& view, const Surfaces& surfaces) {
     return graph.add("forward", [&](Pass& pass) {
-        read_surfaces(pass, scene);
+        read_meshes(pass, scene);
         read_lighting(pass, lighting);
         read_view(pass, view);
         const SurfacePrograms programs =
             surface_programs(gpu, "shading/forward.frag", lighting_variant(lighting));
-        ShadedSurfaces out;
-        out.radiance =
-            pass.write(graph.texture("radiance", {view.size, Format::rgba32f}), Usage::colour_target);
-        if (prepass_depth) {
-            pass.read(*prepass_depth, Usage::depth_target);
-            out.depth = *prepass_depth;
+        ForwardResults out{.surfaces = surfaces,
+                           .radiance = pass.write(graph.texture("radiance", {view.size, Format::rgba32f}),
+                                                  Usage::colour_target)};
+        if (surfaces.depth) {
+            test_depth(pass, surfaces);
         } else {
-            out.depth =
+            out.surfaces.depth =
                 pass.write(graph.texture("depth", {view.size, Format::depth32f}), Usage::depth_target);
         }
-        pass.run([=, &gpu, after_prepass = prepass_depth.has_value()](Execution& run) {
+        pass.run([=, &gpu, after_prepass = surfaces.depth.has_value()](Execution& run) {
             if (after_prepass) {
                 begin_visible_surfaces(gpu);
             } else {

@@ -62,14 +62,15 @@ void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
 }  // namespace
 
 TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
-                              const ViewData& view, const ShadedSurfaces& surfaces, bool emission) {
+                              const ViewData& view, const Surfaces& surfaces, TextureHandle radiance,
+                              bool emission) {
     return graph.add("transparent", [&](Pass& pass) {
-        read_surfaces(pass, scene);
+        read_meshes(pass, scene);
         read_lighting(pass, lighting);
         pass.read(scene.placement);
         pass.read(view.camera);
         read_view(pass, view);
-        pass.read(surfaces.depth, Usage::depth_target);
+        test_depth(pass, surfaces);
         std::vector<std::string> variant = lighting_variant(lighting);
         variant.emplace_back("BLENDED");
         if (emission) {
@@ -77,7 +78,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         }
         const gl::Program& program =
             gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant);
-        const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
+        const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::vector<SortedGroup> sorted =
                 back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
@@ -94,7 +95,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
                 draw_blended(gpu, *next.group);
             }
         });
-        return radiance;
+        return out;
     });
 }
 

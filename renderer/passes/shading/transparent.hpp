@@ -3,8 +3,8 @@
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
-#include "renderer/passes/shading/forward.hpp"
 #include "renderer/passes/shading/lighting.hpp"
+#include "renderer/passes/surfaces/surfaces.hpp"
 #include "renderer/passes/view/view.hpp"
 
 namespace candela {
@@ -12,9 +12,9 @@ namespace candela {
 /// Adds node `transparent` (raster): draws the blended surfaces over the solid ones: radiance = alpha · lit +
 /// (1 - alpha) · behind (Porter and Duff's "over" operator, 1984), where alpha is that of the base colour and
 /// `lit` the radiance that `forward` gives for an opaque surface, and with `emission` what it emits. It is
-/// the same in every shading path. Blended surfaces are tested against `surfaces.depth` and do not write
-/// depth. Returns the radiance with them. Depends on meshes, placement, materials, lighting, view and
-/// `surfaces`.
+/// the same in every shading path. Blended surfaces are tested against the depth of the solid `surfaces` and
+/// do not write depth. Returns the radiance with them. Depends on meshes, placement, materials, lighting,
+/// view, that depth and `radiance`.
 ///
 /// Drawables are drawn one by one, from far to near by the view-space depth of the centre of their bounding
 /// box; equal depths keep their order. The back faces of a double-sided drawable are drawn before its front
@@ -23,6 +23,6 @@ namespace candela {
 /// place no VPLs. While the scene has any, gl::GlError is thrown for more than 16,384 lights.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                             const Lighting& lighting, const ViewData& view,
-                                            const ShadedSurfaces& surfaces, bool emission);
+                                            const Surfaces& surfaces, TextureHandle radiance, bool emission);
 
 }  // namespace candela

@@ -53,15 +53,15 @@ TextureHandle add_sky_picture(FrameGraph& graph, Gpu& gpu, const Sky& sky) {
 }  // namespace
 
 TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const ViewData& view,
-                             const ShadedSurfaces& surfaces) {
+                             const Surfaces& surfaces, TextureHandle radiance) {
     const TextureHandle picture = add_sky_picture(graph, gpu, sky);
     return graph.add("background", [&](Pass& pass) {
         pass.read(sky.environment);
         pass.read(picture, {Usage::sampled, UNIT_SKY});
         read_view(pass, view);
-        pass.read(surfaces.depth, Usage::depth_target);
+        test_depth(pass, surfaces);
         const gl::Program& program = gpu.program({"output/fullscreen.vert", "sky/background.frag"});
-        const TextureHandle radiance = pass.write(surfaces.radiance, Usage::colour_target);
+        const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const Environment& environment = run.value(sky.environment);
             program.set("radiance_scale", environment.radiance);
@@ -71,7 +71,7 @@ TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const 
             gpu.gl().DepthMask(GL_FALSE);
             gpu.draw_fullscreen(program);
         });
-        return radiance;
+        return out;
     });
 }
 

@@ -5,15 +5,13 @@
 
 namespace candela {
 
-VisibleSurfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
+Surfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
     return graph.add("depth-prepass", [&](Pass& pass) {
-        read_surfaces(pass, scene);
+        read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =
             surface_programs(gpu, "surfaces/depth_prepass.frag", {"WITH_NORMALS"});
-        const VisibleSurfaces out{
-            .depth = pass.write(graph.texture("depth", {view.size, Format::depth32f}), Usage::depth_target),
-            .normal = pass.write(graph.texture("normal", {view.size, Format::rg32f}), Usage::colour_target)};
+        const Surfaces out = write_geometry(graph, pass, view.size);
         pass.run([=, &gpu](Execution& run) {
             begin_surfaces(gpu);
             draw_surfaces(gpu, run, scene, programs);

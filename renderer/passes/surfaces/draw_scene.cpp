@@ -23,7 +23,7 @@ void bind_image(const Gpu& gpu, GLuint unit, const MaterialTexture* image) {
 
 }  // namespace
 
-std::vector<ResourceHandle> read_surfaces(Pass& pass, const SceneData& scene) {
+std::vector<ResourceHandle> read_meshes(Pass& pass, const SceneData& scene) {
     pass.read(scene.layout);
     pass.read(scene.vertices, Usage::vertex);
     pass.read(scene.instance_ids, Usage::vertex);

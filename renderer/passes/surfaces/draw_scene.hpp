@@ -12,7 +12,7 @@ namespace candela {
 // Helpers for passes that rasterise the scene.
 
 /// Declares the reads of a pass that draws surfaces with mesh_surface.vert or shadow_maps.vert. Returns them.
-std::vector<ResourceHandle> read_surfaces(Pass& pass, const SceneData& scene);
+std::vector<ResourceHandle> read_meshes(Pass& pass, const SceneData& scene);
 
 /// Sets up the vertex array for the meshes: vertices, instance numbers and indices.
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);

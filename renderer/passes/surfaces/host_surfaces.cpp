@@ -17,8 +17,8 @@ HostSurfaceInputs import_host_surfaces(FrameGraph& graph) {
             .description = graph.import_value<HostSurfaces>("host surfaces")};
 }
 
-Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
-                          const ViewData& view) {
+Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
+                           const ViewData& view) {
     return graph.add("host-surfaces", [&](Pass& pass) {
         pass.read(inputs.albedo, {Usage::sampled, UNIT_ALBEDO});
         pass.read(inputs.normal, {Usage::sampled, UNIT_NORMAL});
@@ -26,7 +26,7 @@ Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& 
         pass.read(inputs.description);
         read_view(pass, view);
         const gl::Program& program = gpu.program({"output/fullscreen.vert", "surfaces/host_surfaces.frag"});
-        const Gbuffer out = write_gbuffer(graph, pass, view.size);
+        const Surfaces out = write_geometry_and_material(graph, pass, view.size);
         pass.run([=, &gpu, &program, description = inputs.description](Execution& run) {
             const HostSurfaces& host = run.value(description);
             program.set("view_from_host_clip", glm::inverse(host.clip_from_view));

@@ -3,7 +3,7 @@
 #include <candela/graph/frame_graph.hpp>
 #include <candela/view.hpp>
 #include "renderer/gpu/gpu.hpp"
-#include "renderer/passes/surfaces/gbuffer.hpp"
+#include "renderer/passes/surfaces/surfaces.hpp"
 #include "renderer/passes/view/view.hpp"
 
 namespace candela {
@@ -17,9 +17,9 @@ struct HostSurfaceInputs {
 };
 [[nodiscard]] HostSurfaceInputs import_host_surfaces(FrameGraph& graph);
 
-/// Adds node `host-surfaces` (raster): a G-buffer from surfaces that the host has drawn. Each pixel takes the
-/// texel of the host's at its centre. Depends on the host's textures and the view.
-[[nodiscard]] Gbuffer add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
-                                        const ViewData& view);
+/// Adds node `host-surfaces` (raster): all parts of the surfaces that the host has drawn. Each pixel takes
+/// the texel of the host's at its centre. Depends on the host's textures and the view.
+[[nodiscard]] Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
+                                         const ViewData& view);
 
 }  // namespace candela

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include <candela/graph/frame_graph.hpp>
+
+namespace candela {
+
+/// The visible solid (opaque and masked) surfaces of a view: textures of its size. Depth gives their
+/// positions. Parts that no pass needs are missing.
+struct Surfaces {
+    std::optional<TextureHandle> depth{};  ///< depth32f, reversed; 0 where there is no surface
+    /// rg32f, octahedral encoding (Cigolle et al., "A Survey of Efficient Representations for Independent
+    /// Unit Vectors", 2014), world space. It is the face normal and the shading normal: see surface.glsl.
+    std::optional<TextureHandle> normal{};
+    std::optional<TextureHandle> albedo{};  ///< the material: rgba16f, linear
+};
+
+/// Declares depth and normal of `size` pixels as attachments that `pass` writes. Shaders write the normal to
+/// location 0.
+[[nodiscard]] Surfaces write_geometry(FrameGraph& graph, Pass& pass, glm::uvec2 size);
+/// The same with the albedo, location 1.
+[[nodiscard]] Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, glm::uvec2 size);
+
+/// For a pass whose shader includes visible_surface.glsl: reads depth and normal.
+void read_geometry(Pass& pass, const Surfaces& surfaces);
+/// The same with the albedo, at UNIT_ALBEDO.
+void read_geometry_and_material(Pass& pass, const Surfaces& surfaces);
+
+/// Reads the depth for the depth test; the pass does not write it.
+void test_depth(Pass& pass, const Surfaces& surfaces);
+
+}  // namespace candela
