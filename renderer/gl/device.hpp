@@ -11,6 +11,7 @@
 #include <candela/gl_error.hpp>
 #include "renderer/gl/debug_log.hpp"
 #include "renderer/gl/functions.hpp"
+#include "renderer/gl/raster_state.hpp"
 
 namespace candela::gl {
 
@@ -70,6 +71,11 @@ class Device {
     /// output.
     [[nodiscard]] std::vector<DebugMessage> take_messages();
 
+    /// How the next draws rasterise.
+    void set_raster_state(const RasterState& state) { raster_states_.set(functions_, state); }
+    /// Sets the default state, also where others have changed it.
+    void reset_raster_state() { raster_states_.reset(functions_); }
+
     /// Waits until the GPU has done everything so far.
     void finish() const { functions_.Finish(); }
 
@@ -85,6 +91,7 @@ class Device {
     std::vector<std::string> extensions_;  ///< sorted
     Limits limits_;
     ObjectCounts live_;
+    RasterStates raster_states_;
     std::optional<DebugLog> log_;
 };
 

@@ -84,14 +84,7 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
         gl.PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, index, static_cast<GLsizei>(name.size()), name.data());
     }
     timer_.begin_pass(index);
-    gl.Disable(GL_DEPTH_TEST);
-    gl.Disable(GL_CULL_FACE);
-    gl.Disable(GL_BLEND);
-    // Mesa rejects draws to several targets while dual-source blend factors are set, even with blending off.
-    gl.BlendFunc(GL_ONE, GL_ZERO);
-    gl.FrontFace(GL_CCW);
-    gl.DepthFunc(GL_GREATER);
-    gl.DepthMask(GL_TRUE);
+    device_->reset_raster_state();
 }
 
 void GraphBackend::end_pass() {

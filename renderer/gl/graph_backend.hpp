@@ -14,9 +14,7 @@
 namespace candela::gl {
 
 /// Implements the frame graph's back end in OpenGL. An ObjectId is the object's GL name. Before each pass it
-/// binds the pass's attachments and resets the state that passes may change: depth test, culling and blending
-/// off, front faces counter-clockwise, depth function GL_GREATER (reversed depth), depth writes on, and a
-/// viewport of the attachments' size.
+/// binds the pass's attachments, sets the viewport to their size, and sets the default RasterState.
 class GraphBackend final : public Backend {
  public:
     /// The device must outlive the back end.

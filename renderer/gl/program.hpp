@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@
 
 #include "renderer/gl/objects.hpp"
 #include "renderer/gl/shader_source.hpp"
+#include "renderer/gl/uniforms.hpp"
 
 namespace candela::gl {
 
@@ -32,6 +34,9 @@ class Program : public Object {
             const std::set<std::string>& declared);
 
     void use() const;
+    /// Uses the program for the next draws or dispatches, with these uniforms. Throws ProgramError if one
+    /// that is active is missing or given twice, and if no shader file declares one.
+    void use(const Uniforms& uniforms) const;
 
     /// Whether `uniform` is an active uniform outside of uniform blocks.
     [[nodiscard]] bool has(std::string_view uniform) const;
@@ -59,9 +64,15 @@ class Program : public Object {
     void find_uniforms();
     /// -1, which OpenGL ignores, for uniforms that are not active.
     [[nodiscard]] GLint location(std::string_view uniform) const;
+    void require_each_once(const Uniforms& uniforms) const;
 
     std::string label_;
-    std::map<std::string, GLint, std::less<>> locations_;  // -1: declared, but not active
+    struct Known {
+        GLint location = -1;  // -1: declared, but not active
+        std::optional<std::size_t>
+            value_index{};  // of Uniform::Value; none: not active, a texture or an image
+    };
+    std::map<std::string, Known, std::less<>> uniforms_;
 };
 
 /// Compiles and links shader files. The file extension gives the stage: .vert, .frag, .geom or .comp.

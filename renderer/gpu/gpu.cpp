@@ -82,8 +82,28 @@ const gl::Program& Gpu::program(const std::vector<std::string>& stages,
     return programs_.emplace(std::move(key), gl::compile(device_, shaders_, stages, defines)).first->second;
 }
 
-void Gpu::draw_fullscreen(const gl::Program& program) const {
-    program.use();
+void Gpu::set_target(const Target& target) const {
+    const glm::ivec2 origin(target.origin);
+    const glm::ivec2 size(target.size);
+    gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
+    gl().Viewport(origin.x, origin.y, size.x, size.y);
+}
+
+void Gpu::clear_colour() const {
+    gl().ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+    gl().Clear(GL_COLOR_BUFFER_BIT);
+}
+
+void Gpu::clear_colour_and_depth() const {
+    gl().ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+    gl().ClearDepthf(0.0F);
+    gl().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+void Gpu::draw_fullscreen(const gl::Program& program, const gl::Uniforms& uniforms,
+                          const gl::RasterState& state) {
+    program.use(uniforms);
+    device_.set_raster_state(state);
     no_vertices_.bind();
     gl().DrawArrays(GL_TRIANGLES, 0, 3);
 }

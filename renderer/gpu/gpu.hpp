@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <candela/renderer_options.hpp>
+#include <candela/view.hpp>
 #include "renderer/gl/device.hpp"
 #include "renderer/gl/objects.hpp"
 #include "renderer/gl/program.hpp"
@@ -74,8 +75,16 @@ class Gpu {
     /// What of a world is rendered.
     [[nodiscard]] SceneCheck& scene_check() { return scene_check_; }
 
+    /// Draws to a target of the host's.
+    void set_target(const Target& target) const;
+    /// Clears the colours of the bound targets to 0.
+    void clear_colour() const;
+    /// Clears them, and depth to 0: infinitely far.
+    void clear_colour_and_depth() const;
+
     /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
-    void draw_fullscreen(const gl::Program& program) const;
+    void draw_fullscreen(const gl::Program& program, const gl::Uniforms& uniforms = {},
+                         const gl::RasterState& state = {});
 
  private:
     Log log_;

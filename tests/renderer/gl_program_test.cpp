@@ -198,6 +198,40 @@ void main() {
               std::vector<float>{1, -2, 3, 4, 5, 6, 7, -8, -9, 10, 11, 12, 13, 14, 15, 16, 17, 18});
     }
 
+    TEST_CASE_FIXTURE(GlFixture, "a program is used with each of its active uniforms, once and of its type") {
+        const std::vector<EmbeddedShader> files = {{"a.comp", R"(
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer Results { float results[]; };
+layout(binding = 0) uniform sampler2D picture;
+uniform float x;
+uniform uint y;
+#ifdef SKY
+uniform vec3 sky;
+#endif
+void main() {
+    results[0] = x + float(y) + texelFetch(picture, ivec2(0), 0).r;
+#ifdef SKY
+    results[0] += sky.z;
+#endif
+}
+)"}};
+        const Program program = compile(device, ShaderLibrary{files}, {"a.comp"});
+        const auto error_with = [&](const Uniforms& uniforms) -> std::string {
+            try {
+                program.use(uniforms);
+            } catch (const ProgramError& error) {
+                return error.what();
+            }
+            return {};
+        };
+        CHECK(error_with({{"x", 1.0F}, {"y", 2U}}).empty());
+        CHECK(error_with({{"x", 1.0F}, {"y", 2U}, {"sky", glm::vec3(0.0F)}}).empty());
+        CHECK(error_with({{"x", 1.0F}}) == "a.comp: uniform 'y' is not set");
+        CHECK(error_with({{"x", 1.0F}, {"y", 2}}) == "a.comp: uniform 'y' has another type");
+        CHECK(error_with({{"x", 1.0F}, {"y", 2U}, {"x", 3.0F}}) == "a.comp: uniform 'x' is set twice");
+        CHECK(error_with({{"x", 1.0F}, {"y", 2U}, {"z", 0.0F}}) == "a.comp: no uniform 'z'");
+    }
+
     TEST_CASE_FIXTURE(GlFixture, "a triangle with float and integer vertex attributes is drawn") {
         const std::vector<EmbeddedShader> files = {
             {"flat.vert",

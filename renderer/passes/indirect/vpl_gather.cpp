@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 
 namespace candela {
 namespace {

@@ -1,5 +1,6 @@
 #include "renderer/passes/inspect/inspect.hpp"
 
+#include "renderer/gpu/compute_steps.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
@@ -18,14 +19,15 @@ TextureHandle add_inspect(FrameGraph& graph, Gpu& gpu, const Inspected& inspecte
         pass.run([=, &gpu, &program](Execution& run) {
             const Shown shown = shown_of(run, inspected, run.value(settings));
             run.reserve(picture, {shown.picture, Format::rgba8});
-            const InspectedTexels texels(gpu, run, program, inspected, shown);
+            const InspectedTexels texels(gpu, run, inspected, shown);
             const ValueRange range = shown.range.value_or(ValueRange{});
-            program.set("extent", shown.extent);
-            program.set("texel_size", shown.texel_size);
-            program.set("mapping", static_cast<std::uint32_t>(shown.mapping));
-            program.set("automatic_range", !shown.range);
-            program.set("chosen_range", glm::vec2(range.low, range.high));
-            gpu.gl().DispatchCompute(groups(shown.picture.x, side), groups(shown.picture.y, side), 1);
+            const gl::Uniforms mapped{{"extent", shown.extent},
+                                      {"texel_size", shown.texel_size},
+                                      {"mapping", static_cast<std::uint32_t>(shown.mapping)},
+                                      {"automatic_range", !shown.range},
+                                      {"chosen_range", glm::vec2(range.low, range.high)}};
+            ComputeSteps(gpu).run(program, {groups(shown.picture.x, side), groups(shown.picture.y, side)},
+                                  texels.uniforms() + mapped);
         });
         return picture;
     });

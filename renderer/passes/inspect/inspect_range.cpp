@@ -1,5 +1,7 @@
 #include "renderer/passes/inspect/inspect_range.hpp"
 
+#include "renderer/gpu/compute_steps.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
@@ -10,7 +12,7 @@ BufferHandle<glm::vec2> add_inspect_range(FrameGraph& graph, Gpu& gpu, const Ins
         read_inspected(pass, inspected);
         pass.read(settings);
         const gl::Program& program = inspecting_program(gpu, "inspect/inspect_range.comp", inspected);
-        const auto ranges = pass.write(graph.buffer<glm::vec2>("inspected ranges", 1, Lifetime::persistent),
+        const auto ranges = pass.write(growing_buffer<glm::vec2>(graph, "inspected ranges"),
                                        {Usage::storage, BINDING_INSPECTED_RANGES});
         pass.run([=, &gpu, &program](Execution& run) {
             const Shown shown = shown_of(run, inspected, run.value(settings));
@@ -18,13 +20,12 @@ BufferHandle<glm::vec2> add_inspect_range(FrameGraph& graph, Gpu& gpu, const Ins
                 return;
             }
             run.reserve(ranges, shown.texels.y + 1);
-            const InspectedTexels texels(gpu, run, program, inspected, shown);
-            program.set("from_zero", shown.mapping == Mapping::colour);
-            program.set("finish", false);
-            gpu.gl().DispatchCompute(shown.texels.y, 1, 1);
-            gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-            program.set("finish", true);
-            gpu.gl().DispatchCompute(1, 1, 1);
+            const InspectedTexels texels(gpu, run, inspected, shown);
+            const gl::Uniforms common =
+                texels.uniforms() + gl::Uniforms{{"from_zero", shown.mapping == Mapping::colour}};
+            ComputeSteps steps(gpu);
+            steps.run(program, {shown.texels.y}, common + gl::Uniforms{{"finish", false}});
+            steps.run(program, {}, common + gl::Uniforms{{"finish", true}});
         });
         return ranges;
     });

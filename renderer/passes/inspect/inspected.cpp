@@ -186,22 +186,21 @@ const gl::Program& inspecting_program(Gpu& gpu, std::string_view file, const Ins
     return gpu.program({std::string(file)}, defined);
 }
 
-InspectedTexels::InspectedTexels(Gpu& gpu, const Execution& run, const gl::Program& program,
-                                 const Inspected& inspected, const Shown& shown) {
+InspectedTexels::InspectedTexels(Gpu& gpu, const Execution& run, const Inspected& inspected,
+                                 const Shown& shown)
+    : uniforms_{{"texels", shown.texels},
+                {"channels", shown.channels},
+                {"has_metres", shown.depth_terms.has_value()},
+                {"depth_terms", shown.depth_terms.value_or(glm::vec4(0.0F))}} {
     if (inspected.texture) {
         view_ = gl::Texture(gpu.device(), "inspected", run.object(inspected.texture->handle), shown.desc,
                             {.mip = shown.mip, .layer = shown.layer});
         view_.bind(UNIT_INSPECTED);
         gpu.nearest().bind(UNIT_INSPECTED);
     } else {
-        program.set("first_slice", shown.layer);
-        program.set("end_slice", shown.layer + shown.slices);
+        uniforms_ =
+            uniforms_ + gl::Uniforms{{"first_slice", shown.layer}, {"end_slice", shown.layer + shown.slices}};
     }
-    program.set("texels", shown.texels);
-    program.set("channels", shown.channels);
-    program.set("has_metres", shown.depth_terms.has_value());
-    program.set("depth_terms", shown.depth_terms.value_or(glm::vec4(0.0F)));
-    program.use();
 }
 
 }  // namespace candela

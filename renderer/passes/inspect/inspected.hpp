@@ -103,14 +103,17 @@ struct Shown {
 /// The program of this compute shader for the resource. It includes inspected.glsl.
 [[nodiscard]] const gl::Program& inspecting_program(Gpu& gpu, std::string_view file,
                                                     const Inspected& inspected);
-/// Binds the texture and sets the uniforms of inspected.glsl.
+/// Binds the texture.
 class InspectedTexels {
  public:
-    InspectedTexels(Gpu& gpu, const Execution& run, const gl::Program& program, const Inspected& inspected,
-                    const Shown& shown);
+    InspectedTexels(Gpu& gpu, const Execution& run, const Inspected& inspected, const Shown& shown);
+
+    /// Of inspected.glsl.
+    [[nodiscard]] const gl::Uniforms& uniforms() const { return uniforms_; }
 
  private:
     gl::Texture view_;  // of the mip and layer
+    gl::Uniforms uniforms_;
 };
 
 }  // namespace candela

@@ -17,8 +17,7 @@ TextureHandle add_accumulate(FrameGraph& graph, Gpu& gpu, TextureHandle radiance
         const TextureHandle mean = pass.write(blank, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::uint32_t before = run.history_valid(past) ? run.value(averaged) : 0;
-            program.set("count", before + 1);
-            gpu.draw_fullscreen(program);
+            gpu.draw_fullscreen(program, {{"count", before + 1}});
         });
         return mean;
     });

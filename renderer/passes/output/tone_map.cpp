@@ -30,19 +30,14 @@ void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHand
     });
 }
 
-void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, const Target& target,
-                      const Display& display) {
-    const glm::ivec2 origin(target.origin);
-    const glm::ivec2 size(target.size);
-    gpu.gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
-    gpu.gl().Viewport(origin.x, origin.y, size.x, size.y);
-    program.set("target_origin", glm::vec2(origin));
-    program.set("target_size", glm::vec2(size));
-    program.set("exposure", display.exposure);
-    program.set("curve", display.curve);
-    program.set("encoded", display.encoded);
-    program.set("opaque", display.opaque);
-    gpu.draw_fullscreen(program);
+void draw_tone_mapped(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display) {
+    gpu.set_target(target);
+    gpu.draw_fullscreen(program, {{"target_origin", glm::vec2(target.origin)},
+                                  {"target_size", glm::vec2(target.size)},
+                                  {"exposure", display.exposure},
+                                  {"curve", display.curve},
+                                  {"encoded", display.encoded},
+                                  {"opaque", display.opaque}});
 }
 
 const gl::Program& tone_map_program(Gpu& gpu) {

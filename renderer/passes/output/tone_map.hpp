@@ -28,8 +28,7 @@ void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHand
 
 /// Does the work of the node, also for pictures from elsewhere. The texture at UNIT_RADIANCE is drawn to the
 /// target, with bilinear scaling if its size differs. Changes the draw framebuffer and the viewport.
-void draw_tone_mapped(const Gpu& gpu, const gl::Program& program, const Target& target,
-                      const Display& display);
+void draw_tone_mapped(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display);
 [[nodiscard]] const gl::Program& tone_map_program(Gpu& gpu);
 
 }  // namespace candela

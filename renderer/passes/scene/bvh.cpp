@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/scene/buffer_ranges.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 
@@ -91,11 +91,6 @@ void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
     upload<gpu::BvhNode>(gpu, run, buffers.nodes, nodes);
 }
 
-template <class T>
-BufferHandle<T> updated_buffer(FrameGraph& graph, Pass& pass, std::string_view name) {
-    return pass.update(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
-}
-
 void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
     constexpr float most = 1e-3F;  // metres: thinner walls are rare
     const float step = metrics.coordinate_step();
@@ -116,8 +111,9 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
         pass.read(scene.placement);
         // Shared, because the hierarchy is changed in place.
         const auto kept = pass.update(graph.value<std::shared_ptr<UploadedHierarchy>>("hierarchy"));
-        const HierarchyBuffers buffers{updated_buffer<gpu::BvhNode>(graph, pass, "bvh nodes"),
-                                       updated_buffer<gpu::TraceTriangle>(graph, pass, "triangles")};
+        const HierarchyBuffers buffers{
+            pass.update(growing_buffer<gpu::BvhNode>(graph, "bvh nodes"), Usage::copy),
+            pass.update(growing_buffer<gpu::TraceTriangle>(graph, "triangles"), Usage::copy)};
         const auto metrics = pass.write(graph.value<SceneMetrics>("scene metrics"));
         pass.run([=, &gpu, layout_handle = scene.layout, placement_handle = scene.placement](Execution& run) {
             const SceneLayout& layout = run.value(layout_handle);

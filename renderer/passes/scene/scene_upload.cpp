@@ -9,7 +9,7 @@
 
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/scene/material_upload.hpp"
 #include "renderer/passes/scene/mesh_upload.hpp"
 
@@ -197,13 +197,13 @@ void upload_instances(const Gpu& gpu, Execution& run, const SceneData& scene) {
 
 template <class T>
 BufferHandle<T> write_upload(FrameGraph& graph, Pass& pass, std::string_view name) {
-    return pass.write(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
+    return pass.write(growing_buffer<T>(graph, name), Usage::copy);
 }
 
 /// The same for a buffer whose content stays between frames.
 template <class T>
 BufferHandle<T> update_upload(FrameGraph& graph, Pass& pass, std::string_view name) {
-    return pass.update(graph.buffer<T>(name, 1, Lifetime::persistent), Usage::copy);
+    return pass.update(growing_buffer<T>(graph, name), Usage::copy);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 
 namespace candela {
 

@@ -64,12 +64,9 @@ TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const 
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const Environment& environment = run.value(sky.environment);
-            program.set("radiance_scale", environment.radiance);
-            program.set("rotation", environment.rotation);
-            gpu.gl().Enable(GL_DEPTH_TEST);
-            gpu.gl().DepthFunc(GL_EQUAL);  // depth 0: no surface
-            gpu.gl().DepthMask(GL_FALSE);
-            gpu.draw_fullscreen(program);
+            gpu.draw_fullscreen(
+                program, {{"radiance_scale", environment.radiance}, {"rotation", environment.rotation}},
+                {.depth_test = gl::DepthTest::equal, .writes_depth = false});  // depth 0: no surface
         });
         return out;
     });

@@ -1,7 +1,7 @@
 #include "renderer/passes/sky/sky_vpls.hpp"
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 
 namespace candela {
 
@@ -13,9 +13,8 @@ SkyPatches add_sky_patches(FrameGraph& graph, const Gpu& gpu, const Sky& sky,
         if (refinement) {
             pass.read(*refinement);
         }
-        const SkyPatches out{
-            .vpls = pass.write(graph.buffer<gpu::Vpl>("sky patches", 1, Lifetime::persistent), Usage::copy),
-            .count = pass.write(graph.value<std::uint32_t>("sky patch count"))};
+        const SkyPatches out{.vpls = pass.write(growing_buffer<gpu::Vpl>(graph, "sky patches"), Usage::copy),
+                             .count = pass.write(graph.value<std::uint32_t>("sky patch count"))};
         pass.run([=, &gpu](Execution& run) {
             const std::uint32_t sample = refinement ? run.value(*refinement).set / frames_a_surfel_set : 0;
             const std::vector<gpu::Vpl> vpls =

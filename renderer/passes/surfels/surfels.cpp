@@ -10,7 +10,7 @@
 #include <span>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 
 namespace candela {

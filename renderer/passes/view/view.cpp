@@ -9,7 +9,7 @@
 #include <candela/graph/execute.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "engine/scene/check.hpp"
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/view/r2_sequence.hpp"
 
 namespace candela {
@@ -147,8 +147,8 @@ ViewData add_view_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<CameraVi
     return graph.add("view-upload", [&](Pass& pass) {
         pass.read(camera);
         pass.parameter(size);
-        const auto constants = pass.write(
-            graph.buffer<gpu::ViewConstants>("view constants", 1, Lifetime::persistent), Usage::copy);
+        const auto constants =
+            pass.write(growing_buffer<gpu::ViewConstants>(graph, "view constants"), Usage::copy);
         pass.run([=, &gpu](Execution& run) {
             upload_one(gpu, run, constants, view_constants(run.value(camera), size));
         });

@@ -4,7 +4,7 @@
 #include <array>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 
 namespace candela {
 namespace {
@@ -54,8 +54,7 @@ SceneData add_view_cull(FrameGraph& graph, const Gpu& gpu, const SceneData& scen
         pass.read(scene.placement);
         pass.read(camera);
         SceneData out = scene;
-        out.draws =
-            pass.write(graph.buffer<gpu::DrawCommand>("visible draws", 1, Lifetime::persistent), Usage::copy);
+        out.draws = pass.write(growing_buffer<gpu::DrawCommand>(graph, "visible draws"), Usage::copy);
         pass.run([=, &gpu](Execution& run) {
             upload<gpu::DrawCommand>(
                 gpu, run, out.draws,

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/upload.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
 
 namespace candela {
 namespace {

@@ -1,0 +1,23 @@
+#include "renderer/gpu/compute_steps.hpp"
+
+namespace candela {
+
+void ComputeSteps::run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms) {
+    begin(program, uniforms);
+    gpu_.gl().DispatchCompute(groups.x, groups.y, groups.z);
+}
+
+void ComputeSteps::run_indirect(const gl::Program& program, const gl::Uniforms& uniforms) {
+    begin(program, uniforms);
+    gpu_.gl().DispatchComputeIndirect(0);
+}
+
+void ComputeSteps::begin(const gl::Program& program, const gl::Uniforms& uniforms) {
+    if (!is_first_) {
+        gpu_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    }
+    is_first_ = false;
+    program.use(uniforms);
+}
+
+}  // namespace candela

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "renderer/gpu/gpu.hpp"
+
+namespace candela {
+
+/// Number of work groups of a dispatch.
+struct Groups {
+    std::uint32_t x = 1;
+    std::uint32_t y = 1;
+    std::uint32_t z = 1;
+};
+
+/// The dispatches of a pass. Each sees what those before it have written to buffers and images.
+class ComputeSteps {
+ public:
+    explicit ComputeSteps(const Gpu& gpu) : gpu_(gpu) {}
+
+    void run(const gl::Program& program, const Groups& groups, const gl::Uniforms& uniforms = {});
+    /// The pass reads the number of groups from the start of a buffer, with Usage::indirect.
+    void run_indirect(const gl::Program& program, const gl::Uniforms& uniforms = {});
+
+ private:
+    void begin(const gl::Program& program, const gl::Uniforms& uniforms);
+
+    const Gpu& gpu_;
+    bool is_first_ = true;
+};
+
+}  // namespace candela
