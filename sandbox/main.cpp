@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <variant>
 
-#include "sandbox/options.hpp"
+#include "sandbox/command_line/options.hpp"
+#include "sandbox/command_line/run.hpp"
 #include "sandbox/reference/live_reference.hpp"
-#include "sandbox/session.hpp"
 
 using namespace candela::sandbox;
 

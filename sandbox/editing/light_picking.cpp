@@ -6,7 +6,7 @@
 
 #include <candela/scene/components.hpp>
 #include "sandbox/editing/placing.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/scene/components.hpp>
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -6,7 +6,7 @@
 #include "sandbox/editing/flying.hpp"
 #include "sandbox/editing/orbit_camera.hpp"
 #include "sandbox/editing/viewport.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -14,9 +14,9 @@
 #include <glm/trigonometric.hpp>
 
 #include <candela/scene/components.hpp>
-#include "sandbox/environment.hpp"
+#include "sandbox/headless/report.hpp"
 #include "sandbox/panels/controls.hpp"
-#include "sandbox/report.hpp"
+#include "sandbox/scene/environment.hpp"
 
 namespace candela::sandbox {
 

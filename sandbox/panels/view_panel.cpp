@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "sandbox/choose_configuration.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/panels/controls.hpp"
 
 namespace candela::sandbox {

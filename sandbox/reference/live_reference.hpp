@@ -10,7 +10,7 @@
 
 #include <candela/ecs/world.hpp>
 #include "sandbox/files/picture.hpp"
-#include "sandbox/picture_error.hpp"
+#include "sandbox/files/picture_error.hpp"
 
 namespace candela::sandbox {
 

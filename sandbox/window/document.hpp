@@ -3,11 +3,11 @@
 #include <memory>
 #include <optional>
 
-#include "sandbox/drag_recorder.hpp"
+#include "sandbox/animation/drag_recorder.hpp"
+#include "sandbox/animation/playback.hpp"
+#include "sandbox/command_line/options.hpp"
 #include "sandbox/editing/interaction.hpp"
-#include "sandbox/options.hpp"
-#include "sandbox/playback.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

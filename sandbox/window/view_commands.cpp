@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sandbox/choose_configuration.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
 
 namespace candela::sandbox {
 

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include <candela/configuration.hpp>
-#include "sandbox/config_watch.hpp"
-#include "sandbox/options.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/command_line/options.hpp"
+#include "sandbox/files/config_watch.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "sandbox/window/reference_view.hpp"
 #include "sandbox/window/scene_loader.hpp"
 #include "sandbox/window/window.hpp"

@@ -8,8 +8,8 @@
 #include <glm/common.hpp>
 
 #include <candela/scene/components.hpp>
-#include "sandbox/animation_script.hpp"
-#include "sandbox/script_writer.hpp"
+#include "sandbox/animation/animation_script.hpp"
+#include "sandbox/animation/script_writer.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace candela;

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <cstdlib>
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 #include <algorithm>
 #include <chrono>

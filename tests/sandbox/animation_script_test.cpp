@@ -1,4 +1,4 @@
-#include "sandbox/animation_script.hpp"
+#include "sandbox/animation/animation_script.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -12,7 +12,7 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {

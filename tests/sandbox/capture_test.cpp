@@ -1,4 +1,4 @@
-#include "sandbox/capture.hpp"
+#include "sandbox/headless/capture.hpp"
 
 #include <algorithm>
 #include <vector>

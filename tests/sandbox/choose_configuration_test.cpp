@@ -1,4 +1,4 @@
-#include "sandbox/choose_configuration.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
 
 #include <fstream>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "sandbox/config_watch.hpp"
+#include "sandbox/files/config_watch.hpp"
 
 #include <fstream>
 #include <string>

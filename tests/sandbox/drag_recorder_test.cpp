@@ -1,4 +1,4 @@
-#include "sandbox/drag_recorder.hpp"
+#include "sandbox/animation/drag_recorder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/components.hpp>
-#include "sandbox/animation_script.hpp"
-#include "sandbox/script_writer.hpp"
+#include "sandbox/animation/animation_script.hpp"
+#include "sandbox/animation/script_writer.hpp"
 #include "tests/seed.hpp"
 
 namespace candela::sandbox {

@@ -1,4 +1,4 @@
-#include "sandbox/environment.hpp"
+#include "sandbox/scene/environment.hpp"
 
 #include <doctest/doctest.h>
 #include <stb/stb_image_write.h>

@@ -1,4 +1,4 @@
-#include "sandbox/options.hpp"
+#include "sandbox/command_line/options.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -10,7 +10,7 @@
 #include <doctest/doctest.h>
 
 #include <candela/version.hpp>
-#include "sandbox/messages.hpp"
+#include "sandbox/command_line/messages.hpp"
 
 namespace candela::sandbox {
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "sandbox/choose_configuration.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/panels/open_panel.hpp"

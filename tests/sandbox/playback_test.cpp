@@ -1,4 +1,4 @@
-#include "sandbox/playback.hpp"
+#include "sandbox/animation/playback.hpp"
 
 #include <doctest/doctest.h>
 

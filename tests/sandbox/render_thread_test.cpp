@@ -8,7 +8,7 @@
 #include <candela/headless_context.hpp>
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gl/texture.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

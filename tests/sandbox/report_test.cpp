@@ -1,4 +1,4 @@
-#include "sandbox/report.hpp"
+#include "sandbox/headless/report.hpp"
 
 #include <limits>
 #include <string>

@@ -1,4 +1,4 @@
-#include "sandbox/save_watch.hpp"
+#include "sandbox/files/save_watch.hpp"
 
 #include <fstream>
 #include <string>

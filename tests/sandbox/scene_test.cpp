@@ -1,4 +1,4 @@
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 #include <cmath>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "sandbox/script_writer.hpp"
+#include "sandbox/animation/script_writer.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -12,8 +12,8 @@
 #include <rapidcheck.h>
 #include <glm/geometric.hpp>
 
-#include "sandbox/animation_script.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/animation/animation_script.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "sandbox/choose_configuration.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
 
 namespace candela::sandbox {
 

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "sandbox/headless.hpp"
+#include "sandbox/headless/headless.hpp"
 
 namespace candela::sandbox {
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <candela/headless_context.hpp>
-#include "sandbox/animation_script.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/animation/animation_script.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/study/frame_hash.hpp"
 #include "tests/study/rendering.hpp"
 #include "tests/study/scene_hash.hpp"

@@ -1,6 +1,6 @@
 #include <thread>
 
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/study/bench.hpp"
 #include "tests/study/reference_files.hpp"
 #include "tests/study/scene_hash.hpp"

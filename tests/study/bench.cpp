@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "renderer/facade/device_of.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::study {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "sandbox/animation.hpp"
+#include "sandbox/animation/animation.hpp"
 
 namespace candela::study {
 

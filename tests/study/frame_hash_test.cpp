@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "sandbox/animation_script.hpp"
+#include "sandbox/animation/animation_script.hpp"
 
 using namespace candela;
 using namespace candela::study;

@@ -9,8 +9,8 @@
 #include <candela/headless_context.hpp>
 #include "renderer/frame/build_frame.hpp"
 #include "renderer/passes/view/view.hpp"
-#include "sandbox/capture.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/headless/capture.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
 #include "tests/study/reference_files.hpp"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "sandbox/picture_error.hpp"
+#include "sandbox/files/picture_error.hpp"
 
 namespace candela::study {
 

@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include <candela/headless_context.hpp>
-#include "sandbox/animation_script.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/animation/animation_script.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/study/bench.hpp"
 #include "tests/study/study.hpp"
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/study/reference_files.hpp"
 #include "tests/study/scene_hash.hpp"
 #include "tests/study/study.hpp"

@@ -1,4 +1,4 @@
-#include "sandbox/command_line.hpp"
+#include "sandbox/command_line/command_line.hpp"
 
 #include <utility>
 #include <vector>
@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 
 #include <candela/version.hpp>
-#include "sandbox/exit_status.hpp"
-#include "sandbox/messages.hpp"
+#include "sandbox/command_line/exit_status.hpp"
+#include "sandbox/command_line/messages.hpp"
 
 namespace candela::sandbox {
 

@@ -7,7 +7,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "sandbox/exit_status.hpp"
-#include "sandbox/options.hpp"
+#include "sandbox/command_line/exit_status.hpp"
+#include "sandbox/command_line/options.hpp"
 #include "sandbox/window/reference_view.hpp"
 
 namespace candela::sandbox {

@@ -1,4 +1,4 @@
-#include "sandbox/save_watch.hpp"
+#include "sandbox/files/save_watch.hpp"
 
 #include <algorithm>
 #include <system_error>

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <candela/configuration.hpp>
-#include "sandbox/options.hpp"
-#include "sandbox/save_watch.hpp"
+#include "sandbox/command_line/options.hpp"
+#include "sandbox/files/save_watch.hpp"
 
 namespace candela::sandbox {
 

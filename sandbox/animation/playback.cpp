@@ -1,4 +1,4 @@
-#include "sandbox/playback.hpp"
+#include "sandbox/animation/playback.hpp"
 
 namespace candela::sandbox {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "sandbox/animation.hpp"
+#include "sandbox/animation/animation.hpp"
 
 namespace candela::sandbox {
 

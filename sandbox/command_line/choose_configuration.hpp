@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include <candela/configuration.hpp>
-#include "sandbox/options.hpp"
+#include "sandbox/command_line/options.hpp"
 
 namespace candela::sandbox {
 

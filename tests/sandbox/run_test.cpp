@@ -1,4 +1,4 @@
-#include "sandbox/session.hpp"
+#include "sandbox/command_line/run.hpp"
 
 #include <fstream>
 #include <string>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sandbox/files/picture.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {

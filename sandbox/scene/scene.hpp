@@ -10,7 +10,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/gltf.hpp>
-#include "sandbox/animation.hpp"
+#include "sandbox/animation/animation.hpp"
 
 namespace candela::sandbox {
 

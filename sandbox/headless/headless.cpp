@@ -1,4 +1,4 @@
-#include "sandbox/headless.hpp"
+#include "sandbox/headless/headless.hpp"
 
 #include <cstdio>
 #include <stdexcept>
@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/output_file.hpp"
-#include "sandbox/messages.hpp"
 
 namespace candela::sandbox {
 

@@ -1,4 +1,4 @@
-#include "sandbox/drag_recorder.hpp"
+#include "sandbox/animation/drag_recorder.hpp"
 
 #include <algorithm>
 #include <cmath>

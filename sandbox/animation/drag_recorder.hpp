@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/ecs/world.hpp>
-#include "sandbox/animation.hpp"
+#include "sandbox/animation/animation.hpp"
 
 namespace candela::sandbox {
 

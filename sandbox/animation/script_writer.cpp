@@ -1,4 +1,4 @@
-#include "sandbox/script_writer.hpp"
+#include "sandbox/animation/script_writer.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -11,7 +11,7 @@
 #include "engine/import/shortest.hpp"
 #include "engine/json/json.hpp"
 #include "sandbox/files/output_file.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -1,4 +1,4 @@
-#include "sandbox/animation.hpp"
+#include "sandbox/animation/animation.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "sandbox/environment.hpp"
+#include "sandbox/scene/environment.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-#include "sandbox/config_watch.hpp"
+#include "sandbox/files/config_watch.hpp"
 
 #include <stdexcept>
 #include <utility>
 
-#include "sandbox/choose_configuration.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
 
 namespace candela::sandbox {
 

@@ -1,4 +1,4 @@
-#include "sandbox/report.hpp"
+#include "sandbox/headless/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <candela/version.hpp>
 #include "engine/json/json.hpp"
-#include "sandbox/picture_error.hpp"
+#include "sandbox/files/picture_error.hpp"
 
 namespace candela::sandbox {
 

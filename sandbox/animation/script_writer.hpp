@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "sandbox/animation.hpp"
+#include "sandbox/animation/animation.hpp"
 
 namespace candela::sandbox {
 

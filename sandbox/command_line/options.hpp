@@ -10,8 +10,8 @@
 
 #include <candela/configuration.hpp>
 #include <candela/scene/gltf.hpp>
-#include "sandbox/command_line.hpp"
-#include "sandbox/environment.hpp"
+#include "sandbox/command_line/command_line.hpp"
+#include "sandbox/scene/environment.hpp"
 
 namespace candela::sandbox {
 

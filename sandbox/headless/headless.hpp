@@ -5,10 +5,10 @@
 
 #include <candela/headless_context.hpp>
 #include <candela/renderer.hpp>
-#include "sandbox/capture.hpp"
-#include "sandbox/options.hpp"
-#include "sandbox/report.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/command_line/options.hpp"
+#include "sandbox/headless/capture.hpp"
+#include "sandbox/headless/report.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

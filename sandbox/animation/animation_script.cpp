@@ -1,4 +1,4 @@
-#include "sandbox/animation_script.hpp"
+#include "sandbox/animation/animation_script.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@
 #include "engine/readable.hpp"
 #include "sandbox/files/input_file.hpp"
 #include "sandbox/files/output_file.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

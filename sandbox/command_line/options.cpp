@@ -1,4 +1,4 @@
-#include "sandbox/options.hpp"
+#include "sandbox/command_line/options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sandbox/choose_configuration.hpp"
-#include "sandbox/exit_status.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
+#include "sandbox/command_line/exit_status.hpp"
 #include "sandbox/files/output_file.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -1,4 +1,4 @@
-#include "sandbox/picture_error.hpp"
+#include "sandbox/files/picture_error.hpp"
 
 #include <algorithm>
 #include <cmath>

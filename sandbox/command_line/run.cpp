@@ -1,4 +1,4 @@
-#include "sandbox/session.hpp"
+#include "sandbox/command_line/run.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -18,15 +18,15 @@
 #include <candela/gl_error.hpp>
 #include <candela/headless_context.hpp>
 #include "engine/readable.hpp"
-#include "sandbox/animation_script.hpp"
-#include "sandbox/choose_configuration.hpp"
-#include "sandbox/config_watch.hpp"
-#include "sandbox/environment.hpp"
-#include "sandbox/exit_status.hpp"
-#include "sandbox/headless.hpp"
-#include "sandbox/messages.hpp"
-#include "sandbox/report.hpp"
-#include "sandbox/scene.hpp"
+#include "sandbox/animation/animation_script.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
+#include "sandbox/command_line/exit_status.hpp"
+#include "sandbox/command_line/messages.hpp"
+#include "sandbox/files/config_watch.hpp"
+#include "sandbox/headless/headless.hpp"
+#include "sandbox/headless/report.hpp"
+#include "sandbox/scene/environment.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "sandbox/window/window.hpp"
 #include "sandbox/window/window_session.hpp"
 
