@@ -26,7 +26,7 @@ void main() {
     // OpenGL discards stores outside the image.
     for (int s = 0; s < SURFACES; ++s) {
         vec4 sum = depth[s] > 0.0 ? vec4(reflected[s], 1.0) : vec4(0.0);
-        if (lights_before > 0u) sum.rgb += imageLoad(radiance, block_pixel(s)).rgb;
+        if (part_first > 0u) sum.rgb += imageLoad(radiance, block_pixel(s)).rgb;
         imageStore(radiance, block_pixel(s), sum);
     }
 }

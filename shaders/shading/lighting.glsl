@@ -6,15 +6,13 @@
 #include "lights/light_list.glsl"
 #include "lights/lights.glsl"
 #include "lights/shadow.glsl"
+#include "loop_part.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
 
 #ifndef SURFACES
 #define SURFACES 1
 #endif
-
-uniform uint lights_before;  // entries of each list, in the dispatches or draws before this one
-uniform uint lights_now;     // at most
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 
@@ -33,13 +31,13 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
 #ifdef LIGHT_LIST_PER_SURFACE
     for (int s = 0; s < SURFACES; ++s) {
         LightListRange list = light_list_at(pixels[s], surfaces[s].position);
-        for (uint i = lights_before; i < min(list.size, lights_before + lights_now); ++i) {
+        for (uint i = part_first; i < min(list.size, part_first + part_size); ++i) {
             irradiance[s] += irradiance_from_light(lights[light_list_entry(list, i)], surfaces[s]);
         }
     }
 #else
     LightListRange list = light_list_at(pixels[0], surfaces[0].position);
-    for (uint i = lights_before; i < min(list.size, lights_before + lights_now); ++i) {
+    for (uint i = part_first; i < min(list.size, part_first + part_size); ++i) {
         Light light = lights[light_list_entry(list, i)];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_light(light, surfaces[s]);
     }
@@ -106,7 +104,7 @@ void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out ve
     vec3 indirect[SURFACES];
     for (int s = 0; s < SURFACES; ++s) direct[s] = indirect[s] = vec3(0.0);
     gather_lights(surfaces, pixels, direct);
-    if (lights_before == 0u) gather_indirect(surfaces, pixels, indirect);
+    if (part_first == 0u) gather_indirect(surfaces, pixels, indirect);
 #ifdef SHOW_IRRADIANCE
     for (int s = 0; s < SURFACES; ++s) surfaces[s].albedo = vec3(1.0);
 #endif

@@ -1,6 +1,7 @@
 #include "renderer/passes/shading/deferred.hpp"
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
@@ -15,15 +16,10 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces
         const auto radiance = pass.write(graph.texture("radiance", {view.size, Format::rgba32f}),
                                          {Usage::storage, IMAGE_RADIANCE});
         pass.run([=, &gpu, &program](Execution& run) {
-            const gl::Functions& gl = gpu.gl();
-            program.use();
-            const LightingParts parts = lighting_parts(run, lighting);
-            for (std::uint32_t part = 0; part < parts.count; ++part) {
-                if (part > 0) {
-                    gl.MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-                }
-                begin_lighting_part(program, parts, part);
-                gl.DispatchCompute(groups(view.size.x, PIXEL_BLOCK), groups(view.size.y, PIXEL_BLOCK), 1);
+            const Groups blocks{groups(view.size.x, PIXEL_BLOCK), groups(view.size.y, PIXEL_BLOCK)};
+            ComputeSteps steps(gpu);
+            for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
+                steps.run(program, blocks, part);
             }
         });
         return radiance;

@@ -14,9 +14,8 @@ TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         const SurfacePrograms programs = surface_programs(gpu, "shading/emission.frag", {"EMISSION"});
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu](Execution& run) {
-            gpu.gl().Enable(GL_DEPTH_TEST);
-            begin_adding(gpu);
-            draw_surfaces(gpu, run, scene, programs, [](const auto& group) { return group.emits; });
+            draw_surfaces(gpu, run, scene, programs, visible_surfaces_again, {},
+                          [](const auto& group) { return group.emits; });
         });
         return out;
     });

@@ -24,17 +24,14 @@ ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         }
         pass.run([=, &gpu, after_prepass = surfaces.depth.has_value()](Execution& run) {
             if (after_prepass) {
-                begin_visible_surfaces(gpu);
+                gpu.clear_colour();
             } else {
-                begin_surfaces(gpu);
+                gpu.clear_colour_and_depth();
             }
-            const LightingParts parts = lighting_parts(run, lighting);
-            for (std::uint32_t part = 0; part < parts.count; ++part) {
-                if (part == 1) {
-                    begin_adding(gpu);
-                }
-                programs.each([&](const gl::Program& program) { begin_lighting_part(program, parts, part); });
-                draw_surfaces(gpu, run, scene, programs);
+            gl::RasterState state = after_prepass ? visible_surfaces : nearest_surfaces;
+            for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
+                draw_surfaces(gpu, run, scene, programs, state, part);
+                state = visible_surfaces_again;
             }
         });
         return out;

@@ -5,6 +5,7 @@
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/gpu/loop_parts.hpp"
 
 namespace candela {
 
@@ -106,19 +107,12 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     }
 }
 
-LightingParts lighting_parts(const Execution& run, const Lighting& lighting) {
+std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting) {
     constexpr std::int64_t few_suns = 8;
     const LightTable& lights = run.value(lighting.lights);
     const bool many_rays =
         lighting.shadow_rays && std::ranges::count_if(lights.entries, is_sun_with_shadow) > few_suns;
-    const std::uint32_t entries = many_rays ? 8 : 8192;
-    const std::uint32_t shown = shows_direct(lighting.show) ? light_count(lights) : 0;
-    return {.count = std::max(groups(shown, entries), 1U), .entries = entries};
-}
-
-void begin_lighting_part(const gl::Program& program, const LightingParts& parts, std::uint32_t part) {
-    program.set("lights_before", part * parts.entries);
-    program.set("lights_now", parts.entries);
+    return loop_parts(shows_direct(lighting.show) ? light_count(lights) : 0, many_rays ? 8 : 8192);
 }
 
 }  // namespace candela

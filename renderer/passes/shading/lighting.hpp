@@ -63,15 +63,8 @@ void read_lighting(Pass& pass, const Lighting& lighting);
 
 /// The dispatches or draws of a shading pass. Each adds the light of some entries of the light lists; the
 /// first one also adds the indirect light. With at most 8,192 entries, or 8 if there are more than 8 suns
-/// with shadows, the loops of an invocation stay within the limit described at `most_asked`, and the edges of
+/// with shadows, the loops of an invocation stay within the limit described at `loop_parts`, and the edges of
 /// all suns' shadows are found by rays: see MOST_SHADOW_RAYS.
-struct LightingParts {
-    std::uint32_t count = 1;
-    std::uint32_t entries = 0;  ///< of a light list, in each part
-};
-[[nodiscard]] LightingParts lighting_parts(const Execution& run, const Lighting& lighting);
-
-/// Sets the uniforms of a part.
-void begin_lighting_part(const gl::Program& program, const LightingParts& parts, std::uint32_t part);
+[[nodiscard]] std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting);
 
 }  // namespace candela

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/loop_parts.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
@@ -28,16 +29,12 @@ std::vector<SortedGroup> back_to_front(const SceneLayout& layout, const ScenePla
     return sorted;
 }
 
-/// The shader multiplies radiance by alpha. Its second output (dual-source blending) is the share of what is
-/// behind that the surface covers.
-void begin_blending(const gl::Functions& gl) {
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthMask(GL_FALSE);
-    gl.Enable(GL_CULL_FACE);
-    gl.Enable(GL_BLEND);
-    gl.BlendEquation(GL_FUNC_ADD);
-    gl.BlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE, GL_ZERO);
-}
+/// The shader multiplies radiance by alpha. Its second output is the share of what is behind that the surface
+/// covers.
+constexpr gl::RasterState covering{.depth_test = gl::DepthTest::nearer,
+                                   .writes_depth = false,
+                                   .blending = gl::Blending::cover,
+                                   .culling = gl::Culling::back};
 
 /// Most lights of a scene with blended surfaces. These cannot be shaded in several draws, because each draw
 /// would cover what the draws before it have added.
@@ -50,13 +47,13 @@ void check_lights(std::size_t lights) {
     }
 }
 
-void draw_blended(const Gpu& gpu, const SceneLayout::Group& group) {
+void draw_blended(Gpu& gpu, const SceneLayout::Group& group) {
     if (group.double_sided) {
-        gpu.gl().CullFace(GL_FRONT);
-        draw_group(gpu, group);
-        gpu.gl().CullFace(GL_BACK);
+        gl::RasterState backs = covering;
+        backs.culling = gl::Culling::front;
+        draw_group(gpu, group, backs);
     }
-    draw_group(gpu, group);
+    draw_group(gpu, group, covering);
 }
 
 }  // namespace
@@ -86,11 +83,8 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
                 return;
             }
             check_lights(run.value(lighting.lights).entries.size());
-            begin_blending(gpu.gl());
             bind_meshes(gpu, run, scene);
-            program.set("lights_before", 0U);
-            program.set("lights_now", most_lights);
-            program.use();
+            program.use(loop_parts(most_lights, most_lights).front());
             for (const SortedGroup& next : sorted) {
                 draw_blended(gpu, *next.group);
             }

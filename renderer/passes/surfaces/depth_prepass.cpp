@@ -13,8 +13,8 @@ Surfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             surface_programs(gpu, "surfaces/depth_prepass.frag", {"WITH_NORMALS"});
         const Surfaces out = write_geometry(graph, pass, view.size);
         pass.run([=, &gpu](Execution& run) {
-            begin_surfaces(gpu);
-            draw_surfaces(gpu, run, scene, programs);
+            gpu.clear_colour_and_depth();
+            draw_surfaces(gpu, run, scene, programs, nearest_surfaces);
         });
         return out;
     });

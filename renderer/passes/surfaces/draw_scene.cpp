@@ -1,5 +1,7 @@
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
+#include <utility>
+
 #include <candela/graph/frame_graph.hpp>
 
 namespace candela {
@@ -43,50 +45,25 @@ void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     vertices.bind();
 }
 
-void draw_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
+void draw_depth(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state) {
+    gpu.device().set_raster_state(state);
     multi_draw(gpu.gl(), 0, run.value(scene.layout).opaque_count);
 }
 
-void draw_group(const Gpu& gpu, const SceneLayout::Group& group) {
-    const gl::Functions& gl = gpu.gl();
+void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state) {
     bind_image(gpu, UNIT_BASE_COLOUR, group.texture.get());
     if (group.emits) {
         bind_image(gpu, UNIT_EMISSION, group.emission.get());
     }
-    gl.FrontFace(group.mirrored ? GL_CW : GL_CCW);
-    multi_draw(gl, group.first_draw, group.draw_count);
+    state.clockwise_front = group.mirrored;
+    gpu.device().set_raster_state(state);
+    multi_draw(gpu.gl(), group.first_draw, group.draw_count);
 }
 
-void draw_masked_depth(const Gpu& gpu, Execution& run, const SceneData& scene) {
+void draw_masked_depth(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state) {
     for (const SceneLayout::Group& group : run.value(scene.layout).groups_of(AlphaMode::mask)) {
-        draw_group(gpu, group);
+        draw_group(gpu, group, state);
     }
-}
-
-void begin_surfaces(const Gpu& gpu) {
-    const gl::Functions& gl = gpu.gl();
-    gl.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
-    gl.ClearDepthf(0.0F);
-    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    gl.Enable(GL_DEPTH_TEST);
-}
-
-void begin_visible_surfaces(const Gpu& gpu) {
-    const gl::Functions& gl = gpu.gl();
-    gl.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
-    gl.Clear(GL_COLOR_BUFFER_BIT);
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_EQUAL);
-    gl.DepthMask(GL_FALSE);
-}
-
-void begin_adding(const Gpu& gpu) {
-    const gl::Functions& gl = gpu.gl();
-    gl.DepthFunc(GL_EQUAL);
-    gl.DepthMask(GL_FALSE);
-    gl.Enable(GL_BLEND);
-    gl.BlendEquation(GL_FUNC_ADD);
-    gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
 }
 
 SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
@@ -98,20 +75,20 @@ SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
 }
 
 void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs,
+                   gl::RasterState state, const gl::Uniforms& uniforms,
                    bool (*is_drawn)(const SceneLayout::Group&)) {
-    const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, scene);
+    const gl::Program* used = nullptr;
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
         if (group.alpha == AlphaMode::blend || !is_drawn(group)) {
             continue;
         }
-        if (group.double_sided) {
-            gl.Disable(GL_CULL_FACE);
-        } else {
-            gl.Enable(GL_CULL_FACE);
+        const gl::Program* const program = group.alpha == AlphaMode::mask ? programs.masked : programs.opaque;
+        if (std::exchange(used, program) != program) {
+            program->use(uniforms);
         }
-        (group.alpha == AlphaMode::mask ? programs.masked : programs.opaque)->use();
-        draw_group(gpu, group);
+        state.culling = group.double_sided ? gl::Culling::off : gl::Culling::back;
+        draw_group(gpu, group, state);
     }
 }
 

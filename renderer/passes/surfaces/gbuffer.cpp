@@ -12,8 +12,8 @@ Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const 
         const SurfacePrograms programs = surface_programs(gpu, "surfaces/gbuffer.frag");
         const Surfaces out = write_geometry_and_material(graph, pass, view.size);
         pass.run([=, &gpu](Execution& run) {
-            begin_surfaces(gpu);
-            draw_surfaces(gpu, run, scene, programs);
+            gpu.clear_colour_and_depth();
+            draw_surfaces(gpu, run, scene, programs, nearest_surfaces);
         });
         return out;
     });

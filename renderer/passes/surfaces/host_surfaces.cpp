@@ -29,16 +29,17 @@ Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs&
         const Surfaces out = write_geometry_and_material(graph, pass, view.size);
         pass.run([=, &gpu, &program, description = inputs.description](Execution& run) {
             const HostSurfaces& host = run.value(description);
-            program.set("view_from_host_clip", glm::inverse(host.clip_from_view));
-            program.set("clip_depth_from_0", host.clip_depth_from_0);
-            program.set("empty_depth", host.empty_depth);
-            program.set("normal_encoding", static_cast<std::uint32_t>(host.normal_encoding));
-            program.set("world_from_normal", host.world_from_normal);
             for (const GLuint unit : std::array<GLuint, 3>{UNIT_ALBEDO, UNIT_NORMAL, UNIT_DEPTH}) {
                 gpu.nearest().bind(unit);
             }
-            begin_surfaces(gpu);
-            gpu.draw_fullscreen(program);
+            gpu.clear_colour_and_depth();
+            gpu.draw_fullscreen(program,
+                                {{"view_from_host_clip", glm::inverse(host.clip_from_view)},
+                                 {"clip_depth_from_0", host.clip_depth_from_0},
+                                 {"empty_depth", host.empty_depth},
+                                 {"normal_encoding", static_cast<std::uint32_t>(host.normal_encoding)},
+                                 {"world_from_normal", host.world_from_normal}},
+                                nearest_surfaces);
         });
         return out;
     });
