@@ -4,6 +4,7 @@
 #include "lights/lights.glsl"
 #include "types.glsl"
 #include "view/view.glsl"
+#include "loop_part.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -88,16 +89,13 @@ bool reaches(Light light, Cell cell) {
     return !outside_cone(box, centre, axis, cos_cone);
 }
 
-uniform uint culled_before;  // entries of each list, in the dispatches before this one
-uniform uint culled_now;     // at most
-
-// Tests entries [culled_before, culled_before + culled_now) of list `index`. Those that reach the cell are moved behind
-// the entries that earlier dispatches kept.
+// Tests the entries of list `index` in this part of the loop. Those that reach the cell are moved behind the entries
+// that earlier dispatches kept.
 void cull(uint index, Cell cell) {
     uint first = list_first[index];
-    uint begin = first + culled_before;
-    uint end = min(list_first[index + 1u], begin + culled_now);
-    uint kept = culled_before == 0u ? first : first + list_count[index];
+    uint begin = first + part_first;
+    uint end = min(list_first[index + 1u], begin + part_size);
+    uint kept = part_first == 0u ? first : first + list_count[index];
     for (uint i = begin; i < end; ++i) {
         uint light = list_entries[i];
         if (reaches(lights[light], cell)) list_entries[kept++] = light;

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/gpu/loop_parts.hpp"
 
 namespace candela {
 namespace {
@@ -25,10 +27,9 @@ template <class Declare, class MakeGrid>
 LightGrid add_light_grid(FrameGraph& graph, const Gpu& gpu, Declare declare, MakeGrid make_grid) {
     return graph.add("light-grid", [&](Pass& pass) {
         declare(pass);
-        const LightGrid out{
-            .cells = pass.write(graph.value<CellGrid>("light grid")),
-            .constants = pass.write(
-                graph.buffer<gpu::CellConstants>("cell constants", 1, Lifetime::persistent), Usage::copy)};
+        const LightGrid out{.cells = pass.write(graph.value<CellGrid>("light grid")),
+                            .constants = pass.write(
+                                growing_buffer<gpu::CellConstants>(graph, "cell constants"), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const CellGrid grid = make_grid(run);
             upload_one(gpu, run, out.constants, cell_constants(grid));
@@ -53,9 +54,8 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         pass.read(inputs.grid.cells);
         declare(pass);
         const auto buffer = [&](std::string_view what) {
-            return pass.write(
-                graph.buffer<std::uint32_t>(fmt::format("{} {}", name, what), 1, Lifetime::persistent),
-                Usage::copy);
+            return pass.write(growing_buffer<std::uint32_t>(graph, fmt::format("{} {}", name, what)),
+                              Usage::copy);
         };
         const BinBuffers out{.bins = pass.write(graph.value<LightBins>(fmt::format("{} bins", name))),
                              .first = buffer("first"),
@@ -78,19 +78,17 @@ BinBuffers add_light_bins(FrameGraph& graph, const Gpu& gpu, std::string_view na
         graph, gpu, name, inputs, [](Pass&) {}, [](Execution&) { return true; });
 }
 
-/// Culls in as many dispatches as needed to bound the loop of each invocation: see `most_asked`.
-void dispatch_culling(const gl::Functions& gl, const gl::Program& program, const LightBins& bins) {
+/// Culls in as many dispatches as needed to bound the loop of each invocation: see `loop_parts`.
+void cull(const Gpu& gpu, const gl::Program& program, const LightBins& bins, const gl::Uniforms& uniforms) {
     constexpr std::uint32_t most = 32768;
     std::uint32_t longest = 0;
     for (std::size_t cell = 0; cell + 1 < bins.first.size(); ++cell) {
         longest = std::max(longest, bins.first[cell + 1] - bins.first[cell]);
     }
-    program.set("culled_now", most);
-    program.use();
-    in_parts(gl, longest, most, GL_SHADER_STORAGE_BARRIER_BIT, [&](std::uint32_t first) {
-        program.set("culled_before", first);
-        gl.DispatchCompute(groups(bins.grid.cells(), cells_a_group), 1, 1);
-    });
+    ComputeSteps steps(gpu);
+    for (const gl::Uniforms& part : loop_parts(longest, most)) {
+        steps.run(program, {groups(bins.grid.cells(), cells_a_group)}, uniforms + part);
+    }
 }
 
 /// What is culled: bins, and for tiles perhaps the depths that bound them.
@@ -114,21 +112,19 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
         }
         const gl::Program& program =
             gpu.program({kind == LightList::tile ? "lights/light_tiles.comp" : "lights/light_clusters.comp"});
-        const LightLists out{.kind = kind,
-                             .inputs = inputs,
-                             .bins = bins.bins,
-                             .first = bins.first,
-                             .count = pass.write(graph.buffer<std::uint32_t>(fmt::format("{} count", name), 1,
-                                                                             Lifetime::persistent),
-                                                 {Usage::storage, BINDING_LIST_COUNT}),
-                             .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
+        const LightLists out{
+            .kind = kind,
+            .inputs = inputs,
+            .bins = bins.bins,
+            .first = bins.first,
+            .count = pass.write(growing_buffer<std::uint32_t>(graph, fmt::format("{} count", name)),
+                                {Usage::storage, BINDING_LIST_COUNT}),
+            .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
         pass.run([=, &gpu, &program, bounded = depths.has_value()](Execution& run) {
             const LightBins& binned = run.value(out.bins);
             run.reserve(out.count, binned.grid.cells());
-            if (kind == LightList::tile) {
-                program.set("has_depth", bounded);
-            }
-            dispatch_culling(gpu.gl(), program, binned);
+            const bool is_tile = kind == LightList::tile;
+            cull(gpu, program, binned, is_tile ? gl::Uniforms{{"has_depth", bounded}} : gl::Uniforms{});
         });
         return out;
     });
@@ -142,13 +138,12 @@ BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, Textur
         read_view(pass, view);
         read_light_grid(pass, grid);
         const gl::Program& program = gpu.program({"lights/tile_depths.comp"});
-        const auto depths = pass.write(graph.buffer<gpu::TileDepth>("tile depths", 1, Lifetime::persistent),
+        const auto depths = pass.write(growing_buffer<gpu::TileDepth>(graph, "tile depths"),
                                        {Usage::storage, BINDING_TILE_DEPTHS});
         pass.run([=, &gpu, &program](Execution& run) {
             const CellGrid& cells = run.value(grid.cells);
             run.reserve(depths, cells.cells());
-            program.use();
-            gpu.gl().DispatchCompute(cells.tiles.x, cells.tiles.y, 1);
+            ComputeSteps(gpu).run(program, {cells.tiles.x, cells.tiles.y});
         });
         return depths;
     });

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/layer_target.hpp"
 #include "renderer/passes/lights/light_kind.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
@@ -138,14 +139,16 @@ struct ShadowPrograms {
     const gl::Program& masked;
 };
 
-void draw_view(const Gpu& gpu, Execution& run, const SceneData& scene, const ShadowPrograms& programs,
+void draw_view(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowPrograms& programs,
                const glm::mat4& clip_from_world) {
-    programs.opaque.set("clip_from_world", clip_from_world);
-    programs.opaque.use();
-    draw_depth(gpu, run, scene);
-    programs.masked.set("clip_from_world", clip_from_world);
-    programs.masked.use();
-    draw_masked_depth(gpu, run, scene);
+    constexpr gl::RasterState state{.depth_test = gl::DepthTest::nearer,
+                                    .clamps_depth = true,
+                                    .slope_offset = -slope_offset};  // away from the light: depth is reversed
+    const gl::Uniforms uniforms{{"clip_from_world", clip_from_world}};
+    programs.opaque.use(uniforms);
+    draw_depth(gpu, run, scene, state);
+    programs.masked.use(uniforms);
+    draw_masked_depth(gpu, run, scene, state);
 }
 
 /// Gives the texture this description. Returns whether it keeps its content.
@@ -194,28 +197,14 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
     const ShadowSettings& settings = node.settings;
     run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
 
-    const gl::Functions& gl = gpu.gl();
     bind_meshes(gpu, run, node.scene);
-    gl.Enable(GL_DEPTH_TEST);
-    gl.Enable(GL_DEPTH_CLAMP);
-    gl.Enable(GL_POLYGON_OFFSET_FILL);
-    gl.PolygonOffset(-slope_offset, 0.0F);  // away from the light, because depth is reversed
-    gl.Disable(GL_CULL_FACE);
-    gl::Framebuffer& target = gpu.layer_target();
+    LayerTarget target(gpu);
     for (const ShadowPlan::View& view : due) {
-        const auto resolution =
-            static_cast<GLsizei>(view.cube ? settings.cube_resolution : settings.map_resolution);
-        target.attach_depth_layer(run.object(view.cube ? out.cubes : out.maps), view.layer);
-        target.bind();
-        gl.Viewport(0, 0, resolution, resolution);
-        const float far_depth = 0.0F;
-        gl.ClearBufferfv(GL_DEPTH, 0, &far_depth);
+        target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer,
+                         view.cube ? settings.cube_resolution : settings.map_resolution);
+        target.clear();
         draw_view(gpu, run, node.scene, node.programs, view.clip_from_world);
     }
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    target.attach_depth(0);
-    gl.Disable(GL_POLYGON_OFFSET_FILL);
-    gl.Disable(GL_DEPTH_CLAMP);
 }
 
 }  // namespace

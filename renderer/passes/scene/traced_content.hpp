@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <candela/graph/execute.hpp>
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/passes/scene/scene_motion.hpp"
+
+namespace candela {
+
+/// What rays through the scene have found, in persistent buffers or textures that a pass updates. Where nothing
+/// has moved it stays, as long as the key is the same, which says what else it was made from, and as long as
+/// the objects that hold it are: Execution::reserve may have replaced them.
+template <class Key>
+class TracedContent {
+ public:
+    TracedContent(FrameGraph& graph, Pass& pass, std::string_view name)
+        : record_(pass.update(graph.value<Record>(name))) {}
+
+    /// World-space boxes around everything that has changed since the content was traced; nullopt if all of it
+    /// must be traced. The pass then has to bring it up to date.
+    [[nodiscard]] std::optional<std::vector<Box>> outdated(Execution& run, const SceneMotion& motion, Key key,
+                                                           std::vector<ObjectId> objects) const {
+        Record now{std::move(key), std::move(objects), motion.step};
+        const Record* const last = run.previous(record_);
+        std::optional<std::vector<Box>> changed;
+        if (last != nullptr && last->key == now.key && last->objects == now.objects) {
+            changed = changed_boxes(motion, last->step);
+        }
+        run.set(record_, std::move(now));
+        return changed;
+    }
+
+    /// The pass overwrites the content with something else.
+    void forget(Execution& run) const { run.set(record_, {}); }
+
+ private:
+    struct Record {
+        Key key{};
+        std::vector<ObjectId> objects;
+        std::uint64_t step = 0;  // of the scene's motion
+        bool operator==(const Record&) const = default;
+    };
+    ValueHandle<Record> record_;
+};
+
+}  // namespace candela
