@@ -4,6 +4,7 @@
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
+#include "loop_part.glsl"
 #include "scene/materials.glsl"
 #include "sky/sky_patch.glsl"
 #include "types.glsl"
@@ -19,8 +20,6 @@ layout(std430, binding = BINDING_SEEN_POINTS) readonly restrict buffer Seen { ui
 
 uniform uint point_count;
 uniform uint light_count;
-uniform uint lights_before;  // in the dispatches before this one
-uniform uint lights_now;     // at most
 uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
 uniform uint surfel_count;
 uniform uint emitting_count;  // surfels that emit light: the last ones
@@ -126,11 +125,11 @@ void main() {
     vec4 colour = colour_at(material, point.uv) * vertex_colour(point.colour);
     float area = seen[id] == 0u || colour.a < material.alpha_cutoff ? 0.0 : point.area;
     vec3 irradiance = vec3(0.0);
-    uint end = min(light_count, lights_before + lights_now);
-    for (uint i = lights_before; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);
-    if (lights_before == 0u && area > 0.0) irradiance += irradiance_from_sky(id, point);
+    uint end = min(light_count, part_first + part_size);
+    for (uint i = part_first; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);
+    if (part_first == 0u && area > 0.0) irradiance += irradiance_from_sky(id, point);
     vec3 arriving = area * irradiance;
-    if (lights_before > 0u) {
+    if (part_first > 0u) {
         direct_points[id].arriving += arriving;
         return;
     }

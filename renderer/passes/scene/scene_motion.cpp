@@ -84,18 +84,15 @@ std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::ui
     return at_most(motion.boxes, MOST_CHANGED_BOXES);
 }
 
-void set_changed_boxes(const gl::Program& program, const std::optional<std::vector<Box>>& boxes,
-                       float slack) {
+gl::Uniforms changed_box_uniforms(const std::optional<std::vector<Box>>& boxes, float slack) {
     std::vector<glm::vec4> corners;
     for (const Box& box : boxes.value_or(std::vector<Box>{})) {
         corners.emplace_back(box.lower - slack, 0.0F);
         corners.emplace_back(box.upper + slack, 0.0F);
     }
-    program.set("everything_changed", !boxes.has_value());
-    program.set("changed_box_count", static_cast<std::uint32_t>(corners.size() / 2));
-    if (!corners.empty()) {
-        program.set("changed_boxes", std::span<const glm::vec4>(corners));
-    }
+    return {{"everything_changed", !boxes.has_value()},
+            {"changed_box_count", static_cast<std::uint32_t>(corners.size() / 2)},
+            {"changed_boxes", std::move(corners)}};
 }
 
 }  // namespace candela

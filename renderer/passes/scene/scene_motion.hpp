@@ -6,7 +6,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "engine/bvh/box.hpp"
-#include "renderer/gl/program.hpp"
+#include "renderer/gl/uniforms.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 
 namespace candela {
@@ -32,8 +32,8 @@ struct SceneMotion {
 /// one step has followed.
 [[nodiscard]] std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::uint64_t done);
 
-/// Sets the uniforms of shaders/scene/changed_boxes.glsl. Each box is enlarged by `slack` metres on all
-/// sides. `boxes`: result of changed_boxes.
-void set_changed_boxes(const gl::Program& program, const std::optional<std::vector<Box>>& boxes, float slack);
+/// The uniforms of shaders/scene/changed_boxes.glsl. Each box is enlarged by `slack` metres on all sides.
+/// `boxes`: result of changed_boxes.
+[[nodiscard]] gl::Uniforms changed_box_uniforms(const std::optional<std::vector<Box>>& boxes, float slack);
 
 }  // namespace candela

@@ -12,17 +12,17 @@
 
 namespace candela {
 
-/// What rays through the scene have found, in persistent buffers or textures that a pass updates. Where nothing
-/// has moved it stays, as long as the key is the same, which says what else it was made from, and as long as
-/// the objects that hold it are: Execution::reserve may have replaced them.
+/// What rays through the scene have found, in persistent buffers or textures that a pass updates. Where
+/// nothing has moved it stays, as long as the key is the same, which says what else it was made from, and as
+/// long as the objects that hold it are: Execution::reserve may have replaced them.
 template <class Key>
 class TracedContent {
  public:
     TracedContent(FrameGraph& graph, Pass& pass, std::string_view name)
         : record_(pass.update(graph.value<Record>(name))) {}
 
-    /// World-space boxes around everything that has changed since the content was traced; nullopt if all of it
-    /// must be traced. The pass then has to bring it up to date.
+    /// World-space boxes around everything that has changed since the content was traced; nullopt if all of
+    /// it must be traced. The pass then has to bring it up to date.
     [[nodiscard]] std::optional<std::vector<Box>> outdated(Execution& run, const SceneMotion& motion, Key key,
                                                            std::vector<ObjectId> objects) const {
         Record now{std::move(key), std::move(objects), motion.step};

@@ -9,6 +9,10 @@
 #include <fmt/format.h>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/gpu/loop_parts.hpp"
+#include "renderer/passes/scene/traced_content.hpp"
 
 namespace candela {
 namespace {
@@ -19,93 +23,68 @@ struct DirectLight {
     BufferHandle<gpu::CellLight> cells;
 };
 
-std::uint32_t count_of(const Execution& run, const Surfels& surfels) {
-    return run.value(surfels.plan).vpl_count;
-}
-
-/// Identifies stored visibility: the set of surfels, the step of scene motion up to which it is current, the
-/// ray offset in metres, and the GL names of the buffers that hold it.
-struct KnownVisibility {
-    std::uint64_t set = 0;
-    std::uint64_t step = 0;
-    float ray_offset = 0.0F;
-    ObjectId form_factors = 0;
-    ObjectId hits = 0;
-    ObjectId seen = 0;
-    bool operator==(const KnownVisibility&) const = default;
-
-    [[nodiscard]] bool is_of(const KnownVisibility& other) const {
-        return set == other.set && ray_offset == other.ray_offset && form_factors == other.form_factors &&
-               hits == other.hits && seen == other.seen;
-    }
+/// What the visibility of surfels was found for.
+struct VisibilityKey {
+    std::uint64_t set = 0;    // of surfels
+    float ray_offset = 0.0F;  // metres
+    bool operator==(const VisibilityKey&) const = default;
 };
 
-/// Sets `surfel_count` and the uniforms that follow from it: shaders/surfels/surfel.glsl.
-void set_count(const gl::Program& program, std::uint32_t count) {
+/// `surfel_count` and the uniforms that follow from it: shaders/surfels/surfel.glsl.
+gl::Uniforms count_uniforms(std::uint32_t count) {
     const SurfelColumns columns = surfel_columns(count);
-    program.set("surfel_count", count);
-    program.set("columns", columns.count);
-    program.set("column_stride", columns.stride);
+    return {{"surfel_count", count}, {"columns", columns.count}, {"column_stride", columns.stride}};
 }
 
-void dispatch_surfels(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
-    set_count(program, count);
-    program.use();
-    gl.DispatchCompute(groups(count, SURFEL_GROUP), 1, 1);
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-void find_form_factors(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
-    set_count(program, count);
-    program.use();
-    gl.DispatchCompute(groups(count, SURFEL_GROUP), surfel_columns(count).count / 2, 1);
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-void find_cover(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
-    constexpr std::uint32_t most_a_line = 32768;
-    set_count(program, count);
-    program.use();
-    gl.DispatchCompute(std::min(count, most_a_line), (count + most_a_line - 1) / most_a_line, 1);
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
+struct VisibilityPrograms {
+    const gl::Program& factors;
+    const gl::Program& cover;
+    const gl::Program& rows;
+    const gl::Program& points;
+};
 
 /// Last round of scaling. Even, so that its results are in the first half of the rows.
 constexpr std::uint32_t last_round = 4;
 
-void scale_rows(const gl::Functions& gl, const gl::Program& program, std::uint32_t count) {
+void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, const VplPlan& surfels,
+                     float ray_offset, const std::optional<std::vector<Box>>& changed) {
+    constexpr std::uint32_t most_a_line = 32768;  // work groups
+    const std::uint32_t count = surfels.vpl_count;
+    const gl::Uniforms common = count_uniforms(count);
+    const gl::Uniforms traced = common + changed_box_uniforms(changed, 4.0F * ray_offset);
+    const gl::Uniforms offset{{"ray_offset", ray_offset}};
+    const std::uint32_t surfel_groups = groups(count, SURFEL_GROUP);
+    ComputeSteps steps(gpu);
+    steps.run(programs.factors, {surfel_groups, surfel_columns(count).count / 2}, traced + offset);
+    steps.run(programs.cover, {std::min(count, most_a_line), groups(count, most_a_line)}, traced + offset);
     for (std::uint32_t round = 0; round <= last_round; ++round) {
-        program.set("round", round);
-        dispatch_surfels(gl, program, count);
+        steps.run(programs.rows, {surfel_groups}, common + gl::Uniforms{{"round", round}});
     }
-}
-
-void add_up(const gl::Functions& gl, const gl::Program& program, std::uint32_t count, std::uint32_t bounce) {
-    set_count(program, count);
-    program.set("bounce", bounce);
-    program.use();
-    gl.DispatchCompute(1, 1, 1);
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    steps.run(programs.points, {groups(surfels.point_count, SURFEL_GROUP)},
+              traced + gl::Uniforms{{"point_count", surfels.point_count}});
 }
 
 struct BouncePrograms {
-    const gl::Program* first;
-    const gl::Program* further;
-    const gl::Program* account;
+    const gl::Program& first;
+    const gl::Program& further;
+    const gl::Program& account;
+    const gl::Program& writer;
 };
 
 /// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
 /// is little, the remaining dispatches return at once.
-void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std::uint32_t count,
+void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
                     std::uint32_t bounces) {
     constexpr std::uint32_t bounces_an_account = 4;
-    add_up(gl, *programs.account, count, 1);
+    const auto uniforms = [&](std::uint32_t bounce) {
+        return count_uniforms(count) + gl::Uniforms{{"bounce", bounce}};
+    };
+    steps.run(programs.account, {}, uniforms(1));
     for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
-        const gl::Program& program = bounce == 2 ? *programs.first : *programs.further;
-        program.set("bounce", bounce);
-        dispatch_surfels(gl, program, count);
+        steps.run(bounce == 2 ? programs.first : programs.further, {groups(count, SURFEL_GROUP)},
+                  uniforms(bounce));
         if (bounce % bounces_an_account == 0 || bounce == bounces) {
-            add_up(gl, *programs.account, count, bounce);
+            steps.run(programs.account, {}, uniforms(bounce));
         }
     }
 }
@@ -114,26 +93,10 @@ void gather_bounces(const gl::Functions& gl, const BouncePrograms& programs, std
 /// drivers stop all loops of an invocation after 65,535 iterations in total.
 constexpr std::uint32_t most_shadow_rays = 64;
 
-/// The points of a cell share the emitting surfels, so that each traces a few rays to them:
+/// The points of a cell share the sources of one kind, so that each traces a few rays to them:
 /// `most_shadow_rays` at most.
-void set_emitters(const gl::Program& program, const VplPlan& plan) {
-    const std::uint32_t least = groups(plan.emitting_count, most_shadow_rays);
-    program.set("surfel_count", plan.vpl_count);
-    program.set("emitting_count", plan.emitting_count);
-    program.set("emitter_shares", std::max(points_a_surfel, least));
-}
-
-void light_points(const gl::Functions& gl, const gl::Program& program, std::uint32_t points,
-                  std::uint32_t lights) {
-    program.set("point_count", points);
-    program.set("light_count", lights);
-    program.set("lights_now", most_shadow_rays);
-    program.use();
-    in_parts(gl, lights, most_shadow_rays, GL_SHADER_STORAGE_BARRIER_BIT, [&](std::uint32_t first) {
-        program.set("lights_before", first);
-        gl.DispatchCompute(groups(points, SURFEL_GROUP), 1, 1);
-    });
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+std::uint32_t shares_of(std::uint32_t sources) {
+    return std::max(points_a_surfel, groups(sources, most_shadow_rays));
 }
 
 /// Light is evaluated at the cells' points only. A spot that is narrower than they are apart, even where it
@@ -166,12 +129,6 @@ std::vector<std::string> read_sky(Pass& pass, const std::optional<SkyPatches>& s
     return {"SKY"};
 }
 
-/// The points of a cell share the patches of the sky.
-void set_sky(const gl::Program& program, std::uint32_t patches) {
-    program.set("sky_patch_count", patches);
-    program.set("sky_shares", std::max(points_a_surfel, groups(patches, most_shadow_rays)));
-}
-
 DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                              const SurfelVisibility& visibility, const SurfelSources& sources) {
     const Surfels& surfels = visibility.surfels;
@@ -188,29 +145,35 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         const gl::Program& lighter = gpu.program({"surfels/surfel_light.comp"}, defined);
         const gl::Program& adder = gpu.program({"surfels/surfel_cells.comp"});
         const DirectLight out{
-            .points =
-                pass.write(graph.buffer<gpu::DirectPoint>("directly lit points", 1, Lifetime::persistent),
-                           {Usage::storage, BINDING_DIRECT_POINTS}),
-            .cells = pass.write(graph.buffer<gpu::CellLight>("directly lit cells", 1, Lifetime::persistent),
+            .points = pass.write(growing_buffer<gpu::DirectPoint>(graph, "directly lit points"),
+                                 {Usage::storage, BINDING_DIRECT_POINTS}),
+            .cells = pass.write(growing_buffer<gpu::CellLight>(graph, "directly lit cells"),
                                 {Usage::storage, BINDING_CELL_LIGHT})};
         pass.run([=, &gpu, &lighter, &adder, sky = sources.sky](Execution& run) {
-            const std::uint32_t count = count_of(run, surfels);
-            const std::uint32_t points = run.value(surfels.plan).point_count;
-            run.reserve(out.points, std::max(points, 1U));
-            run.reserve(out.cells, std::max(count, 1U));
-            if (count == 0) {
+            const VplPlan& plan = run.value(surfels.plan);
+            run.reserve(out.points, plan.point_count);
+            run.reserve(out.cells, plan.vpl_count);
+            if (plan.vpl_count == 0) {
                 return;
             }
-            lighter.set("ray_offset", run.value(tracing.metrics).ray_offset());
+            const SceneMetrics& metrics = run.value(tracing.metrics);
             const LightTable& table = run.value(lights.table);
-            warn_of_narrow_spots(gpu.log(), table, run.value(tracing.metrics), points);
+            warn_of_narrow_spots(gpu.log(), table, metrics, plan.point_count);
             const auto light_count = static_cast<std::uint32_t>(table.entries.size());
-            set_emitters(lighter, run.value(surfels.plan));
-            if (sky) {
-                set_sky(lighter, run.value(sky->count));
+            const std::uint32_t patches = sky ? run.value(sky->count) : 0;
+            const gl::Uniforms uniforms{{"point_count", plan.point_count},
+                                        {"light_count", light_count},
+                                        {"ray_offset", metrics.ray_offset()},
+                                        {"surfel_count", plan.vpl_count},
+                                        {"emitting_count", plan.emitting_count},
+                                        {"emitter_shares", shares_of(plan.emitting_count)},
+                                        {"sky_patch_count", patches},
+                                        {"sky_shares", shares_of(patches)}};
+            ComputeSteps steps(gpu);
+            for (const gl::Uniforms& part : loop_parts(light_count, most_shadow_rays)) {
+                steps.run(lighter, {groups(plan.point_count, SURFEL_GROUP)}, uniforms + part);
             }
-            light_points(gpu.gl(), lighter, points, light_count);
-            dispatch_surfels(gpu.gl(), adder, count);
+            steps.run(adder, {groups(plan.vpl_count, SURFEL_GROUP)}, count_uniforms(plan.vpl_count));
         });
         return out;
     });
@@ -222,17 +185,12 @@ struct VplSources {
     std::uint32_t sky = 0;
 };
 
-void write_vpls(const gl::Functions& gl, const gl::Program& program, const VplSources& count,
-                ShownLight shown) {
-    set_count(program, count.surfels);
-    if (count.sky > 0) {
-        program.set("sky_patch_count", count.sky);
-    }
-    program.set("emitted_share", shown.emitted ? 1.0F : 0.0F);
-    program.set("reflected_share", shown.reflected ? 1.0F : 0.0F);
-    program.use();
-    gl.DispatchCompute(groups(count.surfels + count.sky, SURFEL_GROUP), 1, 1);
-    gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+void write_vpls(ComputeSteps& steps, const gl::Program& program, const VplSources& count, ShownLight shown) {
+    steps.run(
+        program, {groups(count.surfels + count.sky, SURFEL_GROUP)},
+        count_uniforms(count.surfels) + gl::Uniforms{{"sky_patch_count", count.sky},
+                                                     {"emitted_share", shown.emitted ? 1.0F : 0.0F},
+                                                     {"reflected_share", shown.reflected ? 1.0F : 0.0F}});
 }
 
 VplPlan with_sky(VplPlan plan, std::uint32_t patches) {
@@ -258,55 +216,35 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(motion);
         read_tracing(pass, tracing);
-        const gl::Program& factors = gpu.program({"surfels/surfel_form_factors.comp"});
-        const gl::Program& cover = gpu.program({"surfels/surfel_cover.comp"});
-        const gl::Program& rows = gpu.program({"surfels/surfel_rows.comp"});
-        const gl::Program& seer = gpu.program({"surfels/surfel_points.comp"});
+        const VisibilityPrograms programs{.factors = gpu.program({"surfels/surfel_form_factors.comp"}),
+                                          .cover = gpu.program({"surfels/surfel_cover.comp"}),
+                                          .rows = gpu.program({"surfels/surfel_rows.comp"}),
+                                          .points = gpu.program({"surfels/surfel_points.comp"})};
         const SurfelVisibility out{
             .surfels = surfels,
-            .form_factors = pass.update(graph.buffer<std::uint32_t>("form factors", 1, Lifetime::persistent),
+            .form_factors = pass.update(growing_buffer<std::uint32_t>(graph, "form factors"),
                                         {Usage::storage, BINDING_FORM_FACTORS}),
-            .rows = pass.write(graph.buffer<glm::vec2>("surfel rows", 1, Lifetime::persistent),
+            .rows = pass.write(growing_buffer<glm::vec2>(graph, "surfel rows"),
                                {Usage::storage, BINDING_SURFEL_ROWS}),
-            .seen_points = pass.update(graph.buffer<std::uint32_t>("seen points", 1, Lifetime::persistent),
+            .seen_points = pass.update(growing_buffer<std::uint32_t>(graph, "seen points"),
                                        {Usage::storage, BINDING_SEEN_POINTS})};
-        const auto hits = pass.update(graph.buffer<std::uint32_t>("surfel cover", 1, Lifetime::persistent),
+        const auto hits = pass.update(growing_buffer<std::uint32_t>(graph, "surfel cover"),
                                       {Usage::storage, BINDING_COVER});
-        const auto known = pass.update(graph.value<KnownVisibility>("known visibility"));
-        pass.run([=, &gpu, &factors, &cover, &rows, &seer](Execution& run) {
-            const std::uint32_t count = count_of(run, surfels);
-            run.reserve(out.form_factors,
-                        std::max<std::uint64_t>(std::uint64_t{count} * surfel_columns(count).count / 2, 1));
-            run.reserve(out.rows, std::max(2 * count, 1U));
-            const std::uint32_t points = run.value(surfels.plan).point_count;
-            run.reserve(hits, std::max(count * COVER_PARTS, 1U));
-            run.reserve(out.seen_points, std::max(points, 1U));
-            const KnownVisibility now{.set = run.value(surfels.set),
-                                      .step = run.value(motion).step,
-                                      .ray_offset = run.value(tracing.metrics).ray_offset(),
-                                      .form_factors = run.object(out.form_factors),
-                                      .hits = run.object(hits),
-                                      .seen = run.object(out.seen_points)};
-            const KnownVisibility* const before = run.previous(known);
-            std::optional<std::vector<Box>> changed;
-            if (before != nullptr && before->is_of(now)) {
-                changed = changed_boxes(run.value(motion), before->step);
+        const TracedContent<VisibilityKey> known(graph, pass, "known visibility");
+        pass.run([=, &gpu](Execution& run) {
+            const VplPlan& plan = run.value(surfels.plan);
+            const std::uint32_t count = plan.vpl_count;
+            run.reserve(out.form_factors, std::uint64_t{count} * surfel_columns(count).count / 2);
+            run.reserve(out.rows, 2 * count);
+            run.reserve(hits, count * COVER_PARTS);
+            run.reserve(out.seen_points, plan.point_count);
+            const float ray_offset = run.value(tracing.metrics).ray_offset();
+            const auto changed =
+                known.outdated(run, run.value(motion), {run.value(surfels.set), ray_offset},
+                               {run.object(out.form_factors), run.object(hits), run.object(out.seen_points)});
+            if (count > 0) {
+                find_visibility(gpu, programs, plan, ray_offset, changed);
             }
-            run.set(known, now);
-            if (count == 0) {
-                return;
-            }
-            for (const gl::Program* tracer : {&factors, &cover, &seer}) {
-                set_changed_boxes(*tracer, changed, 4.0F * now.ray_offset);
-            }
-            factors.set("ray_offset", now.ray_offset);
-            cover.set("ray_offset", now.ray_offset);
-            find_form_factors(gpu.gl(), factors, count);
-            find_cover(gpu.gl(), cover, count);
-            scale_rows(gpu.gl(), rows, count);
-            seer.set("point_count", points);
-            seer.use();
-            gpu.gl().DispatchCompute(groups(points, SURFEL_GROUP), 1, 1);
         });
         return out;
     });
@@ -326,34 +264,35 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         const std::vector<std::string> defined = read_sky(pass, sources.sky);
         pass.parameter(bounces);
         pass.parameter(shown);
-        const BouncePrograms programs{.first = &gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
-                                      .further = &gpu.program({"surfels/surfel_bounce.comp"}),
-                                      .account = &gpu.program({"surfels/surfel_account.comp"})};
-        const gl::Program& writer = gpu.program({"surfels/surfel_write.comp"}, defined);
+        const BouncePrograms programs{.first = gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
+                                      .further = gpu.program({"surfels/surfel_bounce.comp"}),
+                                      .account = gpu.program({"surfels/surfel_account.comp"}),
+                                      .writer = gpu.program({"surfels/surfel_write.comp"}, defined)};
         [[maybe_unused]] const auto lit_cells =
             pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
-        const auto bounced = pass.write(graph.buffer<glm::vec4>("bounced light", 1, Lifetime::persistent),
-                                        {Usage::storage, BINDING_BOUNCE});
+        const auto bounced =
+            pass.write(growing_buffer<glm::vec4>(graph, "bounced light"), {Usage::storage, BINDING_BOUNCE});
         const Vpls out{
             .plan = pass.write(graph.value<VplPlan>("vpl plan")),
-            .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent),
-                               {Usage::storage, BINDING_VPLS}),
-            .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent),
+            .vpls = pass.write(growing_buffer<gpu::Vpl>(graph, "vpls"), {Usage::storage, BINDING_VPLS}),
+            .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
                                {Usage::storage, BINDING_FLUX_ACCOUNT}),
-            .points = pass.write(graph.buffer<gpu::LitPoint>("lit points", 1, Lifetime::persistent),
+            .points = pass.write(growing_buffer<gpu::LitPoint>(graph, "lit points"),
                                  {Usage::storage, BINDING_LIT_POINTS})};
-        pass.run([=, &gpu, &writer, sky = sources.sky](Execution& run) {
-            const std::uint32_t count = count_of(run, surfels);
+        pass.run([=, &gpu, sky = sources.sky](Execution& run) {
+            const VplPlan& plan = run.value(surfels.plan);
+            const std::uint32_t count = plan.vpl_count;
             const std::uint32_t sky_count = sky ? run.value(sky->count) : 0;
-            run.reserve(bounced, std::max(2 * count, 1U));
-            run.reserve(out.vpls, std::max(count + sky_count, 1U));
-            run.reserve(*out.points, std::max(run.value(surfels.plan).point_count, 1U));
-            run.set(out.plan, with_sky(run.value(surfels.plan), sky_count));
+            run.reserve(bounced, 2 * count);
+            run.reserve(out.vpls, count + sky_count);
+            run.reserve(*out.points, plan.point_count);
+            run.set(out.plan, with_sky(plan, sky_count));
+            ComputeSteps steps(gpu);
             if (count > 0) {
-                gather_bounces(gpu.gl(), programs, count, bounces);
+                gather_bounces(steps, programs, count, bounces);
             }
             if (count + sky_count > 0) {
-                write_vpls(gpu.gl(), writer, {count, sky_count}, shown);
+                write_vpls(steps, programs.writer, {count, sky_count}, shown);
             }
         });
         return out;

@@ -71,8 +71,7 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
         pass.parameter(bound);
         const VplCommon out{
             .atlas = pass.write(graph.value<VplAtlas>("vpl atlas")),
-            .constants = pass.write(graph.buffer<gpu::VplConstants>("vpl constants", 1, Lifetime::persistent),
-                                    Usage::copy)};
+            .constants = pass.write(growing_buffer<gpu::VplConstants>(graph, "vpl constants"), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const SceneMetrics& scene = run.value(metrics);
             const VplPlan& vpls = run.value(plan);

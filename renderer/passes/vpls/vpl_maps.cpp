@@ -4,6 +4,8 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/layer_target.hpp"
+#include "renderer/passes/scene/traced_content.hpp"
 
 namespace candela {
 namespace {
@@ -12,14 +14,11 @@ TextureDesc atlas_desc(const VplAtlas& atlas) {
     return {{atlas.side, atlas.side}, Format::depth32f, TextureShape::array, atlas.layers};
 }
 
-/// Identifies the stored maps: the atlas and its GL texture, the set of surfels, and the step of scene motion
-/// up to which the maps are current.
-struct DrawnAtlas {
+/// What the maps were made from.
+struct MapKey {
     VplAtlas atlas;
-    ObjectId object = 0;
-    std::uint64_t set = 0;
-    std::uint64_t step = 0;
-    bool operator==(const DrawnAtlas&) const = default;
+    std::uint64_t set = 0;  // of surfels
+    bool operator==(const MapKey&) const = default;
 };
 
 /// Resources of the node.
@@ -28,51 +27,36 @@ struct MapNode {
     MappedVpls vpls;
     VplCommon common;
     TextureHandle depth;
-    ValueHandle<DrawnAtlas> drawn;
+    TracedContent<MapKey> drawn;
     const gl::Program* program;
 };
 
 /// Draws the texels whose rays pass through the boxes in `changed`; all texels without a value: see
 /// changed_boxes.
-void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const DrawnAtlas& target,
+void draw_maps(Gpu& gpu, Execution& run, const MapNode& node,
                const std::optional<std::vector<Box>>& changed) {
-    const gl::Functions& gl = gpu.gl();
-    gl::Framebuffer& layers = gpu.layer_target();
-    layers.attach_depth(target.object);
-    layers.bind();
-    const auto side = static_cast<GLsizei>(target.atlas.side);
-    gl.Viewport(0, 0, side, side);
+    LayerTarget target(gpu);
+    target.set_layers(run.object(node.depth), run.value(node.common.atlas).side);
     if (!changed) {
-        const float nothing = 0.0F;
-        gl.ClearBufferfv(GL_DEPTH, 0, &nothing);
+        target.clear();
     }
-    set_changed_boxes(*node.program, changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
-    gl.Enable(GL_DEPTH_TEST);  // without the depth test, depth is not written
-    gl.DepthFunc(GL_ALWAYS);
-    node.program->use();
+    node.program->use(changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()));
+    gpu.device().set_raster_state({.depth_test = gl::DepthTest::always});
     gpu.no_vertices().bind();
-    gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(run.value(node.vpls.plan).vpl_count));
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    layers.attach_depth(0);
+    gpu.gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(run.value(node.vpls.plan).vpl_count));
 }
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     const VplAtlas& atlas = run.value(node.common.atlas);
     run.reserve(node.depth, atlas_desc(atlas));
-    DrawnAtlas target{.atlas = atlas, .object = run.object(node.depth)};
-    const DrawnAtlas* const before = run.previous(node.drawn);
-    std::optional<std::vector<Box>> changed;
-    if (node.vpls.motion) {
-        const SceneMotion& motion = run.value(*node.vpls.motion);
-        target.set = run.value(*node.vpls.set);
-        target.step = motion.step;
-        if (before != nullptr && before->atlas == atlas && before->object == target.object &&
-            before->set == target.set) {
-            changed = changed_boxes(motion, before->step);
-        }
+    if (!node.vpls.motion) {
+        node.drawn.forget(run);
+        draw_maps(gpu, run, node, std::nullopt);
+        return;
     }
-    draw_maps(gpu, run, node, target, changed);
-    run.set(node.drawn, target);
+    draw_maps(gpu, run, node,
+              node.drawn.outdated(run, run.value(*node.vpls.motion), {atlas, run.value(*node.vpls.set)},
+                                  {run.object(node.depth)}));
 }
 
 }  // namespace
@@ -95,7 +79,7 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
             .common = common,
             .depth = pass.update(graph.texture("vpl maps", atlas_desc({}), Lifetime::persistent),
                                  Usage::layer_target),
-            .drawn = pass.update(graph.value<DrawnAtlas>("drawn vpl atlas")),
+            .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
             .program = &gpu.program({"vpls/vpl_maps.vert", "vpls/vpl_maps.geom", "vpls/vpl_maps.frag"})};
         pass.run([=, &gpu](Execution& run) { update_maps(gpu, run, node); });
         return node.depth;

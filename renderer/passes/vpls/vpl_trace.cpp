@@ -1,9 +1,9 @@
 #include "renderer/passes/vpls/vpl_trace.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 
 namespace candela {
@@ -26,36 +26,25 @@ float edge_reach(float area, std::uint32_t vpl_count) {
     return 4.0F * std::sqrt(area / static_cast<float>(vpl_count));
 }
 
-/// Traces one segment per dispatch. A longer loop would reach the number of iterations after which software
-/// drivers silently stop all loops of an invocation.
-void trace_segments(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
-                    const VplPlan& plan) {
+struct PathPrograms {
+    const gl::Program& tracer;
+    const gl::Program& writer;
+    const gl::Program& edges;
+};
+
+/// One segment is traced per dispatch. A longer loop would reach the number of iterations after which
+/// software drivers silently stop all loops of an invocation.
+void trace(const Gpu& gpu, const PathPrograms& programs, const SceneMetrics& metrics, const VplPlan& plan) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
-    program.set("path_count", path_count);
-    program.set("ray_offset", run.value(tracing.metrics).ray_offset());
-    program.use();
+    const Groups path_groups{groups(path_count, paths_a_group)};
+    ComputeSteps steps(gpu);
     for (std::uint32_t bounce = 1; bounce <= plan.max_bounces; ++bounce) {
-        program.set("bounce", bounce);
-        gpu.gl().DispatchCompute(groups(path_count, paths_a_group), 1, 1);
-        gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        steps.run(programs.tracer, path_groups,
+                  {{"path_count", path_count}, {"ray_offset", metrics.ray_offset()}, {"bounce", bounce}});
     }
-}
-
-void write_vpls(const Gpu& gpu, const gl::Program& program, const VplPlan& plan) {
-    const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
-    program.set("path_count", path_count);
-    program.set("max_bounces", plan.max_bounces);
-    program.use();
-    gpu.gl().DispatchCompute(groups(path_count, paths_a_group), 1, 1);
-    gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
-void find_edges(const Gpu& gpu, Execution& run, const gl::Program& program, const Tracing& tracing,
-                const VplPlan& plan) {
-    program.set("vpl_count", plan.vpl_count);
-    program.set("edge_reach", edge_reach(run.value(tracing.metrics).area, plan.vpl_count));
-    program.use();
-    gpu.gl().DispatchCompute(1, groups(plan.vpl_count, vpls_a_group), 1);
+    steps.run(programs.writer, path_groups, {{"path_count", path_count}, {"max_bounces", plan.max_bounces}});
+    steps.run(programs.edges, {1, groups(plan.vpl_count, vpls_a_group)},
+              {{"vpl_count", plan.vpl_count}, {"edge_reach", edge_reach(metrics.area, plan.vpl_count)}});
 }
 
 }  // namespace
@@ -66,34 +55,30 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
         pass.read(plan_handle);
         pass.read(lights, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
-        const gl::Program& tracer = gpu.program({"vpls/vpl_trace.comp"});
-        const gl::Program& writer = gpu.program({"vpls/vpl_write.comp"});
-        const gl::Program& edges = gpu.program({"vpls/vpl_edges.comp"});
+        const PathPrograms programs{.tracer = gpu.program({"vpls/vpl_trace.comp"}),
+                                    .writer = gpu.program({"vpls/vpl_write.comp"}),
+                                    .edges = gpu.program({"vpls/vpl_edges.comp"})};
         const PathBuffers buffers{
-            .paths = pass.write(graph.buffer<gpu::Path>("paths", 1, Lifetime::persistent),
-                                {Usage::copy, BINDING_PATHS}),
-            .weights = pass.write(graph.buffer<float>("path weights", 1, Lifetime::persistent),
-                                  {Usage::copy, BINDING_PATH_WEIGHTS}),
-            .records = pass.write(graph.buffer<gpu::VplRecord>("vpl records", 1, Lifetime::persistent),
+            .paths = pass.write(growing_buffer<gpu::Path>(graph, "paths"), {Usage::copy, BINDING_PATHS}),
+            .weights =
+                pass.write(growing_buffer<float>(graph, "path weights"), {Usage::copy, BINDING_PATH_WEIGHTS}),
+            .records = pass.write(growing_buffer<gpu::VplRecord>(graph, "vpl records"),
                                   {Usage::storage, BINDING_VPL_RECORDS})};
-        const Vpls out{.plan = plan_handle,
-                       .vpls = pass.write(graph.buffer<gpu::Vpl>("vpls", 1, Lifetime::persistent),
-                                          {Usage::storage, BINDING_VPLS}),
-                       .flux = pass.write(graph.buffer<gpu::FluxAccount>("flux", 1, Lifetime::persistent),
-                                          {Usage::storage, BINDING_FLUX})};
-        pass.run([=, &gpu, &tracer, &writer, &edges](Execution& run) {
+        const Vpls out{
+            .plan = plan_handle,
+            .vpls = pass.write(growing_buffer<gpu::Vpl>(graph, "vpls"), {Usage::storage, BINDING_VPLS}),
+            .flux =
+                pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"), {Usage::storage, BINDING_FLUX})};
+        pass.run([=, &gpu](Execution& run) {
             const VplPlan& plan = run.value(out.plan);
-            run.reserve(out.vpls, std::max(plan.vpl_count, 1U));
-            run.reserve(out.flux, std::max<std::size_t>(plan.paths.size(), 1));
-            run.reserve(buffers.records, std::max(plan.vpl_count, 1U));
+            run.reserve(out.vpls, plan.vpl_count);
+            run.reserve(out.flux, plan.paths.size());
+            run.reserve(buffers.records, plan.vpl_count);
             upload<gpu::Path>(gpu, run, buffers.paths, plan.paths);
             upload<float>(gpu, run, buffers.weights, plan.weights);
-            if (plan.paths.empty()) {
-                return;
+            if (!plan.paths.empty()) {
+                trace(gpu, programs, run.value(tracing.metrics), plan);
             }
-            trace_segments(gpu, run, tracer, tracing, plan);
-            write_vpls(gpu, writer, plan);
-            find_edges(gpu, run, edges, tracing, plan);
         });
         return out;
     });
