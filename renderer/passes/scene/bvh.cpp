@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
-#include "renderer/passes/scene/buffer_ranges.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 
 namespace candela {

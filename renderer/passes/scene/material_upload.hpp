@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <candela/scene/components.hpp>
-#include "renderer/passes/scene/buffer_ranges.hpp"
+#include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/scene/use_cache.hpp"
 

@@ -7,8 +7,8 @@
 
 #include <candela/scene/components.hpp>
 #include "engine/bvh/box.hpp"
+#include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/gpu/gpu_types.hpp"
-#include "renderer/passes/scene/buffer_ranges.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/scene/use_cache.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/bvh/two_level.hpp"
-#include "renderer/passes/scene/buffer_ranges.hpp"
+#include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 
 namespace candela {
