@@ -118,6 +118,21 @@ TEST_SUITE("switching") {
         CHECK(creations > 0);
     }
 
+    TEST_CASE_FIXTURE(RenderFixture, "VPLs that are placed in another way get depth maps of their own") {
+        const Scene scene = scene_with_lights();
+        Configuration paths = by_path(ShadingPath::deferred);
+        paths.vpls.placement = VplPlacement::paths;
+        paths.visibility.method = VplVisibility::maps;
+        Configuration surfels = paths;
+        surfels.vpls.placement = VplPlacement::surfels;
+        configure(surfels);
+        const Picture expected = from_scratch(scene, size);
+        configure(paths);
+        static_cast<void>(render(scene, size));
+        configure(surfels);
+        CHECK(render(scene, size) == expected);
+    }
+
     TEST_CASE_FIXTURE(RenderFixture,
                       "all errors of a file are reported, and the current configuration stays in use") {
         const Scene scene = scene_with_lights();
