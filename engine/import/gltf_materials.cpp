@@ -2,66 +2,21 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <map>
 #include <string_view>
 #include <tuple>
 
 #include <fmt/format.h>
-#include <stb/stb_image.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/decode_image.hpp"
 #include "engine/import/gltf_accessors.hpp"
-#include "engine/import/png_check.hpp"
 
 namespace candela::gltf {
 
 namespace {
 
 using ImageKey = std::tuple<const unsigned char*, Wrap, Wrap>;  // encoded bytes, wrap_u, wrap_v
-
-Image decode(Bytes encoded, ImportBudget& budget) {
-    // Upper bound of pixels per encoded byte, to reject headers with impossible sizes. Deflate compresses at
-    // most 1,032 : 1 (zlib's documentation), and an uncompressed PNG byte holds at most 8 pixels. A JPEG uses
-    // at least 1 bit for 64 pixels, which gives fewer pixels per byte.
-    constexpr std::uint64_t most_pixels_in_a_byte = 8256;  // 8 × 1,032
-
-    const bool is_png = starts_with(encoded, "\x89PNG");
-    if (!is_png && !starts_with(encoded, "\xFF\xD8\xFF")) {
-        throw SceneError("it is neither PNG nor JPEG");
-    }
-    if (encoded.size() > std::numeric_limits<int>::max()) {
-        throw SceneError("it exceeds 2 GiB");
-    }
-    const int size = static_cast<int>(encoded.size());
-    int width = 0;
-    int height = 0;
-    if (stbi_info_from_memory(encoded.data(), size, &width, &height, nullptr) == 0) {
-        throw SceneError("it cannot be decoded");
-    }
-    const auto pixel_count = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    if (pixel_count > most_pixels_in_a_byte * encoded.size()) {
-        throw SceneError(fmt::format("its {} bytes cannot hold {} x {} pixels", size, width, height));
-    }
-    budget.add_picture(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
-    if (is_png) {
-        check_png(encoded, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height));
-    }
-    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
-        stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
-        stbi_image_free);
-    if (!pixels) {
-        throw SceneError("it cannot be decoded");
-    }
-
-    Image image;
-    image.width = static_cast<std::uint32_t>(width);
-    image.height = static_cast<std::uint32_t>(height);
-    image.texels.resize(std::size_t{image.width} * image.height);
-    std::memcpy(image.texels.data(), pixels.get(), image.texels.size() * sizeof(glm::u8vec4));
-    return image;
-}
 
 Wrap to_wrap(int mode, int sampler) {
     switch (mode) {
@@ -134,7 +89,7 @@ class ImageReader {
         const Bytes encoded = encoded_image(index);
         std::shared_ptr<const Image>& image = images_[{encoded.data(), wraps.u, wraps.v}];
         if (!image) {
-            Image decoded = decode(encoded, budget_);
+            Image decoded = decode_image(encoded, budget_);
             decoded.wrap_u = wraps.u;
             decoded.wrap_v = wraps.v;
             image = std::make_shared<const Image>(std::move(decoded));

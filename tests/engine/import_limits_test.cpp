@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -210,10 +210,9 @@ TEST_SUITE("import limits") {
             const std::string_view type = "IDAT";
             const auto chunk = std::search(cut.begin(), cut.end(), type.begin(), type.end()) - 4;
             chunk[0] = 0x78;
-            const auto left = cut.end() - (chunk + 8);
-            CHECK(outcome_of(cut) ==
-                  fmt::format("scene.gltf: image 0: it is cut short: of a chunk of {} bytes, {} are left",
-                              0x78000000U + chunk[3], left));
+            const std::string error = outcome_of(cut);  // which of the two depends on the version of libpng
+            CHECK((error == "scene.gltf: image 0: it cannot be decoded: IDAT: chunk data is too large" ||
+                   error == "scene.gltf: image 0: it is cut short"));
         }
 
         SUBCASE("data of 4,096 x 4,096 pixels where the header says 2 x 1") {
@@ -222,10 +221,11 @@ TEST_SUITE("import limits") {
             Bytes large;
             REQUIRE(stbi_write_png_to_func(append, &large, side, side, 1, black.data(), side) != 0);
             REQUIRE(large.size() < 200'000);
-            const std::array<unsigned char, 8> two_by_one{0, 0, 0, 2, 0, 0, 0, 1};
-            std::ranges::copy(two_by_one, large.begin() + 16);  // after signature, length and type of IHDR
+            constexpr std::size_t header = 33;  // bytes of the signature and the chunk IHDR
+            const Bytes small = png();
+            std::ranges::copy(std::span(small).first(header), large.begin());
             CHECK(outcome_of(large) ==
-                  "scene.gltf: image 0: its data are corrupt, or more than 2 x 1 pixels need");
+                  "scene.gltf: image 0: it cannot be decoded: IDAT: Too much image data");
         }
     }
 

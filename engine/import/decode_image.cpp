@@ -1,0 +1,130 @@
+#include "engine/import/decode_image.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
+
+#include <fmt/format.h>
+#include <png.h>
+#include <stb/stb_image.h>
+
+#include <candela/scene/scene_error.hpp>
+
+namespace candela::gltf {
+
+namespace {
+
+/// A picture without pixels yet, whose size has been checked and counted.
+Image image_of(std::uint32_t width, std::uint32_t height, std::size_t encoded_bytes, ImportBudget& budget) {
+    // Upper bound of pixels per encoded byte, to reject headers with impossible sizes. Deflate compresses at
+    // most 1,032 : 1 (zlib's documentation), and an uncompressed PNG byte holds at most 8 pixels. A JPEG uses
+    // at least 1 bit for 64 pixels, which gives fewer pixels per byte.
+    constexpr std::uint64_t most_pixels_in_a_byte = 8256;  // 8 × 1,032
+    if (std::uint64_t{width} * height > most_pixels_in_a_byte * encoded_bytes) {
+        throw SceneError(
+            fmt::format("its {} bytes cannot hold {} x {} pixels", encoded_bytes, width, height));
+    }
+    budget.add_picture(width, height);
+    Image image;
+    image.width = width;
+    image.height = height;
+    return image;
+}
+
+// libpng asks for errors to leave its functions with a jump or an exception: these are exceptions.
+
+[[noreturn]] void fail(png_structp /*png*/, png_const_charp message) {
+    throw SceneError(fmt::format("it cannot be decoded: {}", message));
+}
+
+void ignore(png_structp /*png*/, png_const_charp /*warning*/) {}
+
+/// A PNG that is being read.
+struct PngReader {
+    explicit PngReader(Bytes encoded) : rest(encoded) {}
+    PngReader(const PngReader&) = delete;
+    PngReader& operator=(const PngReader&) = delete;
+    ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+
+    Bytes rest;  // what has not been read yet
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, ignore);
+    png_infop info = png_create_info_struct(png);
+};
+
+void read_bytes(png_structp png, png_bytep to, std::size_t size) {
+    Bytes& rest = *static_cast<Bytes*>(png_get_io_ptr(png));
+    if (size > rest.size()) {
+        throw SceneError("it is cut short");
+    }
+    std::memcpy(to, rest.data(), size);
+    rest = rest.subspan(size);
+}
+
+/// Has memory for the pixels and a few rows: data decompress into them row by row.
+Image decode_png(Bytes encoded, ImportBudget& budget) {
+    PngReader reader(encoded);
+    if (!reader.info) {
+        throw std::bad_alloc();
+    }
+    png_structp const png = reader.png;
+    png_set_read_fn(png, &reader.rest, read_bytes);
+    // What libpng could go on after, such as more data than the pixels need, is an error, too.
+    png_set_benign_errors(png, 0);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);  // no texts, no colour profiles
+    png_read_info(png, reader.info);
+    Image image = image_of(png_get_image_width(png, reader.info), png_get_image_height(png, reader.info),
+                           encoded.size(), budget);
+
+    png_set_expand(png);
+    png_set_strip_16(png);
+    png_set_gray_to_rgb(png);
+    png_set_add_alpha(png, 0xFF, PNG_FILLER_AFTER);
+    const int passes = png_set_interlace_handling(png);
+    image.texels.resize(std::size_t{image.width} * image.height);
+    for (int pass = 0; pass < passes; ++pass) {
+        for (std::size_t y = 0; y < image.height; ++y) {
+            png_read_row(png, &image.texels[y * image.width].x, nullptr);
+        }
+    }
+    png_read_end(png, nullptr);
+    return image;
+}
+
+Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
+    if (encoded.size() > std::numeric_limits<int>::max()) {
+        throw SceneError("it exceeds 2 GiB");
+    }
+    const int size = static_cast<int>(encoded.size());
+    int width = 0;
+    int height = 0;
+    if (stbi_info_from_memory(encoded.data(), size, &width, &height, nullptr) == 0) {
+        throw SceneError("it cannot be decoded");
+    }
+    Image image = image_of(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+                           encoded.size(), budget);
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
+        stbi_image_free);
+    if (!pixels) {
+        throw SceneError("it cannot be decoded");
+    }
+    image.texels.resize(std::size_t{image.width} * image.height);
+    std::memcpy(image.texels.data(), pixels.get(), image.texels.size() * sizeof(glm::u8vec4));
+    return image;
+}
+
+}  // namespace
+
+Image decode_image(Bytes encoded, ImportBudget& budget) {
+    if (starts_with(encoded, "\x89PNG")) {
+        return decode_png(encoded, budget);
+    }
+    if (starts_with(encoded, "\xFF\xD8\xFF")) {
+        return decode_jpeg(encoded, budget);
+    }
+    throw SceneError("it is neither PNG nor JPEG");
+}
+
+}  // namespace candela::gltf

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <candela/scene/components.hpp>
+#include "engine/import/import_files.hpp"
+
+namespace candela::gltf {
+
+/// The pixels of a PNG or JPEG, of which channels of 16 bits keep the high byte. Its size is added to the
+/// budget before memory is allocated for it. Throws SceneError.
+[[nodiscard]] Image decode_image(Bytes encoded, ImportBudget& budget);
+
+}  // namespace candela::gltf
