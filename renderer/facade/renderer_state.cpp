@@ -417,15 +417,15 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
             .paths = static_cast<std::uint32_t>(plan.paths.size()),
             .rays = count_rays(plan.paths, placed),
             .interleave = view.interleave,
-            .lacking_pixels = count_lacking(view),
+            .filled_pixels = count_filled(view),
             .flux = sum_up(accounts)};
 }
 
-std::uint32_t Renderer::State::count_lacking(const ViewHandles& view) const {
+std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {
     if (!view.indirect) {
         return 0;
     }
-    return backend_.buffer(runtime_.object(view.indirect->lacking)).download<std::uint32_t>().at(3);
+    return backend_.buffer(runtime_.object(view.indirect->fill_list)).download<std::uint32_t>().at(3);
 }
 
 LightReport Renderer::State::report_lights(const ViewHandles& view) const {

@@ -64,7 +64,7 @@ class CANDELA_PRIVATE Renderer::State {
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] bool refines() const;
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
-    [[nodiscard]] std::uint32_t count_lacking(const ViewHandles& view) const;
+    [[nodiscard]] std::uint32_t count_filled(const ViewHandles& view) const;
     [[nodiscard]] LightReport report_lights(const ViewHandles& view) const;
 
     Gpu gpu_;

@@ -82,9 +82,10 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
     return refined.refinement;
 }
 
-/// The configured VPLs, if any is needed. The light of the sky and of surfaces that emit it is direct light,
-/// but VPLs carry it. Where there is such light, the VPLs are the same whatever of it is shown, so that
-/// direct and indirect light add up to the total: which pixels evaluate which VPLs depends on all of them.
+/// The configured VPLs, if any is needed. VPLs also carry the light of the sky and of surfaces that emit
+/// light, although it is direct light. A world with such light has the same VPLs for every Show; only their
+/// flux differs. Which VPLs a pixel evaluates depends on their number, so that pictures of the direct and of
+/// the indirect light add up to the one of the total only if they have all VPLs in common.
 struct WantedVpls {
     VplSettings settings;
     ShownLight shown;
@@ -155,7 +156,7 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
     } else if (configuration.visibility.method == VplVisibility::rays) {
         light.rays = lit.tracing;
     }
-    return SharedVpls{light, add_vpl_deal(graph, gpu, frame.vpls->plan), wanted.count};
+    return SharedVpls{light, add_vpl_order(graph, gpu, frame.vpls->plan), wanted.count};
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     }
     // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
     const bool gathers = shared.vpls && (out.interleave > 1 || asked.indirect ||
-                                         shared.vpls->count > most_asked(shared.vpls->light));
+                                         shared.vpls->count > max_vpls_per_invocation(shared.vpls->light));
     asked.depth |= gathers;
 
     const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)

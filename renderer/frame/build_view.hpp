@@ -23,7 +23,7 @@ struct LitScene {
 /// The light of the VPLs, for all views.
 struct SharedVpls {
     VplLight light;
-    BufferHandle<std::uint32_t> order;  ///< see add_vpl_deal
+    BufferHandle<std::uint32_t> order;  ///< see add_vpl_order
     std::uint32_t count = 0;            ///< about how many there are
 };
 

@@ -29,7 +29,7 @@ std::span<const std::string_view> pixel_passes() {
     static constexpr std::array<std::string_view, 15> names{"gbuffer",         "depth-prepass",
                                                             "tile-depths",     "light-tiles",
                                                             "light-clusters",  "vpl-reconstruct-rows",
-                                                            "vpl-reconstruct", "vpl-lacking",
+                                                            "vpl-reconstruct", "vpl-fill-list",
                                                             "vpl-fill",        "forward",
                                                             "deferred",        "transparent",
                                                             "accumulate",      "blended-light-tiles",

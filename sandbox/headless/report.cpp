@@ -37,7 +37,7 @@ Json to_json(const VplReport& vpls) {
             {"alive", vpls.alive},
             {"paths", vpls.paths},
             {"interleave", vpls.interleave},
-            {"lacking_pixels", vpls.lacking_pixels},
+            {"filled_pixels", vpls.filled_pixels},
             {"flux", flux}};
 }
 
@@ -89,7 +89,7 @@ std::string vpl_table(const VplReport& vpls) {
     table += vpls.paths > 0 ? fmt::format(", on {} paths\n", vpls.paths) : "\n";
     if (vpls.interleave > 1)
         table += fmt::format("  of which       a pixel asks one in {}; {} pixels asked more\n",
-                             vpls.interleave * vpls.interleave, vpls.lacking_pixels);
+                             vpls.interleave * vpls.interleave, vpls.filled_pixels);
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r,
                              line.value.g, line.value.b);

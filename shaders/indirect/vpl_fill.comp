@@ -1,6 +1,6 @@
 // Gathers VPLs for the listed pixels, for which reconstruction found too few classes. Such a pixel sums every second
-// VPL; neighbouring pixels sum different halves. The result is the mean of both estimates, weighted by
-// the number of VPLs behind each: theory.md, "Pixels that lack neighbours". One invocation per listed pixel.
+// VPL; neighbouring pixels sum different halves. The result is the mean of both estimates, weighted by the number of
+// VPLs behind each: theory.md, "Pixels without enough neighbours". One invocation per listed pixel.
 #include "bindings.glsl"
 #include "surfaces/visible_surface.glsl"
 #include "indirect/vpl_light.glsl"
@@ -8,25 +8,25 @@
 layout(local_size_x = FILL_GROUP) in;
 
 layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
-layout(std430, binding = BINDING_LACKING) readonly restrict buffer Lacking {
-    uint lacking_groups[3];
-    uint lacking_count;
-    uint lacking[];
+layout(std430, binding = BINDING_FILL_LIST) readonly restrict buffer FillList {
+    uint fill_groups[3];
+    uint fill_count;
+    uint fill_pixels[];
 };
 
-uniform uint asked_before;  // VPLs that a pixel has summed in the dispatches before this one
-uniform uint asked_now;     // at most
+uniform uint first_vpl;          // of the pixel's half, that this dispatch sums
+uniform uint vpls_per_dispatch;  // at most
 
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
 
 void main() {
-    if (gl_GlobalInvocationID.x >= lacking_count) return;
-    uint packed_pixel = lacking[gl_GlobalInvocationID.x];
+    if (gl_GlobalInvocationID.x >= fill_count) return;
+    uint packed_pixel = fill_pixels[gl_GlobalInvocationID.x];
     ivec2 at = ivec2(packed_pixel & 0xffffu, packed_pixel >> 16);
     Surface surface = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
     vec3 irradiance = vec3(0.0);
-    uint end = min(vpl_constants.count, 2u * (asked_before + asked_now));
-    for (uint i = 2u * asked_before + uint(at.x + at.y) % 2u; i < end; i += 2u) {
+    uint end = min(vpl_constants.count, 2u * (first_vpl + vpls_per_dispatch));
+    for (uint i = 2u * first_vpl + uint(at.x + at.y) % 2u; i < end; i += 2u) {
 #ifdef SURFELS
         // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
         irradiance += irradiance_from_vpl(vpls[i], surface);
@@ -36,6 +36,6 @@ void main() {
     }
     vec4 found = imageLoad(reconstructed, at);
     float weight = 1.0 / (found.a + 0.5);  // the sum over half of the VPLs is half of the estimate
-    if (asked_before == 0u) found.rgb *= found.a * weight;
+    if (first_vpl == 0u) found.rgb *= found.a * weight;
     imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance, found.a));
 }

@@ -26,8 +26,8 @@ float geometry_term(Vpl vpl, Surface surface) {
     float height = -dot(vpl.normal, to_vpl);
     if (height <= -vpl_constants.crease_slack) return 0.0;
     height = max(height, 0.0);
-    float square = squareness(vpl.normal, surface.normal) * share_on_surface(vpl, -to_vpl - height * vpl.normal);
-    return sinking_disc_term(to_vpl, height, vpl.normal, vpl_constants.radius2, square, surface.normal);
+    float tilt = tilt_of(vpl.normal, surface.normal) * share_on_surface(vpl, -to_vpl - height * vpl.normal);
+    return sinking_disc_term(to_vpl, height, vpl.normal, vpl_constants.radius2, tilt, surface.normal);
 }
 
 #ifndef SURFELS

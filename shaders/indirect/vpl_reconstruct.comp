@@ -65,22 +65,22 @@ vec4 reconstruct(ivec2 at) {
 
 #ifdef COLUMNS
 
-// One bit a pixel, 32 a word.
-layout(std430, binding = BINDING_LACKING_MASK) writeonly restrict buffer Mask { uint lacking_mask[]; };
+// One bit a pixel, 32 a word: 1 if vpl_fill.comp is to gather VPLs for it.
+layout(std430, binding = BINDING_FILL_MASK) writeonly restrict buffer Mask { uint fill_mask[]; };
 
 const float ENOUGH = 0.6;  // share of the classes; with less, vpl_fill.comp gathers VPLs for the pixel
 
 shared uint group_mask[RECONSTRUCT_GROUP / 32];
 
-void note_lacking(bool lacks) {
+void mark_for_fill(bool needs_fill) {
     uint word = gl_LocalInvocationID.x / 32u;
     bool first = gl_LocalInvocationID.x % 32u == 0u;
     if (first) group_mask[word] = 0u;
     barrier();
-    if (lacks) atomicOr(group_mask[word], 1u << (gl_LocalInvocationID.x % 32u));
+    if (needs_fill) atomicOr(group_mask[word], 1u << (gl_LocalInvocationID.x % 32u));
     barrier();
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (first) lacking_mask[group * (RECONSTRUCT_GROUP / 32) + word] = group_mask[word];
+    if (first) fill_mask[group * (RECONSTRUCT_GROUP / 32) + word] = group_mask[word];
 }
 
 #endif
@@ -91,6 +91,6 @@ void main() {
     vec4 result = is_surface ? reconstruct(at) : vec4(0.0);
     imageStore(reconstructed, at, result);  // OpenGL discards stores outside the image
 #ifdef COLUMNS
-    note_lacking(is_surface && result.a < ENOUGH);
+    mark_for_fill(is_surface && result.a < ENOUGH);
 #endif
 }

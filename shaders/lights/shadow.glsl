@@ -107,7 +107,7 @@ bool is_blocked(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) 
     return any_hit(origin, direction, 0.0, end);
 }
 
-// Rays that the invocation may still cast: software drivers stop long loops (see most_asked in
+// Rays that the invocation may still cast: software drivers stop long loops (see max_vpls_per_invocation in
 // renderer/passes/indirect/vpl_light.hpp). Only where the shadows of many lights end does it cast them all.
 int shadow_rays_left = MOST_SHADOW_RAYS;
 

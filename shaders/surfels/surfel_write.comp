@@ -56,8 +56,8 @@ void main() {
         float share = direct_weight / (direct_weight + spread_weight);
         vec3 apart = cell.centre - vpl.position;
         vpl.position += share * apart;
-        // One disc in place of two, with the variance of both about their common mean. See theory.md, "Width of a lit
-        // cell".
+        // The direct light comes from one disc, the indirect light from another. Both are replaced by one disc, with
+        // the mean and the variance of the flux of both. See theory.md, "Width of a lit cell".
         float between = share * (1.0 - share) * dot(apart, apart) * 6.0 / PI;
         vpl.radius2 = min(mix(vpl.radius2, cell.radius2, share) + between, vpl.radius2);
     }

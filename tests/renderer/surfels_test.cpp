@@ -25,32 +25,33 @@ namespace {
 constexpr double pi = glm::pi<double>();
 
 /// A parallelogram of two triangles.
-void add_parallelogram(SurfelGround& ground, std::uint32_t item, glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
+void add_parallelogram(SceneTriangles& scene, std::uint32_t item, glm::vec3 corner, glm::vec3 u,
+                       glm::vec3 v) {
     const auto add_triangle = [&](glm::vec3 a, glm::vec3 ab, glm::vec3 ac) {
         gpu::TraceTriangle triangle{};
         triangle.a = a;
         triangle.edge_ab = ab;
         triangle.edge_ac = ac;
-        ground.triangles.push_back(triangle);
-        ground.item_of.push_back(item);
+        scene.triangles.push_back(triangle);
+        scene.item_of.push_back(item);
     };
     add_triangle(corner, u, v);
     add_triangle(corner + u + v, -u, -v);
 }
 
 /// The six sides of a cube with edges of 2 m, each with its own normal.
-SurfelGround cube() {
-    SurfelGround ground{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+SceneTriangles cube() {
+    SceneTriangles scene{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
     for (int axis = 0; axis < 3; ++axis) {
         for (const float side : {-1.0F, 1.0F}) {
             glm::vec3 normal(0.0F), u(0.0F);
             normal[axis] = side;
             u[(axis + 1) % 3] = 2.0F;
             const glm::vec3 v = glm::cross(normal, u);
-            add_parallelogram(ground, 0, normal - 0.5F * (u + v), u, v);
+            add_parallelogram(scene, 0, normal - 0.5F * (u + v), u, v);
         }
     }
-    return ground;
+    return scene;
 }
 
 double total_area(const SurfelSet& set) {
@@ -110,7 +111,7 @@ TEST_SUITE("surfels: placement") {
     }
 
     TEST_CASE("double-sided surfaces have surfels on both sides, others on their front") {
-        SurfelGround sheet{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+        SceneTriangles sheet{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
         add_parallelogram(sheet, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         for (const bool both : {false, true}) {
             sheet.double_sided[0] = both;
@@ -124,7 +125,7 @@ TEST_SUITE("surfels: placement") {
     }
 
     TEST_CASE("no cell extends to another item, even in the same plane") {
-        SurfelGround two{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+        SceneTriangles two{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
         add_parallelogram(two, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
         const SurfelSet set = place_surfels(two, {.reflecting = 40}, test_seed());

@@ -33,10 +33,10 @@ class VplGatherTests : public PathFixture {
         configure(configuration);
         return render(scene, size);
     }
-    std::uint32_t lacking() {
+    std::uint32_t filled_pixels() {
         const Report report = renderer.report();
         REQUIRE(report.vpls);
-        return report.vpls->lacking_pixels;
+        return report.vpls->filled_pixels;
     }
 };
 
@@ -71,7 +71,7 @@ TEST_SUITE("interleaved gathering") {
 
     TEST_CASE("each share of the VPLs contains its part of every light and bounce") {
         const VplPlan paths = three_lights();
-        std::vector<std::uint32_t> order = deal_vpls(paths);
+        std::vector<std::uint32_t> order = order_vpls(paths);
         REQUIRE(order.size() == paths.vpl_count);
 
         std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>
@@ -139,7 +139,7 @@ TEST_SUITE("interleaved gathering") {
                 configuration.interleave = interleave;
                 // Over 0.1 mm, the light of the nearest VPL, 0.5 m away, changes by 1e-4.
                 CHECK(worst_error(picture(scene, configuration, {83, 61}), all, 1e-12) < 2e-4);
-                CHECK(lacking() == 0);
+                CHECK(filled_pixels() == 0);
             }
         }
     }
@@ -204,8 +204,8 @@ TEST_SUITE("interleaved gathering") {
         constexpr glm::uvec2 size{96, 72};
         const Picture all = picture(scene, indirect_only(Interleave::one, 256), size);
         const Picture shared = picture(scene, indirect_only(Interleave::four, 256), size);
-        CHECK(lacking() > 50);
-        CHECK(lacking() < 96 * 72 / 2);
+        CHECK(filled_pixels() > 50);
+        CHECK(filled_pixels() < 96 * 72 / 2);
         CHECK(is_sane(shared));
         CHECK(mean(shared) == doctest::Approx(mean(all)).epsilon(0.02));
     }

@@ -25,7 +25,7 @@ double indirect_ms(const FrameReport& frame, Interleave interleave) {
     for (const PassReport& pass : frame.passes) {
         const std::string_view name = pass.name;
         const bool gathers = name == "vpl-gather" || name.starts_with("vpl-reconstruct") ||
-                             name == "vpl-lacking" || name == "vpl-fill";
+                             name == "vpl-fill-list" || name == "vpl-fill";
         const bool counts = interleave == Interleave::one ? name == "deferred" : gathers;
         sum += pass.ran && counts ? pass.gpu_ms : 0.0;
     }
@@ -45,7 +45,7 @@ void print_row(std::uint32_t vpls, Candidate& candidate, const Candidate& all, s
     fmt::print("{:>6} {:>3} {:>12.1f} {:>12.1f} {:>10.3f} {:>9.2f} % {:>12.2e}\n", vpls,
                to_string(candidate.interleave), median(candidate.frames), median(candidate.indirect),
                median(candidate.indirect) / median(all.indirect),
-               100.0 * report.lacking_pixels / static_cast<double>(pixels), errors.rel_mse);
+               100.0 * report.filled_pixels / static_cast<double>(pixels), errors.rel_mse);
 }
 
 }  // namespace

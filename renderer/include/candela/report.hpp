@@ -52,7 +52,7 @@ struct VplReport {
     std::uint32_t rays = 0;        ///< path segments, including those that hit nothing; 0 with surfels
     std::uint32_t interleave = 1;  ///< n: a pixel evaluates one in n² VPLs
     /// Pixels that evaluated additional VPLs, because too few neighbours lie on the same surface.
-    std::uint32_t lacking_pixels = 0;
+    std::uint32_t filled_pixels = 0;
     EnergyAccount flux;
 };
 

@@ -24,10 +24,10 @@ void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::u
     const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
     const std::uint32_t classes = interleave * interleave;
     const std::uint32_t share = (vpl_count + classes - 1) / classes;
-    program.set("asked_now", most);
+    program.set("vpls_per_dispatch", most);
     program.use();
     in_parts(gl, share, most, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, [&](std::uint32_t first) {
-        program.set("asked_before", first);
+        program.set("first_vpl", first);
         gl.DispatchCompute(groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes);
     });
 }
@@ -47,8 +47,8 @@ std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::
 
 namespace {
 
-/// Surfels are ordered by surface. This order makes each share contain surfels from all surfaces.
-std::vector<std::uint32_t> deal_surfels(std::uint32_t count) {
+/// Surfels lie in the buffer surface by surface. In this order each share contains surfels of all surfaces.
+std::vector<std::uint32_t> order_surfels(std::uint32_t count) {
     constexpr std::uint32_t most_shares = 64;
     std::vector<std::uint32_t> order;
     for (std::uint32_t share = 0; share < most_shares; ++share) {
@@ -61,9 +61,9 @@ std::vector<std::uint32_t> deal_surfels(std::uint32_t count) {
 
 }  // namespace
 
-std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
+std::vector<std::uint32_t> order_vpls(const VplPlan& plan) {
     if (plan.paths.empty()) {
-        return deal_surfels(plan.vpl_count);
+        return order_surfels(plan.vpl_count);
     }
     using Group = std::pair<std::uint32_t, std::uint32_t>;  // light and bounce
     std::map<Group, std::uint32_t> sizes;
@@ -73,28 +73,28 @@ std::vector<std::uint32_t> deal_vpls(const VplPlan& plan) {
         }
     }
     // Relative position of the VPL in its group, from 0 to 1, and its index.
-    std::vector<std::pair<double, std::uint32_t>> dealt;
-    dealt.reserve(plan.vpl_count);
+    std::vector<std::pair<double, std::uint32_t>> placed;
+    placed.reserve(plan.vpl_count);
     std::map<Group, std::uint32_t> seen;
     for (const gpu::Path& path : plan.paths) {
         for (std::uint32_t bounce = 0; bounce < path.vpl_count; ++bounce) {
             const Group group{path.light, bounce};
-            dealt.emplace_back((seen[group]++ + 0.5) / sizes[group], path.first_vpl + bounce);
+            placed.emplace_back((seen[group]++ + 0.5) / sizes[group], path.first_vpl + bounce);
         }
     }
-    std::ranges::stable_sort(dealt, {}, &std::pair<double, std::uint32_t>::first);
-    std::vector<std::uint32_t> order(dealt.size());
-    std::ranges::transform(dealt, order.begin(), &std::pair<double, std::uint32_t>::second);
+    std::ranges::stable_sort(placed, {}, &std::pair<double, std::uint32_t>::first);
+    std::vector<std::uint32_t> order(placed.size());
+    std::ranges::transform(placed, order.begin(), &std::pair<double, std::uint32_t>::second);
     return order;
 }
 
-BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> plan) {
-    return graph.add("vpl-deal", [&](Pass& pass) {
+BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> plan) {
+    return graph.add("vpl-order", [&](Pass& pass) {
         pass.read(plan);
         const auto order =
             pass.write(graph.buffer<std::uint32_t>("vpl order", 1, Lifetime::persistent), Usage::copy);
         pass.run([=, &gpu](Execution& run) {
-            upload<std::uint32_t>(gpu, run, order, deal_vpls(run.value(plan)));
+            upload<std::uint32_t>(gpu, run, order, order_vpls(run.value(plan)));
         });
         return order;
     });
@@ -118,7 +118,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
         pass.run([=, &gpu, &program](Execution& run) {
             program.set("interleave", interleave);
             dispatch_gather(gpu.gl(), program, view.size, interleave, run.value(light.vpls.plan).vpl_count,
-                            most_asked(light));
+                            max_vpls_per_invocation(light));
         });
         return out;
     });

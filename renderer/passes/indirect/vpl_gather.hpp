@@ -17,29 +17,29 @@ namespace candela {
 /// 2, 1 with at least eight VPLs per class and a picture height of at least 60 · n pixels.
 [[nodiscard]] std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size);
 
-/// The order of VPLs, as indices, from which classes of pixels take consecutive ranges as their shares. Each
+/// The order of VPLs, as indices, of which each class of pixels takes a consecutive range as its share. Each
 /// range contains VPLs of each light and bounce in proportion. Within these, they are consecutive points of
 /// the light's low-discrepancy sequence, which are evenly distributed. Surfels are ordered so that each range
 /// contains surfels from all surfaces.
-[[nodiscard]] std::vector<std::uint32_t> deal_vpls(const VplPlan& paths);
+[[nodiscard]] std::vector<std::uint32_t> order_vpls(const VplPlan& paths);
 
 /// What each pixel has gathered from its share of the VPLs.
 struct GatheredVpls {
     /// rgba32f: estimate of π times the irradiance from all VPLs, extrapolated from the share of the pixel's
     /// class; in lux or W/m², by the unit of the lights. Alpha is 1 where there is a surface, else 0.
     TextureHandle irradiance;
-    BufferHandle<std::uint32_t> order;  ///< result of `deal_vpls`
+    BufferHandle<std::uint32_t> order;  ///< result of `order_vpls`
     std::uint32_t interleave = 1;       ///< n
 };
 
-/// Adds node `vpl-deal` (CPU, then upload): deal_vpls. Depends on the plan.
-[[nodiscard]] BufferHandle<std::uint32_t> add_vpl_deal(FrameGraph& graph, const Gpu& gpu,
-                                                       ValueHandle<VplPlan> plan);
+/// Adds node `vpl-order` (CPU, then upload): order_vpls. Depends on the plan.
+[[nodiscard]] BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu,
+                                                        ValueHandle<VplPlan> plan);
 
 /// Adds node `vpl-gather` (compute): each pixel sums the light of the VPLs in the share of its class (Wald et
 /// al., "Interactive Global Illumination using Fast Ray Tracing", 2002; Segovia et al., "Non-interleaved
 /// Deferred Shading of Interleaved Sample Patterns", 2006). Depends on the VPLs, depth and normal of the
-/// surfaces, and the view. `order`: of add_vpl_deal. `interleave`: n.
+/// surfaces, and the view. `order`: of add_vpl_order. `interleave`: n.
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                           const VplLight& light, BufferHandle<std::uint32_t> order,
                                           const ViewData& view, std::uint32_t interleave);

@@ -2,7 +2,7 @@
 
 namespace candela {
 
-std::uint32_t most_asked(const VplLight& light) {
+std::uint32_t max_vpls_per_invocation(const VplLight& light) {
     if (light.rays) {
         return light.maps ? 512 : 64;  // few need rays: see emitting_surfels
     }

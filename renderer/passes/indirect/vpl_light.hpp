@@ -24,7 +24,7 @@ struct VplLight {
 
 /// Most VPLs that an invocation may evaluate in one dispatch or draw. Software drivers silently stop all
 /// loops of an invocation after 65,535 iterations in total; a ray may take a thousand of them.
-[[nodiscard]] std::uint32_t most_asked(const VplLight& light);
+[[nodiscard]] std::uint32_t max_vpls_per_invocation(const VplLight& light);
 
 /// Names to define in shaders that include vpl_light.glsl.
 [[nodiscard]] std::vector<std::string> vpl_light_variant(const VplLight& light);

@@ -44,10 +44,10 @@ TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, Textur
 
 struct Columns {
     TextureHandle irradiance;
-    BufferHandle<std::uint32_t> lacking_mask;  ///< one bit per pixel, `row_words` words per row
+    BufferHandle<std::uint32_t> fill_mask;  ///< one bit per pixel, `row_words` words per row
 };
 
-/// Words of the mask per row of pixels: 32 pixels per word, rounded up to whole work groups.
+/// Words of the fill mask per row of pixels: 32 pixels per word, rounded up to whole work groups.
 std::uint32_t row_words(glm::uvec2 size) {
     return groups_of_row(size) * (RECONSTRUCT_GROUP / 32);
 }
@@ -60,23 +60,22 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHa
         const Columns out{
             .irradiance = pass.write(graph.texture("indirect irradiance", {pixels.size, Format::rgba32f}),
                                      {Usage::storage, IMAGE_INDIRECT}),
-            .lacking_mask =
-                pass.write(graph.buffer<std::uint32_t>("mask of pixels lacking neighbours",
-                                                       std::uint64_t{row_words(pixels.size)} * pixels.size.y),
-                           {Usage::storage, BINDING_LACKING_MASK})};
+            .fill_mask = pass.write(graph.buffer<std::uint32_t>(
+                                        "fill mask", std::uint64_t{row_words(pixels.size)} * pixels.size.y),
+                                    {Usage::storage, BINDING_FILL_MASK})};
         pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
         return out;
     });
 }
 
 BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns& columns, glm::uvec2 size) {
-    return graph.add("vpl-lacking", [&](Pass& pass) {
-        pass.read(columns.lacking_mask, {Usage::storage, BINDING_LACKING_MASK});
-        const gl::Program& program = gpu.program({"indirect/vpl_lacking.comp"});
+    return graph.add("vpl-fill-list", [&](Pass& pass) {
+        pass.read(columns.fill_mask, {Usage::storage, BINDING_FILL_MASK});
+        const gl::Program& program = gpu.program({"indirect/vpl_fill_list.comp"});
         const auto list =
-            pass.write(graph.buffer<std::uint32_t>("pixels lacking neighbours",
-                                                   4 + std::uint64_t{size.x} * size.y, Lifetime::persistent),
-                       {Usage::storage, BINDING_LACKING});
+            pass.write(graph.buffer<std::uint32_t>("fill list", 4 + std::uint64_t{size.x} * size.y,
+                                                   Lifetime::persistent),
+                       {Usage::storage, BINDING_FILL_LIST});
         pass.run([=, &gpu, &program](Execution&) {
             program.set("row_words", row_words(size));
             program.set("mask_words", row_words(size) * size.y);
@@ -91,10 +90,10 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
 /// the sum of the ones before.
 void dispatch_fill(const gl::Functions& gl, const gl::Program& program, std::uint32_t vpl_count,
                    std::uint32_t most) {
-    program.set("asked_now", most);
+    program.set("vpls_per_dispatch", most);
     program.use();
     in_parts(gl, (vpl_count + 1) / 2, most, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, [&](std::uint32_t first) {
-        program.set("asked_before", first);
+        program.set("first_vpl", first);
         gl.DispatchComputeIndirect(0);
     });
 }
@@ -104,13 +103,14 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
     return graph.add("vpl-fill", [&](Pass& pass) {
         read_pixels(pass, pixels);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
-        pass.read(found.lacking, {Usage::storage, BINDING_LACKING});
-        pass.read(found.lacking, Usage::indirect);
+        pass.read(found.fill_list, {Usage::storage, BINDING_FILL_LIST});
+        pass.read(found.fill_list, Usage::indirect);
         read_vpl_light(pass, light);
         const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"}, vpl_light_variant(light));
         const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
         pass.run([=, &gpu, &program](Execution& run) {
-            dispatch_fill(gpu.gl(), program, run.value(light.vpls.plan).vpl_count, most_asked(light));
+            dispatch_fill(gpu.gl(), program, run.value(light.vpls.plan).vpl_count,
+                          max_vpls_per_invocation(light));
         });
         return out;
     });

@@ -12,14 +12,14 @@ struct IndirectLight {
     /// Pixels that evaluated additional VPLs, because too few neighbours lie on the same surface. Words 0 to
     /// 2: work groups of an indirect dispatch; 3: number of pixels; from 4 on: pixels, x in the lower half
     /// word, y in the upper.
-    BufferHandle<std::uint32_t> lacking;
+    BufferHandle<std::uint32_t> fill_list;
 };
 
 /// Estimates the light of all VPLs at every pixel from what the pixels have gathered from their shares. Adds
 /// nodes `vpl-reconstruct-rows` and `vpl-reconstruct` (compute): separable filters along rows, then along
 /// columns. Each class of pixels counts once, interpolated linearly between its nearest pixels that lie on
-/// the same surface. Adds nodes `vpl-lacking` and `vpl-fill` (compute): pixels for which too few classes have
-/// such pixels are listed, and evaluate half of the VPLs themselves. They depend on depth and normal of the
+/// the same surface. Adds nodes `vpl-fill-list` and `vpl-fill` (compute): pixels for which too few classes
+/// have such pixels are listed, and sum half of the VPLs themselves. They depend on depth and normal of the
 /// surfaces, the gathered light, the VPLs and the view.
 [[nodiscard]] IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                                 const GatheredVpls& gathered, const VplLight& light,

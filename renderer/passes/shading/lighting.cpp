@@ -56,8 +56,8 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.emplace_back("INDIRECT_IRRADIANCE");
     } else if (lighting.vpls) {
         words.emplace_back("VPLS");
-        words.push_back(
-            fmt::format("MOST_VPLS={}", std::min(most_asked(*lighting.vpls), lighting.most_vpls)));
+        words.push_back(fmt::format("MOST_VPLS={}",
+                                    std::min(max_vpls_per_invocation(*lighting.vpls), lighting.most_vpls)));
     }
     if (!shows_direct(lighting.show)) {
         words.emplace_back("DIRECT_HIDDEN");

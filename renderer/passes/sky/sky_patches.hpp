@@ -36,7 +36,7 @@ struct SplitSky {
 };
 
 /// How many patches the sky has where there are about `count` VPLs. Each pixel traces rays to its share of
-/// them: see most_asked.
+/// them: see max_vpls_per_invocation.
 [[nodiscard]] constexpr std::uint32_t sky_patches(std::uint32_t count) {
     return std::clamp(count / 2, 128U, 256U);
 }

@@ -36,12 +36,12 @@ struct Sides {
 };
 
 /// The sides of the triangles that emit light, or of those that do not.
-Sides sides_of(const SurfelGround& ground, bool emitting) {
+Sides sides_of(const SceneTriangles& scene, bool emitting) {
     Sides all;
     double area = 0.0;
-    for (std::size_t i = 0; i < ground.triangles.size(); ++i) {
-        const gpu::TraceTriangle& triangle = ground.triangles[i];
-        if (ground.emits[triangle.material] != emitting) {
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+        const gpu::TraceTriangle& triangle = scene.triangles[i];
+        if (scene.emits[triangle.material] != emitting) {
             continue;
         }
         const glm::vec3 cross = glm::cross(triangle.edge_ab, triangle.edge_ac);
@@ -50,8 +50,8 @@ Sides sides_of(const SurfelGround& ground, bool emitting) {
             continue;
         }
         const glm::vec3 front = cross / twice_area;
-        for (int side = 0; side < (ground.double_sided[triangle.material] ? 2 : 1); ++side) {
-            all.sides.push_back({&triangle, side == 0 ? front : -front, ground.item_of[i], side == 1});
+        for (int side = 0; side < (scene.double_sided[triangle.material] ? 2 : 1); ++side) {
+            all.sides.push_back({&triangle, side == 0 ? front : -front, scene.item_of[i], side == 1});
             all.area_before.push_back(area);
             area += 0.5 * static_cast<double>(twice_area);
         }
@@ -312,9 +312,9 @@ void append_emitting(SurfelSet& set, const SurfelSet& more) {
 
 }  // namespace
 
-SurfelSet place_surfels(const SurfelGround& ground, const SurfelCounts& counts, std::uint32_t seed) {
-    SurfelSet set = place_surfels(sides_of(ground, false), counts.reflecting, points_a_surfel, seed);
-    append_emitting(set, place_surfels(sides_of(ground, true), counts.emitting, points_an_emitter, seed));
+SurfelSet place_surfels(const SceneTriangles& scene, const SurfelCounts& counts, std::uint32_t seed) {
+    SurfelSet set = place_surfels(sides_of(scene, false), counts.reflecting, points_a_surfel, seed);
+    append_emitting(set, place_surfels(sides_of(scene, true), counts.emitting, points_an_emitter, seed));
     return set;
 }
 

@@ -27,8 +27,8 @@ struct SurfelSet {
     std::uint32_t emitting_count = 0;  ///< surfels that emit light: the last ones
 };
 
-/// The triangles on which surfels are placed.
-struct SurfelGround {
+/// The triangles of a scene, on which surfels are placed.
+struct SceneTriangles {
     std::vector<gpu::TraceTriangle> triangles;
     std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
     std::vector<bool> double_sided;      ///< by material index
@@ -41,7 +41,7 @@ inline constexpr std::uint32_t points_an_emitter = 64;
 
 /// About how many surfels are placed on surfaces that emit light, in addition to `count` on the others. They
 /// light the scene directly, so that their number determines how smooth soft shadows are. They have no depth
-/// maps, and each pixel traces rays to its share of them: see most_asked.
+/// maps, and each pixel traces rays to its share of them: see max_vpls_per_invocation.
 [[nodiscard]] constexpr std::uint32_t emitting_surfels(std::uint32_t count) {
     return std::clamp(count / 8, 64U, 128U);
 }
@@ -58,7 +58,7 @@ struct SurfelCounts {
 /// points on average. A cell lies on one side of one item, where the surface is nearly flat; a point that
 /// fits no surfel becomes a surfel of its own. The points follow the R2 sequence; the surfels are relaxed by
 /// Lloyd's algorithm (1982). Equal arguments give equal results.
-[[nodiscard]] SurfelSet place_surfels(const SurfelGround& ground, const SurfelCounts& counts,
+[[nodiscard]] SurfelSet place_surfels(const SceneTriangles& scene, const SurfelCounts& counts,
                                       std::uint32_t seed);
 
 }  // namespace candela

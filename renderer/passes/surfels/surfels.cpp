@@ -52,23 +52,23 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
 
 /// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
 /// deformation came first.
-SurfelGround ground_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
-    SurfelGround ground;
+SceneTriangles triangles_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
+    SceneTriangles scene;
     for (const SceneLayout::Drawable& drawable : layout.solids()) {
         const std::vector<Vertex>& vertices = drawable.primitive->vertices;
         const glm::mat4 shape(shapes[drawable.item]);
         const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const auto id = static_cast<std::uint32_t>(ground.triangles.size());
-            ground.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
+            const auto id = static_cast<std::uint32_t>(scene.triangles.size());
+            scene.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
         }
-        ground.item_of.insert(ground.item_of.end(), count, drawable.item);
+        scene.item_of.insert(scene.item_of.end(), count, drawable.item);
     }
     for (const auto& material : layout.materials) {
-        ground.double_sided.push_back(material && material->double_sided);
-        ground.emits.push_back(material && emits(*material));
+        scene.double_sided.push_back(material && material->double_sided);
+        scene.emits.push_back(material && emits(*material));
     }
-    return ground;
+    return scene;
 }
 
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
@@ -77,7 +77,8 @@ SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const
     if (last != nullptr && last->key == key) {
         return *last;
     }
-    auto set = std::make_shared<const SurfelSet>(place_surfels(ground_of(layout, key.shapes), counts, seed));
+    auto set =
+        std::make_shared<const SurfelSet>(place_surfels(triangles_of(layout, key.shapes), counts, seed));
     return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
 }
 
@@ -141,7 +142,7 @@ class Deformer {
  private:
     const SceneLayout& layout_;
     const ScenePlacement& placement_;
-    std::vector<std::uint32_t> first_triangles_;  // ids, by drawable: see ground_of
+    std::vector<std::uint32_t> first_triangles_;  // ids, by drawable: see triangles_of
     std::uint32_t triangle_count_ = 0;
 };
 
