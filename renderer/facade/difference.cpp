@@ -1,9 +1,8 @@
-#include "renderer/facade/difference.hpp"
-
+#include "renderer/passes/inspect/difference.hpp"
+#include <candela/inspection.hpp>
 #include "renderer/facade/gpu_of.hpp"
 #include "renderer/facade/target_check.hpp"
 #include "renderer/gl/host_state.hpp"
-#include "renderer/passes/inspect/difference.hpp"
 
 namespace candela {
 

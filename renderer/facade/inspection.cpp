@@ -1,4 +1,4 @@
-#include "renderer/facade/inspection.hpp"
+#include <candela/inspection.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include <candela/renderer.hpp>
 #include "renderer/facade/gpu_of.hpp"
 #include "renderer/passes/inspect/inspect.hpp"
 #include "renderer/passes/inspect/inspect_range.hpp"
@@ -67,7 +68,7 @@ ValueRange read_range(const Gpu& gpu, ObjectId ranges) {
 
 }  // namespace
 
-struct ResourceInspector::State : std::enable_shared_from_this<State> {
+struct CANDELA_PRIVATE ResourceInspector::State : std::enable_shared_from_this<State> {
     Inspection wanted;
     bool declared = false;  // in the graph that is being declared
     Picture picture;
@@ -144,23 +145,27 @@ std::vector<std::string> ResourceInspector::show(std::optional<Inspection> wante
     if (!wanted) {
         renderer_->remove_extension(extension_name);
         state_.reset();
-    } else if (shown_ && shown_->resource == wanted->resource) {
-        state_->wanted = *wanted;
-    } else {
-        auto state = std::make_shared<State>();
-        state->wanted = *wanted;
-        Extension extension{.name = std::string(extension_name)};
-        extension.declare = [state, &gpu = gpu_of(*renderer_)](FrameGraph& graph, ViewFrame& frame) {
-            state->declare(graph, gpu, frame);
-        };
-        std::vector<std::string> errors = renderer_->extend(std::move(extension));
-        if (!errors.empty()) {
-            return errors;
-        }
+        return {};
+    }
+    if (state_ && state_->wanted.resource == wanted->resource) {
+        state_->wanted = std::move(*wanted);
+        return {};
+    }
+    auto state = std::make_shared<State>();
+    state->wanted = std::move(*wanted);
+    Extension extension{.name = std::string(extension_name)};
+    extension.declare = [state, &gpu = gpu_of(*renderer_)](FrameGraph& graph, ViewFrame& frame) {
+        state->declare(graph, gpu, frame);
+    };
+    std::vector<std::string> errors = renderer_->extend(std::move(extension));
+    if (errors.empty()) {
         state_ = std::move(state);
     }
-    shown_ = std::move(wanted);
-    return {};
+    return errors;
+}
+
+std::optional<Inspection> ResourceInspector::shown() const {
+    return state_ ? std::optional(state_->wanted) : std::nullopt;
 }
 
 /// Whether the last frame had the passes. The objects that they have reported exist until the next call of
@@ -172,7 +177,7 @@ bool ResourceInspector::has_run() const {
 
 InspectionResult ResourceInspector::result() const {
     InspectionResult result;
-    if (!shown_) {
+    if (!state_) {
         return result;
     }
     if (!has_run()) {
@@ -203,7 +208,7 @@ InspectionResult ResourceInspector::result() const {
 }
 
 BufferElements ResourceInspector::read_buffer(std::uint64_t first, std::uint64_t most) const {
-    if (!shown_ || !has_run() || state_->elements.buffer == 0) {
+    if (!state_ || !has_run() || state_->elements.buffer == 0) {
         return {};
     }
     const FoundElements& found = state_->elements;

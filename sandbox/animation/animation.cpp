@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 
 #include <candela/scene/components.hpp>
-#include "engine/readable.hpp"
+#include "sandbox/candela_private/files.hpp"
 
 namespace candela::sandbox {
 

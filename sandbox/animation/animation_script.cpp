@@ -14,9 +14,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "engine/import/unit_length.hpp"
-#include "engine/json/json.hpp"
-#include "engine/readable.hpp"
+#include "sandbox/candela_private/files.hpp"
 #include "sandbox/files/input_file.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"

@@ -8,8 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "engine/import/shortest.hpp"
-#include "engine/json/json.hpp"
+#include "sandbox/candela_private/files.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"
 

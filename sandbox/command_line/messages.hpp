@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/readable.hpp"
+#include "sandbox/candela_private/files.hpp"
 
 namespace candela::sandbox {
 

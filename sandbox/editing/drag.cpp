@@ -9,7 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/hierarchy.hpp>
-#include "engine/bvh/box.hpp"
+#include "sandbox/candela_private/rays.hpp"
 #include "sandbox/editing/placing.hpp"
 
 namespace candela::sandbox {

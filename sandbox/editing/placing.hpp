@@ -7,7 +7,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
-#include "engine/bvh/box.hpp"
+#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 

@@ -14,9 +14,7 @@
 #include <glm/matrix.hpp>
 
 #include <candela/scene/hierarchy.hpp>
-#include "engine/bvh/box.hpp"
-#include "engine/bvh/traverse.hpp"
-#include "engine/bvh/two_level.hpp"
+#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 

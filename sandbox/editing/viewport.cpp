@@ -8,14 +8,13 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "renderer/passes/view/view.hpp"
+#include <candela/view.hpp>
 
 namespace candela::sandbox {
 
 Viewport make_viewport(const World& world, Entity camera, glm::vec2 size, glm::vec2 origin) {
     const glm::mat4 pose = world_matrix(world, camera);
-    const CameraView view =
-        make_view(world.get<Camera>(camera), pose, {.camera = camera, .size = glm::uvec2(size)});
+    const CameraView view = make_view(world.get<Camera>(camera), pose, glm::uvec2(size));
     return {view.clip_from_world, glm::inverse(glm::dmat4(view.clip_from_world)),
             -glm::normalize(glm::vec3(pose[2])), size, origin};
 }

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/import/output_files.hpp"
+#include "sandbox/candela_private/files.hpp"
 
 namespace candela::sandbox {
 

@@ -21,7 +21,7 @@
 #include <tinyexr.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/import/exr.hpp"
+#include "sandbox/candela_private/files.hpp"
 #include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {
@@ -122,6 +122,15 @@ std::vector<float> floats_of(const fs::path& path, const std::string& file, cons
 }
 
 }  // namespace
+
+Picture flipped(Picture picture) {
+    const auto row = [&](int y) {
+        return picture.pixels.begin() + static_cast<std::ptrdiff_t>(y) * picture.size.x;
+    };
+    for (int y = 0; y < picture.size.y / 2; ++y)
+        std::swap_ranges(row(y), row(y + 1), row(picture.size.y - 1 - y));
+    return picture;
+}
 
 void write_png(const fs::path& path, glm::ivec2 size, std::span<const std::uint8_t> rgb) {
     require_size(path, size, rgb.size() / 3);

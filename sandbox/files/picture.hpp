@@ -16,6 +16,9 @@ struct Picture {
     std::vector<glm::vec3> pixels;
 };
 
+/// The same upside down: from the rows of OpenGL, which begin at the bottom, or to them.
+[[nodiscard]] Picture flipped(Picture picture);
+
 // Readers and writers keep every bit of a float: negative numbers, denormals, infinities and NaN are
 // preserved. Writers write a whole file or none. All of them throw std::runtime_error that names the file and
 // the error.

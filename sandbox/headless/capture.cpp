@@ -7,8 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "renderer/facade/device_of.hpp"
-#include "renderer/passes/view/view.hpp"
+#include <candela/view.hpp>
 #include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {
@@ -52,27 +51,12 @@ FrameReport sum_up(const std::vector<FrameReport>& frames) {
     return sum;
 }
 
-/// Converts between GL's row order (bottom to top) and that of Picture (top to bottom).
-void flip_rows(std::vector<glm::vec3>& pixels, glm::uvec2 size) {
-    const auto row = [&](std::uint32_t y) {
-        return pixels.begin() + static_cast<std::ptrdiff_t>(y) * size.x;
-    };
-    for (std::uint32_t y = 0; y < size.y / 2; ++y) std::swap_ranges(row(y), row(y + 1), row(size.y - 1 - y));
-}
-
 }  // namespace
 
 glm::vec2 pixel_jitter(int i, int count) {
     // An even number of samples consists of pairs, without the sample at the centre.
     const int first = count % 2 == 0 ? 1 : 0;
     return pixel_sample(static_cast<std::uint32_t>(first + i));
-}
-
-Capture::Canvas::Canvas(gl::Device& device, glm::uvec2 size, Format format)
-    : colour(device, "capture", {.size = size, .format = format}), framebuffer(device, "capture") {
-    framebuffer.attach_colour(0, colour.name());
-    framebuffer.draw_buffers(1);
-    framebuffer.check();
 }
 
 Capture::Capture(Renderer& renderer, glm::ivec2 size)
@@ -96,23 +80,20 @@ Picture Capture::render(const World& world, Entity camera, int samples, CaptureR
     const int kept = refines ? 1 : samples;
     for (int sample = 0; sample < samples; ++sample) {
         const glm::vec2 jitter = refines ? glm::vec2(0.0F) : pixel_jitter(sample, samples);
-        renderer_->render(world, camera, {linear_.framebuffer.name(), size_}, jitter);
+        renderer_->render(world, camera, linear_.target(), jitter);
         if (sample >= samples - kept) add_pixels(sum);
         for (FrameReport& frame : renderer_->take_frames(true)) frames.push_back(std::move(frame));
     }
     for (glm::vec3& pixel : sum) pixel /= static_cast<float>(kept);
-    flip_rows(sum, size_);
     report = {sum_up(frames), renderer_->report()};
-    return {glm::ivec2(size_), std::move(sum)};
+    return flipped({glm::ivec2(size_), std::move(sum)});
 }
 
 std::vector<std::uint8_t> Capture::tone_mapped(const Picture& picture) {
-    std::vector<glm::vec3> radiance = picture.pixels;
-    flip_rows(radiance, size_);
-    renderer_->tone_map(radiance, {encoded_.framebuffer.name(), size_});
+    renderer_->tone_map(flipped(picture).pixels, encoded_.target());
     const std::vector<std::byte> rgba = encoded_.colour.read();
     std::vector<std::uint8_t> rgb;
-    rgb.reserve(3 * radiance.size());
+    rgb.reserve(3 * picture.pixels.size());
     for (std::uint32_t y = size_.y; y-- > 0;) {
         const std::size_t row = static_cast<std::size_t>(y) * size_.x;
         for (std::size_t texel = 4 * row; texel < 4 * (row + size_.x); texel += 4) {

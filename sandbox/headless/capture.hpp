@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <candela/renderer.hpp>
-#include "renderer/gl/texture.hpp"
 #include "sandbox/files/picture.hpp"
+#include "sandbox/headless/canvas.hpp"
 
 namespace candela::sandbox {
 
@@ -39,13 +39,6 @@ class Capture {
     void write(const std::filesystem::path& path, const Picture& picture);
 
  private:
-    /// A colour texture and a framebuffer that draws into it.
-    struct Canvas {
-        gl::Texture colour;
-        gl::Framebuffer framebuffer;
-        Canvas(gl::Device& device, glm::uvec2 size, Format format);
-    };
-
     void add_pixels(std::vector<glm::vec3>& sum) const;
 
     Renderer* renderer_;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "renderer/facade/inspection.hpp"
+#include <candela/inspection.hpp>
 #include "sandbox/panels/graph_picture.hpp"
 #include "sandbox/panels/pass_costs.hpp"
 

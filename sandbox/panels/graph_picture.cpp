@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/json/json.hpp"
+#include "sandbox/candela_private/files.hpp"
 
 namespace candela::sandbox {
 

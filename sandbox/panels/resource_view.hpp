@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "renderer/facade/inspection.hpp"
+#include <candela/inspection.hpp>
 #include "sandbox/window/layout.hpp"
 
 namespace candela::sandbox {

@@ -14,7 +14,7 @@
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "engine/bvh/box.hpp"
+#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 

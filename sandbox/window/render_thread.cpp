@@ -5,30 +5,16 @@
 #include <cstddef>
 #include <utility>
 
-#include "renderer/facade/difference.hpp"
-#include "renderer/gl/device.hpp"
-#include "renderer/gl/texture.hpp"
-#include "renderer/gpu/gpu_types.hpp"
+#include "sandbox/candela_private/gl.hpp"
+#include "sandbox/headless/canvas.hpp"
 
 namespace candela::sandbox {
 
 namespace {
 
-/// A texture of the thread's own that a frame is drawn into.
-struct Canvas {
-    gl::Texture colour;
-    gl::Framebuffer framebuffer;
-
-    void resize(gl::Device& device, glm::uvec2 size) {
-        if (colour.name() != 0 && colour.desc().size == size) return;
-        colour = gl::Texture(device, "window picture", {.size = size, .format = Format::rgba8});
-        framebuffer = gl::Framebuffer(device, "window picture");
-        framebuffer.attach_colour(0, colour.name());
-        framebuffer.draw_buffers(1);
-        framebuffer.check();
-    }
-    [[nodiscard]] FinishedTexture finished() const { return {colour.name(), colour.desc().size}; }
-};
+FinishedTexture finished(const Canvas& canvas) {
+    return {canvas.colour.name(), canvas.size()};
+}
 
 std::vector<VplDot> read_dots(gl::Device& device, const FrameResults& results) {
     std::vector<gpu::Vpl> vpls(results.vpl_count);
@@ -46,14 +32,8 @@ std::vector<VplDot> read_dots(gl::Device& device, const FrameResults& results) {
 std::shared_ptr<const Picture> read_radiance(gl::Device& device, const ResultTexture& result) {
     if (result.texture == 0) return nullptr;
     const std::vector<glm::vec4> texels = gl::read_texels(device.gl(), result.texture, result.size);
-    auto picture = std::make_shared<Picture>();
-    picture->size = result.size;
-    picture->pixels.reserve(texels.size());
-    for (std::uint32_t y = result.size.y; y-- > 0;) {
-        const std::size_t row = static_cast<std::size_t>(y) * result.size.x;
-        for (std::size_t x = 0; x < result.size.x; ++x) picture->pixels.emplace_back(texels[row + x]);
-    }
-    return picture;
+    return std::make_shared<const Picture>(
+        flipped({glm::ivec2(result.size), {texels.begin(), texels.end()}}));
 }
 
 constexpr std::size_t no_slot = 3;
@@ -200,8 +180,8 @@ class RenderThread::Worker {
         } catch (const std::exception& error) {
             errors_.emplace_back(error.what());
             // The slot may hold a part of a frame, or none.
-            slot.picture.resize(device_, request_->size);
-            frame.picture = slot.picture.finished();
+            fit(slot.picture, request_->size);
+            frame.picture = finished(slot.picture);
             settled_ = true;
         }
         frame.request = number_;
@@ -244,10 +224,10 @@ class RenderThread::Worker {
         draw(*renderer_, slot.picture);
         if (request_->reference) {
             draw_reference(slot.other);
-            frame.other = slot.other.finished();
+            frame.other = finished(slot.other);
         } else if (request_->other) {
             draw_other(slot.other);
-            frame.other = slot.other.finished();
+            frame.other = finished(slot.other);
         }
         if (request_->reference || !request_->other) other_.reset();
         if (request_->difference && frame.other && frame.other->size == request_->size)
@@ -256,7 +236,7 @@ class RenderThread::Worker {
         device_.finish();
         settled_ = renderer_->settled() && (!other_ || other_->settled());
         has_rendered_ = true;
-        frame.picture = slot.picture.finished();
+        frame.picture = finished(slot.picture);
         frame.quality = renderer_->quality();
         frame.report = report();
         frame.times = renderer_->take_frames(true);
@@ -267,10 +247,15 @@ class RenderThread::Worker {
         return frame;
     }
 
+    /// Gives the canvas this size, in pixels.
+    void fit(Canvas& canvas, glm::uvec2 size) {
+        if (canvas.colour.name() == 0 || canvas.size() != size) canvas = Canvas(device_, size, Format::rgba8);
+    }
+
     void draw(Renderer& renderer, Canvas& canvas) {
-        canvas.resize(device_, request_->size);
+        fit(canvas, request_->size);
         const RenderView view{.camera = request_->camera,
-                              .target = {canvas.framebuffer.name(), request_->size},
+                              .target = canvas.target(),
                               .keep = {.radiance = request_->read_radiance, .vpls = request_->read_vpls}};
         renderer.render(*request_->world, std::span(&view, 1));
     }
@@ -293,10 +278,10 @@ class RenderThread::Worker {
     }
 
     FinishedTexture draw_difference_of(Slot& slot) {
-        slot.difference.resize(device_, request_->size);
+        fit(slot.difference, request_->size);
         draw_difference(*renderer_, slot.picture.colour.name(), slot.other.colour.name(),
-                        *request_->difference, {slot.difference.framebuffer.name(), request_->size});
-        return slot.difference.finished();
+                        *request_->difference, slot.difference.target());
+        return finished(slot.difference);
     }
 
     void inspect(RenderedFrame& frame, Canvas& canvas) {
@@ -306,7 +291,7 @@ class RenderThread::Worker {
             frame.elements = inspector_->read_buffer(0, most_elements);
             return;
         }
-        canvas.resize(device_, frame.inspection->size);
+        fit(canvas, frame.inspection->size);
         gl::copy_texels(device_.gl(), frame.inspection->texture, canvas.colour.name(),
                         frame.inspection->size);
         frame.inspection->texture = canvas.colour.name();
@@ -314,14 +299,8 @@ class RenderThread::Worker {
 
     void draw_reference(Canvas& canvas) {
         const Picture& picture = *request_->reference;
-        canvas.resize(device_, picture.size);
-        std::vector<glm::vec3> bottom_first;
-        bottom_first.reserve(picture.pixels.size());
-        for (int y = picture.size.y; y-- > 0;) {
-            const auto row = picture.pixels.begin() + static_cast<std::ptrdiff_t>(y) * picture.size.x;
-            bottom_first.insert(bottom_first.end(), row, row + picture.size.x);
-        }
-        renderer_->tone_map(bottom_first, {canvas.framebuffer.name(), picture.size});
+        fit(canvas, picture.size);
+        renderer_->tone_map(flipped(picture).pixels, canvas.target());
     }
 
     /// The description changes with the graph, which also depends on the scene.

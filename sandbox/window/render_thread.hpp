@@ -14,8 +14,8 @@
 
 #include <glm/vec2.hpp>
 
+#include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
-#include "renderer/facade/inspection.hpp"
 #include "sandbox/files/picture.hpp"
 #include "sandbox/window/thread_context.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "renderer/gl/functions.hpp"
+#include <candela/gl_loader.hpp>
 
 namespace candela::sandbox {
 

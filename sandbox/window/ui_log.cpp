@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/json/json.hpp"
+#include "sandbox/candela_private/files.hpp"
 
 namespace candela::sandbox {
 

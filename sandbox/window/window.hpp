@@ -9,7 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
-#include "renderer/gl/functions.hpp"
+#include <candela/gl_loader.hpp>
 #include "sandbox/window/thread_context.hpp"
 
 struct GLFWwindow;

@@ -19,10 +19,9 @@
 
 #include <candela/renderer.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "engine/readable.hpp"
-#include "renderer/gl/device.hpp"
-#include "renderer/gl/texture.hpp"
 #include "sandbox/animation/script_writer.hpp"
+#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private/gl.hpp"
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/numbered_file.hpp"

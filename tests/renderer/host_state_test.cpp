@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include <candela/inspection.hpp>
 #include "renderer/facade/device_of.hpp"
-#include "renderer/facade/difference.hpp"
-#include "renderer/facade/inspection.hpp"
 #include "tests/renderer/host_view.hpp"
 #include "tests/renderer/scene_builder.hpp"
 

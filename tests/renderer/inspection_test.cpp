@@ -14,9 +14,8 @@
 #include <vector>
 
 #include <candela/graph/execute.hpp>
+#include <candela/inspection.hpp>
 #include "renderer/facade/device_of.hpp"
-#include "renderer/facade/difference.hpp"
-#include "renderer/facade/inspection.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
 

@@ -79,7 +79,7 @@ CameraView random_view(Random& random, glm::uvec2 size) {
     glm::mat4 matrix = glm::mat4_cast(pose.rotation);
     matrix[3] = glm::vec4(pose.translation, 1.0F);
     const glm::vec2 jitter(random.number(-0.5F, 0.5F), random.number(-0.5F, 0.5F));
-    return make_view(camera, matrix, {.camera = {}, .size = size, .jitter = jitter});
+    return make_view(camera, matrix, size, jitter);
 }
 
 /// A point that the light reaches, often near the end of its range.
@@ -191,8 +191,7 @@ TEST_SUITE("light bins") {
 
     TEST_CASE("a small distant light is in few cells") {
         const glm::uvec2 size(640, 480);
-        const CameraView view =
-            make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), {.camera = {}, .size = size});
+        const CameraView view = make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), size);
         const LightTable lights{{{.entity = {}, .light = point_at({0.4F, 0.3F, -10.0F}, 0.1F)}}};
         const LightBins tiles = bin_lights(lights, view, tile_grid(size, {}));
         // 0.2 m at a distance of 10 m are 9 of 480 pixels; with a margin of one pixel that is at most 2 × 2
@@ -207,7 +206,7 @@ TEST_SUITE("light bins") {
 
     TEST_CASE("lights behind the eye are in no list") {
         const glm::uvec2 size(64, 64);
-        const CameraView view = make_view({}, glm::mat4(1.0F), {.camera = {}, .size = size});
+        const CameraView view = make_view({}, glm::mat4(1.0F), size);
         const LightTable lights{{{.entity = {}, .light = point_at({0, 0, 1.0F}, 0.99F)},
                                  {.entity = {}, .light = point_at({3.0F, 0, 9.0F}, 5.0F)}}};
         CHECK(bin_lights(lights, view, tile_grid(size, {})).entries.empty());
@@ -216,8 +215,7 @@ TEST_SUITE("light bins") {
 
     TEST_CASE("if lists exceed their memory, the lights with the largest extent become global") {
         const glm::uvec2 size(1024, 1024);
-        const CameraView view =
-            make_view({.vertical_fov = 1.2F}, glm::mat4(1.0F), {.camera = {}, .size = size});
+        const CameraView view = make_view({.vertical_fov = 1.2F}, glm::mat4(1.0F), size);
         const CellGrid grid = cluster_grid(size, {}, 0.1F, 100.0F);
         Random random(3);
         LightTable lights;

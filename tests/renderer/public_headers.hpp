@@ -10,6 +10,7 @@
 #include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
 #include <candela/headless_context.hpp>
+#include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
 #include <candela/renderer_options.hpp>
 #include <candela/scene/components.hpp>

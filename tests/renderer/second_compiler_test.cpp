@@ -12,8 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/facade/difference.hpp"
-#include "renderer/facade/inspection.hpp"
+#include <candela/inspection.hpp>
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"

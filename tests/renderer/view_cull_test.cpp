@@ -39,7 +39,7 @@ class Random {
             camera.far_plane = 12.0F;
         }
         const glm::mat4 pose = glm::inverse(glm::lookAt(vector(5.0F), vector(5.0F), {0.1F, 1.0F, 0.2F}));
-        return make_view(camera, pose, {.camera = {}, .size = {160, 90}});
+        return make_view(camera, pose, {160, 90});
     }
 
  private:
@@ -64,7 +64,7 @@ CameraView straight_view() {
     camera.vertical_fov = 1.5707963F;
     camera.near_plane = 1.0F;
     camera.far_plane = 10.0F;
-    return make_view(camera, glm::mat4(1.0F), {.camera = {}, .size = {100, 100}});
+    return make_view(camera, glm::mat4(1.0F), {100, 100});
 }
 
 Box cube_at(glm::vec3 centre) {

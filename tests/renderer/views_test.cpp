@@ -56,8 +56,7 @@ class ViewsTests : public RenderFixture {
 TEST_SUITE("views") {
     TEST_CASE("jitter moves the samples off the pixel centres, right and up") {
         const glm::vec2 jitter(0.25F, -0.5F);
-        const CameraView view = make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F),
-                                          {.camera = {}, .size = size, .jitter = jitter});
+        const CameraView view = make_view({.vertical_fov = 1.0F}, glm::mat4(1.0F), size, jitter);
         // A point on the ray through the sample of pixel (7, 21), of a camera that looks along -Z.
         const glm::vec2 centre(7.5F, 21.5F);
         const glm::vec2 half_extent = std::tan(0.5F) * glm::vec2(4.0F / 3.0F, 1.0F);

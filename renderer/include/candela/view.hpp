@@ -8,9 +8,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <candela/api.hpp>
 #include <candela/ecs/entity.hpp>
 
 namespace candela {
+
+struct Camera;
 
 /// The part of a framebuffer of the host that a view is drawn into. Only colour is written, in any format;
 /// with a floating-point format and the tone map off, radiance is stored as it is, and alpha tells where
@@ -33,6 +36,18 @@ struct CameraView {
     bool orthographic = false;
     bool operator==(const CameraView&) const = default;
 };
+
+/// The view of a camera with this local-to-world matrix, whose scale is ignored, in a picture of `size`
+/// pixels: for picking, and for what a host draws over the picture. `jitter`: see RenderView::jitter. If
+/// Camera::far_plane is infinite, the projection has no far plane.
+[[nodiscard]] CANDELA_API CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera,
+                                               glm::uvec2 size, glm::vec2 jitter = glm::vec2(0.0F));
+
+/// Position of sample i, as an offset from the pixel centre in pixels, in [-0.5, 0.5]²: for
+/// RenderView::jitter where a host averages frames. Sample 0 is the centre. Samples 2k - 1 and 2k are point k
+/// of the R2 sequence (Roberts 2018) and its mirror image, so that a mean over samples does not shift the
+/// picture.
+[[nodiscard]] CANDELA_API glm::vec2 pixel_sample(std::uint32_t i);
 
 /// How a normal (x, y, z) is stored in the channels of a texture.
 enum class NormalEncoding : std::uint8_t {

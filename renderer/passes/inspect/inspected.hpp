@@ -8,47 +8,12 @@
 
 #include <candela/extension.hpp>
 #include <candela/graph/execute.hpp>
+#include <candela/inspection.hpp>
 #include "renderer/passes/lights/light_bins.hpp"
 #include "renderer/passes/lights/shadow_maps.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
 
 namespace candela {
-
-/// How values become colours.
-enum class Mapping : std::uint8_t {
-    /// Depth for depth formats; heat for other formats of one channel and for light lists; colour otherwise.
-    automatic,
-    colour,  ///< black at the low end of the range, full colour at the high one, sRGB-encoded
-    depth,   ///< grey: white at the low end, black at the high one and where there is no surface
-    heat     ///< heat_colour; of RGB the luminance (Rec. 709)
-};
-
-enum class Channels : std::uint8_t { red, green, blue, alpha, rgb };
-
-/// The values at the two ends of a mapping. Values beyond are clamped; with high <= low, they are above
-/// `high` or not.
-struct ValueRange {
-    float low = 0.0F;
-    float high = 1.0F;
-    bool operator==(const ValueRange&) const = default;
-};
-
-/// What to see of a resource of the frame graph.
-struct Inspection {
-    static constexpr std::uint32_t all_slices = 0xffff'ffffU;
-
-    std::string resource;   ///< its name as in Renderer::describe, with the ending of the view
-    std::uint32_t mip = 0;  ///< the last one if there are fewer
-    /// Of an array; of a cube array the face, 6 a cube; the last one if there are fewer. Of light lists of
-    /// clusters the slice, 0 at the eye, or all_slices: the longest list of a tile.
-    std::uint32_t layer = 0;
-    Mapping mapping = Mapping::automatic;
-    Channels channels = Channels::rgb;  ///< rgb shows a format with a single channel as that
-    /// None: the least and the greatest finite value; for colours, with 0.
-    std::optional<ValueRange> range{};
-    std::uint32_t longest = 1024;  ///< texels along the longer side of the picture, at most
-    bool operator==(const Inspection&) const = default;
-};
 
 /// A texture with the depths of shadow maps.
 struct ShadowDepths {

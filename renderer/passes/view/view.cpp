@@ -85,15 +85,17 @@ std::string view_ending(std::size_t index) {
     return index == 0 ? "" : fmt::format(" {}", index + 1);
 }
 
-CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, const ViewRequest& request) {
-    const glm::vec2 size(request.size);
+CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera, glm::uvec2 size,
+                     glm::vec2 jitter) {
+    const glm::vec2 pixels(size);
     glm::mat4 jittered(1.0F);
-    jittered[3] = glm::vec4(-2.0F * request.jitter / size, 0.0F, 1.0F);
+    jittered[3] = glm::vec4(-2.0F * jitter / pixels, 0.0F, 1.0F);
     const glm::mat4 pose = rigid(world_from_camera);
     // In double precision: for a camera far from the origin, the inverse in floats would lose digits that
     // shading needs.
     const glm::dmat4 view_from_world = glm::inverse(glm::dmat4(pose));
-    const glm::dmat4 clip_from_view = glm::dmat4(jittered) * glm::dmat4(projection(camera, size.x / size.y));
+    const glm::dmat4 clip_from_view =
+        glm::dmat4(jittered) * glm::dmat4(projection(camera, pixels.x / pixels.y));
     const glm::dmat4 clip_from_world = clip_from_view * view_from_world;
     return {.clip_from_world = glm::mat4(clip_from_world),
             .world_from_clip = glm::mat4(glm::inverse(clip_from_world)),
@@ -116,7 +118,7 @@ CameraView requested_view(const World& world, const ViewRequest& request) {
     if (fault) {
         throw SceneError(fmt::format("{}, Camera: {}", describe(world, request.camera), *fault));
     }
-    return make_view(camera, matrix, request);
+    return make_view(camera, matrix, request.size, request.jitter);
 }
 
 void read_request(Pass& pass, ValueHandle<ViewRequest> request) {

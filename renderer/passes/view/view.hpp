@@ -26,21 +26,11 @@ struct ViewRequest {
     bool operator==(const ViewRequest&) const = default;
 };
 
-/// The view of a camera with this local-to-world matrix, whose scale is ignored. If Camera::far_plane is
-/// infinite, the projection has no far plane.
-[[nodiscard]] CameraView make_view(const Camera& camera, const glm::mat4& world_from_camera,
-                                   const ViewRequest& request);
-
 /// The view that the host asks for. Throws EntityError if `request.camera` is not alive or has no Camera, and
 /// SceneError if its parents form a cycle or were destroyed, or if the camera or its matrix has a fault.
 [[nodiscard]] CameraView requested_view(const World& world, const ViewRequest& request);
 /// Declares the reads of a pass that calls requested_view.
 void read_request(Pass& pass, ValueHandle<ViewRequest> request);
-
-/// Position of sample i, as an offset from the pixel centre in pixels, in [-0.5, 0.5]². Sample 0 is the
-/// centre. Samples 2k - 1 and 2k are point k of the R2 sequence and its mirror image, so that a mean over
-/// samples does not shift the picture.
-[[nodiscard]] glm::vec2 pixel_sample(std::uint32_t i);
 
 /// Adds node `view` (CPU): the requested view. Depends on the request, Camera and Transform.
 [[nodiscard]] ValueHandle<CameraView> add_view(FrameGraph& graph, ValueHandle<ViewRequest> request);

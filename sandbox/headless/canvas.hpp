@@ -1,0 +1,23 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include <candela/view.hpp>
+#include "sandbox/candela_private/gl.hpp"
+
+namespace candela::sandbox {
+
+/// A picture on the GPU: a texture, and a framebuffer that draws into it.
+struct Canvas {
+    gl::Texture colour;  ///< the bottom row first
+    gl::Framebuffer framebuffer;
+
+    Canvas() = default;
+    /// Undefined content. Throws gl::GlError if the driver does not support the size, in pixels.
+    Canvas(gl::Device& device, glm::uvec2 size, Format format);
+
+    [[nodiscard]] glm::uvec2 size() const { return colour.desc().size; }
+    [[nodiscard]] Target target() const { return {framebuffer.name(), size()}; }
+};
+
+}  // namespace candela::sandbox
