@@ -9,8 +9,8 @@
 #include <stb/stb_image_write.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_extensions.hpp"
-#include "engine/import/gltf_model.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/import/gltf_model.hpp"
+#include "engine/import/gltf_constants.hpp"
 #include "engine/import/unit_length.hpp"
 #include "engine/readable.hpp"
 #include "engine/scene/check.hpp"

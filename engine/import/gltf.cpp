@@ -30,7 +30,7 @@ std::uint64_t count_triangles(const Mesh& mesh) {
 }
 
 std::vector<bool> used_meshes(const gltf::Document& document, const std::vector<gltf::StagedEntity>& staged) {
-    std::vector<bool> used(document.model.meshes.size());
+    std::vector<bool> used(document.all("meshes").size());
     for (const gltf::StagedEntity& entity : staged) {
         if (entity.mesh >= 0) {
             used[static_cast<std::size_t>(entity.mesh)] = true;

@@ -3,16 +3,68 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_constants.hpp"
 
 namespace candela::gltf {
 
 namespace {
+
+/// A run of elements in a buffer view.
+struct ElementSource {
+    int buffer_view = -1;
+    std::size_t offset = 0;  ///< bytes
+    int component_type = 0;
+};
+
+/// Elements that replace some of an accessor's. Their components have the accessor's type.
+struct SparseElements {
+    std::size_t count = 0;
+    ElementSource indices;
+    ElementSource values;
+};
+
+struct Accessor {
+    ElementSource source;     ///< without a buffer view all elements are zero
+    int components = 0;       ///< of SCALAR 1, of VEC2 to VEC4 2 to 4; 0 for matrices, which no attribute has
+    std::size_t count = 0;    ///< elements
+    bool normalized = false;  ///< integers stand for fractions of the largest
+    std::optional<SparseElements> sparse;
+};
+
+int components_of(std::string_view type) {
+    if (type == "SCALAR") {
+        return 1;
+    }
+    return type.starts_with("VEC") ? type.back() - '0' : 0;
+}
+
+ElementSource source_in(const Json& object, int component_type) {
+    return {index_in(object, "bufferView"), number_in<std::size_t>(object, "byteOffset", 0), component_type};
+}
+
+Accessor accessor_at(const Document& document, int index) {
+    const Json& json = document.at("accessors", index);
+    Accessor accessor;
+    accessor.source = source_in(json, json.at("componentType").whole<int>());
+    accessor.components = components_of(json.at("type").text());
+    accessor.count = json.at("count").whole<std::size_t>();
+    accessor.normalized = flag_in(json, "normalized", false);
+    if (const Json* const sparse = json.find("sparse")) {
+        const Json& indices = sparse->at("indices");
+        accessor.sparse = {sparse->at("count").whole<std::size_t>(),
+                           source_in(indices, indices.at("componentType").whole<int>()),
+                           source_in(sparse->at("values"), accessor.source.component_type)};
+    }
+    return accessor;
+}
 
 template <class T>
 T load(const unsigned char* bytes) {
@@ -41,8 +93,8 @@ struct Run {
 
 Elements locate(const Document& document, const Run& run) {
     const Bytes bytes = buffer_view_bytes(document, run.buffer_view);
-    const BufferView& view = document.model.buffer_views[static_cast<std::size_t>(run.buffer_view)];
-    const std::size_t stride = view.stride != 0 ? view.stride : run.element_size;
+    const Json& view = document.at("bufferViews", run.buffer_view);
+    const std::size_t stride = number_in(view, "byteStride", run.element_size);
     if (stride < run.element_size) {
         throw SceneError(
             fmt::format("{} has elements of {} bytes, more than the stride of {} of buffer view {}",
@@ -53,7 +105,7 @@ Elements locate(const Document& document, const Run& run) {
     if (!fits) {
         throw SceneError(fmt::format("{} reads past the end of buffer view {}", run.owner, run.buffer_view));
     }
-    if ((view.offset + run.offset) % run.component_size != 0) {
+    if ((number_in<std::size_t>(view, "byteOffset", 0) + run.offset) % run.component_size != 0) {
         throw SceneError(
             fmt::format("{} is not aligned to its components of {} bytes", run.owner, run.component_size));
     }
@@ -87,15 +139,11 @@ bool is_unsigned(int component_type) {
            component_type == unsigned_int;
 }
 
-const Accessor& accessor_at(const Document& document, int index) {
-    return document.model.accessors[static_cast<std::size_t>(index)];
-}
-
 /// Replaces the selected elements that the sparse part of the accessor lists.
 template <class Element, class Decode>
 void apply_sparse(const Document& document, int index, const Selection& selection, Decode decode,
                   std::size_t element_size, std::vector<Element>& elements) {
-    const Accessor& accessor = accessor_at(document, index);
+    const Accessor accessor = accessor_at(document, index);
     const SparseElements& sparse = *accessor.sparse;
     const int index_type = sparse.indices.component_type;
     if (!is_unsigned(index_type)) {
@@ -124,7 +172,7 @@ void apply_sparse(const Document& document, int index, const Selection& selectio
 /// types. An accessor without a buffer view is all zeros.
 template <class Element, class Decode>
 std::vector<Element> read(const Document& document, int index, const Selection& selection, Decode decode) {
-    const Accessor& accessor = accessor_at(document, index);
+    const Accessor accessor = accessor_at(document, index);
     const std::size_t component = component_size(accessor.source.component_type);
     const std::size_t size = component * static_cast<std::size_t>(accessor.components);
 
@@ -196,21 +244,23 @@ std::size_t Selection::place(std::size_t element) const {
 }
 
 Bytes buffer_view_bytes(const Document& document, int buffer_view) {
-    const BufferView& view = document.model.buffer_views[static_cast<std::size_t>(buffer_view)];
-    const Bytes bytes = document.buffers[static_cast<std::size_t>(view.buffer)].bytes;
-    if (view.offset > bytes.size() || view.length > bytes.size() - view.offset) {
-        throw SceneError(
-            fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, view.buffer));
+    const Json& view = document.at("bufferViews", buffer_view);
+    const auto buffer = view.at("buffer").whole<std::size_t>();
+    const auto length = view.at("byteLength").whole<std::size_t>();
+    const auto offset = number_in<std::size_t>(view, "byteOffset", 0);
+    const Bytes bytes = document.buffers[buffer].bytes;
+    if (offset > bytes.size() || length > bytes.size() - offset) {
+        throw SceneError(fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, buffer));
     }
-    return bytes.subspan(view.offset, view.length);
+    return bytes.subspan(offset, length);
 }
 
 std::size_t element_count(const Document& document, int accessor) {
-    return accessor_at(document, accessor).count;
+    return document.at("accessors", accessor).at("count").whole<std::size_t>();
 }
 
 std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
-    const Accessor& accessor = accessor_at(document, index);
+    const Accessor accessor = accessor_at(document, index);
     if (accessor.components != 3 || accessor.source.component_type != floating_point) {
         throw SceneError(
             fmt::format("accessor {} holds positions or normals, but is not VEC3 of FLOAT", index));
@@ -222,7 +272,7 @@ std::vector<glm::vec3> read_vectors(const Document& document, int index, const S
 
 std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
                                                 const Selection& selection) {
-    const Accessor& accessor = accessor_at(document, index);
+    const Accessor accessor = accessor_at(document, index);
     if (accessor.components != 2 || !has_real_components(accessor)) {
         throw SceneError(
             fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
@@ -238,7 +288,7 @@ std::vector<glm::vec2> read_texture_coordinates(const Document& document, int in
 }
 
 std::vector<glm::u16vec4> read_colours(const Document& document, int index, const Selection& selection) {
-    const Accessor& accessor = accessor_at(document, index);
+    const Accessor accessor = accessor_at(document, index);
     const bool has_alpha = accessor.components == 4;
     if ((accessor.components != 3 && !has_alpha) || !has_real_components(accessor)) {
         throw SceneError(
@@ -263,7 +313,7 @@ std::vector<glm::u16vec4> read_colours(const Document& document, int index, cons
 }
 
 std::vector<std::uint32_t> read_indices(const Document& document, int index, std::size_t vertex_count) {
-    const Accessor& accessor = accessor_at(document, index);
+    const Accessor accessor = accessor_at(document, index);
     const int type = accessor.source.component_type;
     if (accessor.components != 1 || !is_unsigned(type)) {
         throw SceneError(

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -12,7 +11,6 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_extensions.hpp"
-#include "engine/import/gltf_parser.hpp"
 #include "engine/import/gltf_schema.hpp"
 #include "engine/readable.hpp"
 
@@ -87,18 +85,11 @@ Json parse_json(Bytes text) {
     }
 }
 
-/// The array of this name; empty if there is none.
-const Json& list(const Json& document, const char* name) {
-    static const Json none = Json::array();
-    const Json* const found = document.find(name);
-    return found ? *found : none;
-}
-
 /// Throws for required extensions that are not supported; returns a warning for each other unsupported one.
 std::vector<std::string> check_extensions(const Json& document) {
     const auto names = [&](const char* member) {
         std::set<std::string> listed;
-        for (const Json& name : list(document, member).items()) {
+        for (const Json& name : list_in(document, member).items()) {
             listed.insert(name.text());
         }
         return listed;
@@ -141,7 +132,7 @@ Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<By
 std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes>& binary,
                                  ImportFiles& files) {
     std::vector<Buffer> buffers;
-    for (const Json& description : list(document, "buffers").items()) {
+    for (const Json& description : list_in(document, "buffers").items()) {
         try {
             buffers.push_back(load_buffer(description, buffers.size(), binary, files));
         } catch (const SceneError& error) {
@@ -151,26 +142,18 @@ std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes
     return buffers;
 }
 
-std::vector<EncodedImage> describe_images(const Json& document) {
-    const Json& descriptions = list(document, "images");
-    std::vector<EncodedImage> images(descriptions.size());
+void check_images(const Json& document) {
+    const Json& images = list_in(document, "images");
     for (std::size_t i = 0; i < images.size(); ++i) {
-        const auto text_of = [&](const char* member) {
-            const Json* const text = descriptions[i].find(member);
-            return text ? text->text() : std::string();
-        };
-        const Json* const view = descriptions[i].find("bufferView");
-        images[i] = {text_of("name"), text_of("uri"), view ? view->whole<int>() : -1};
-        if (images[i].uri.empty() == (images[i].buffer_view < 0)) {
+        if (text_in(images[i], "uri").empty() != images[i].contains("bufferView")) {
             throw SceneError(fmt::format(R"(image {} needs either a "uri" or a "bufferView")", i));
         }
     }
-    return images;
 }
 
 /// Whether any material has the member at `path`, with a value for which `counts` holds.
 bool any_material(const Json& document, const char* path, bool (*counts)(const Json& value)) {
-    return std::ranges::any_of(list(document, "materials").items(), [&](const Json& material) {
+    return std::ranges::any_of(list_in(document, "materials").items(), [&](const Json& material) {
         const Json* const member = material.find_path(path);
         return member && counts(*member);
     });
@@ -207,18 +190,14 @@ std::vector<std::string> omissions(const Json& document) {
 
 Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     const Container container = split(bytes);
-    Json json = parse_json(container.json);
+    Document document{parse_json(container.json), {}, {}};
+    const Json& json = document.json;
     check_schema(json);
-    budget.check_nodes(list(json, "nodes").size());
-    budget.add_memory(parsing_memory(json));
-    Document document;
+    budget.check_nodes(document.all("nodes").size());
     document.warnings = check_extensions(json);
     document.buffers = load_buffers(json, container.binary, files);
-    std::vector<EncodedImage> images = describe_images(json);
+    check_images(json);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
-    document.nodes = std::move(json["nodes"]);
-    document.model = parse_model(std::move(json));
-    document.model.images = std::move(images);
     return document;
 }
 

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "engine/import/gltf_model.hpp"
+#include "engine/import/gltf_values.hpp"
 #include "engine/import/import_budget.hpp"
 #include "engine/import/import_files.hpp"
 #include "engine/json/json.hpp"
@@ -16,13 +17,18 @@ struct Buffer {
     Bytes bytes;
 };
 
-/// A checked glTF document with its buffers loaded. Nodes stay as JSON, of which there may be millions.
-/// Images stay encoded. Animations and skins are left out.
+/// A checked glTF document with its buffers loaded. The rest is read where it is needed: see gltf_values.hpp.
 struct Document {
-    Model model;
+    Json json;
     std::vector<Buffer> buffers;
-    Json nodes;  ///< array
     std::vector<std::string> warnings;
+
+    /// The objects of a kind, such as "meshes"; empty if there are none.
+    [[nodiscard]] const Json& all(std::string_view list) const { return list_in(json, list); }
+    /// One of them.
+    [[nodiscard]] const Json& at(std::string_view list, int index) const {
+        return all(list)[static_cast<std::size_t>(index)];
+    }
 };
 
 /// Parses and checks .gltf or .glb, distinguished by their first bytes, and loads the buffers. Throws

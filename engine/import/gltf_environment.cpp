@@ -20,13 +20,14 @@ std::shared_ptr<const SkyPicture> decode_sky(Bytes bytes, ImportBudget& budget) 
 }
 
 /// Null if there is none.
-std::shared_ptr<const SkyPicture> read_picture(const Document& document, const EnvironmentSource& source,
+std::shared_ptr<const SkyPicture> read_picture(const Document& document, const Json& source,
                                                ImportFiles& files, ImportBudget& budget) {
     try {
-        if (source.buffer_view >= 0) {
-            return decode_sky(buffer_view_bytes(document, source.buffer_view), budget);
+        if (const int view = index_in(source, "bufferView"); view >= 0) {
+            return decode_sky(buffer_view_bytes(document, view), budget);
         }
-        return source.uri.empty() ? nullptr : decode_sky(*files.read(source.uri), budget);
+        const std::string uri = text_in(source, "uri");
+        return uri.empty() ? nullptr : decode_sky(*files.read(uri), budget);
     } catch (const SceneError& error) {
         throw SceneError(fmt::format("the environment's picture: {}", error.what()));
     }
@@ -36,14 +37,14 @@ std::shared_ptr<const SkyPicture> read_picture(const Document& document, const E
 
 std::optional<NamedEnvironment> read_environment(const Document& document, ImportFiles& files,
                                                  ImportBudget& budget) {
-    const std::optional<EnvironmentSource>& source = default_scene(document.model).environment;
+    const Json* const source = default_scene(document).find_path("extensions/CANDELA_environment");
     if (!source) {
         return std::nullopt;
     }
-    return NamedEnvironment{source->name,
-                            Environment{.radiance = source->radiance,
+    return NamedEnvironment{text_in(*source, "name", "environment"),
+                            Environment{.radiance = vector_in(*source, "radiance", glm::vec3(1.0F)),
                                         .picture = read_picture(document, *source, files, budget),
-                                        .rotation = source->rotation}};
+                                        .rotation = number_in(*source, "rotation", 0.0F)}};
 }
 
 }  // namespace candela::gltf

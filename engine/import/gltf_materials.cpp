@@ -11,6 +11,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/decode_image.hpp"
 #include "engine/import/gltf_accessors.hpp"
+#include "engine/import/gltf_constants.hpp"
 
 namespace candela::gltf {
 
@@ -37,20 +38,35 @@ struct Wraps {
     Wrap v = Wrap::repeat;
 };
 
-Wraps wraps_of(const Model& model, const Texture& texture) {
-    if (texture.sampler < 0) {
+Wraps wraps_of(const Document& document, const Json& texture) {
+    const int index = index_in(texture, "sampler");
+    if (index < 0) {
         return {};
     }
-    const Sampler& sampler = model.samplers[static_cast<std::size_t>(texture.sampler)];
-    return {to_wrap(sampler.wrap_s, texture.sampler), to_wrap(sampler.wrap_t, texture.sampler)};
+    const Json& sampler = document.at("samplers", index);
+    return {to_wrap(number_in(sampler, "wrapS", wrap_repeat), index),
+            to_wrap(number_in(sampler, "wrapT", wrap_repeat), index)};
 }
 
-/// Of (u, v, 1): scales, then rotates, then moves.
-glm::mat3 transform_of(const TextureUse& use) {
-    const auto cosine = static_cast<float>(std::cos(use.rotation));
-    const auto sine = static_cast<float>(std::sin(use.rotation));
-    return {glm::vec3(cosine * use.scale.x, -sine * use.scale.x, 0.0F),
-            glm::vec3(sine * use.scale.y, cosine * use.scale.y, 0.0F), glm::vec3(use.offset, 1.0F)};
+/// What KHR_texture_transform of a textureInfo does to (u, v, 1): scales, then rotates, then moves. `use` may
+/// be null.
+glm::mat3 transform_of(const Json* use) {
+    const Json* const transform = use ? use->find_path("extensions/KHR_texture_transform") : nullptr;
+    if (!transform) {
+        return glm::mat3(1.0F);
+    }
+    const auto scale = vector_in(*transform, "scale", glm::vec2(1.0F));
+    const auto offset = vector_in(*transform, "offset", glm::vec2(0.0F));
+    const double rotation = number_in(*transform, "rotation", 0.0);
+    const auto cosine = static_cast<float>(std::cos(rotation));
+    const auto sine = static_cast<float>(std::sin(rotation));
+    return {glm::vec3(cosine * scale.x, -sine * scale.x, 0.0F),
+            glm::vec3(sine * scale.y, cosine * scale.y, 0.0F), glm::vec3(offset, 1.0F)};
+}
+
+/// The set of texture coordinates of a textureInfo.
+int coordinate_set_of(const Json& use) {
+    return number_in(use, "extensions/KHR_texture_transform/texCoord", number_in(use, "texCoord", 0));
 }
 
 /// Reads the images of materials. Textures with the same bytes and wrapping share one.
@@ -59,26 +75,27 @@ class ImageReader {
     ImageReader(Document& document, ImportFiles& files, ImportBudget& budget)
         : document_(document), files_(files), budget_(budget) {}
 
-    /// The image of a texture; null, with a warning that starts with `label`, if it cannot be used.
-    std::shared_ptr<const Image> read(const TextureUse& use, const std::string& label) {
-        if (use.texture < 0) {
+    /// The image of a textureInfo; null, with a warning that starts with `label`, if it cannot be used. `use`
+    /// may be null.
+    std::shared_ptr<const Image> read(const Json* use, const std::string& label) {
+        if (!use) {
             return nullptr;
         }
-        const Texture& texture = document_.model.textures[static_cast<std::size_t>(use.texture)];
-        if (texture.image < 0) {
+        const Json& texture = document_.at("textures", index_in(*use, "index"));
+        const int image = index_in(texture, "source");
+        if (image < 0) {
             warn(fmt::format("{} has no PNG or JPEG image; ignored", label));
             return nullptr;
         }
-        if (use.coordinate_set != 0) {
-            warn(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label,
-                             use.coordinate_set));
+        if (const int set = coordinate_set_of(*use); set != 0) {
+            warn(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label, set));
             return nullptr;
         }
-        const Wraps wraps = wraps_of(document_.model, texture);
+        const Wraps wraps = wraps_of(document_, texture);
         try {
-            return load(texture.image, wraps);
+            return load(image, wraps);
         } catch (const SceneError& error) {
-            throw SceneError(fmt::format("image {}: {}", texture.image, error.what()));
+            throw SceneError(fmt::format("image {}: {}", image, error.what()));
         }
     }
 
@@ -98,13 +115,13 @@ class ImageReader {
     }
 
     Bytes encoded_image(int index) {
-        const EncodedImage& source = document_.model.images[static_cast<std::size_t>(index)];
-        if (source.buffer_view >= 0) {
-            return buffer_view_bytes(document_, source.buffer_view);
+        const Json& source = document_.at("images", index);
+        if (const int view = index_in(source, "bufferView"); view >= 0) {
+            return buffer_view_bytes(document_, view);
         }
         Content& content = contents_[index];
         if (!content) {
-            content = files_.read(source.uri);
+            content = files_.read(source.at("uri").text());
         }
         return *content;
     }
@@ -131,43 +148,46 @@ void show_unlit(Material& material) {
     material.base_colour = glm::vec4(0.0F, 0.0F, 0.0F, material.base_colour.a);
 }
 
-ReadMaterial read_material(const MaterialSource& source, const std::string& label, ImageReader& images) {
-    const TextureUse& emissive = source.unlit ? source.base_colour_texture : source.emissive_texture;
+ReadMaterial read_material(const Json& source, const std::string& label, ImageReader& images) {
+    const Json* const base = source.find_path("pbrMetallicRoughness/baseColorTexture");
+    const bool unlit = source.find_path("extensions/KHR_materials_unlit") != nullptr;
+    const Json* const emissive = unlit ? base : source.find("emissiveTexture");
+    const double strength =
+        number_in(source, "extensions/KHR_materials_emissive_strength/emissiveStrength", 1.0);
     Material material;
-    material.name = source.name;
-    for (int i = 0; i < 4; ++i) {
-        material.base_colour[i] = static_cast<float>(source.base_colour[static_cast<std::size_t>(i)]);
-    }
-    for (int i = 0; i < 3; ++i) {
-        material.emissive[i] =
-            static_cast<float>(source.emissive[static_cast<std::size_t>(i)] * source.emissive_strength);
-        if (!std::isfinite(material.emissive[i])) {
+    material.name = text_in(source, "name");
+    material.base_colour = vector_in(source, "pbrMetallicRoughness/baseColorFactor", glm::vec4(1.0F));
+    const Json& factors = list_in(source, "emissiveFactor");
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        float& channel = material.emissive[static_cast<glm::length_t>(i)];
+        channel = static_cast<float>(factors[i].number() * strength);
+        if (!std::isfinite(channel)) {
             throw SceneError(fmt::format("{}: its emission is too large", label));
         }
     }
-    material.base_colour_texture = images.read(source.base_colour_texture, label + ": its texture");
-    if (source.unlit) {
+    material.base_colour_texture = images.read(base, label + ": its texture");
+    if (unlit) {
         show_unlit(material);
     } else if (material.emissive != glm::vec3(0.0F)) {
         material.emissive_texture = images.read(emissive, label + ": its emissive texture");
     }
-    const glm::mat3 transform = transform_of(source.base_colour_texture);
+    const glm::mat3 transform = transform_of(base);
     if (material.base_colour_texture && material.emissive_texture && transform != transform_of(emissive)) {
         images.warn(label + ": its emissive texture is transformed like its base colour");
     }
-    material.double_sided = source.double_sided;
-    material.alpha_mode = to_alpha_mode(source.alpha_mode);
-    material.alpha_cutoff = static_cast<float>(source.alpha_cutoff);
+    material.double_sided = flag_in(source, "doubleSided", false);
+    material.alpha_mode = to_alpha_mode(text_in(source, "alphaMode"));
+    material.alpha_cutoff = number_in(source, "alphaCutoff", 0.5F);
     const glm::mat3 used = material.base_colour_texture ? transform : transform_of(emissive);
     return {std::make_shared<const Material>(std::move(material)), used};
 }
 
-std::vector<bool> used_materials(const Model& model, const std::vector<bool>& used_meshes) {
-    std::vector<bool> used(model.materials.size());
-    for (std::size_t i = 0; i < model.meshes.size(); ++i) {
-        for (const PrimitiveSource& primitive : model.meshes[i].primitives) {
-            if (used_meshes[i] && primitive.material >= 0) {
-                used[static_cast<std::size_t>(primitive.material)] = true;
+std::vector<bool> used_materials(const Document& document, const std::vector<bool>& used_meshes) {
+    std::vector<bool> used(document.all("materials").size());
+    for (std::size_t i = 0; i < used_meshes.size(); ++i) {
+        for (const Json& primitive : document.all("meshes")[i].at("primitives").items()) {
+            if (const int material = index_in(primitive, "material"); used_meshes[i] && material >= 0) {
+                used[static_cast<std::size_t>(material)] = true;
             }
         }
     }
@@ -179,12 +199,12 @@ std::vector<bool> used_materials(const Model& model, const std::vector<bool>& us
 std::vector<ReadMaterial> read_materials(Document& document, const std::vector<bool>& used_meshes,
                                          ImportFiles& files, ImportBudget& budget, const Progress& progress) {
     ImageReader images(document, files, budget);
-    const std::vector<bool> used = used_materials(document.model, used_meshes);
+    const std::vector<bool> used = used_materials(document, used_meshes);
     std::vector<ReadMaterial> materials(used.size());
     for (std::size_t i = 0; i < used.size(); ++i) {
         if (used[i]) {
             progress("reading materials and images", i, used.size());
-            materials[i] = read_material(document.model.materials[i], fmt::format("material {}", i), images);
+            materials[i] = read_material(document.all("materials")[i], fmt::format("material {}", i), images);
         }
     }
     materials.push_back({std::make_shared<const Material>()});

@@ -13,6 +13,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_accessors.hpp"
+#include "engine/import/gltf_constants.hpp"
 #include "engine/import/unit_length.hpp"
 
 namespace candela::gltf {
@@ -29,9 +30,18 @@ struct Omissions {
     bool second_colours = false;
 };
 
-std::optional<int> find_attribute(const PrimitiveSource& source, const char* name) {
-    const auto found = source.attributes.find(name);
-    return found == source.attributes.end() ? std::nullopt : std::optional(found->second);
+std::optional<int> find_attribute(const Json& source, std::string_view name) {
+    const Json* const found = source.at("attributes").find(name);
+    return found ? std::optional(found->whole<int>()) : std::nullopt;
+}
+
+int mode_of(const Json& source) {
+    return number_in(source, "mode", mode_triangles);
+}
+
+/// The accessor of the indices; -1 for none.
+int indices_of(const Json& source) {
+    return index_in(source, "indices");
 }
 
 /// The accessor of an attribute, which must have one element for each position.
@@ -45,7 +55,7 @@ int checked_attribute(const Document& document, int accessor, std::string_view a
 }
 
 /// The selected vertices. A missing normal is zero until the faces provide one.
-std::vector<Vertex> read_vertices(const Document& document, const PrimitiveSource& source, int positions,
+std::vector<Vertex> read_vertices(const Document& document, const Json& source, int positions,
                                   const Selection& selection) {
     const std::size_t all = element_count(document, positions);
     std::vector<Vertex> vertices;
@@ -82,10 +92,10 @@ std::vector<Vertex> read_vertices(const Document& document, const PrimitiveSourc
     return vertices;
 }
 
-std::vector<std::uint32_t> read_order(const Document& document, const PrimitiveSource& source,
+std::vector<std::uint32_t> read_order(const Document& document, const Json& source,
                                       std::size_t vertex_count) {
-    if (source.indices >= 0) {
-        return read_indices(document, source.indices, vertex_count);
+    if (const int indices = indices_of(source); indices >= 0) {
+        return read_indices(document, indices, vertex_count);
     }
     std::vector<std::uint32_t> order(vertex_count);
     std::iota(order.begin(), order.end(), 0U);
@@ -160,12 +170,12 @@ void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& tri
     }
 }
 
-bool is_drawn(const PrimitiveSource& source, Omissions& omissions) {
-    const bool triangles = source.mode >= mode_triangles;
+bool is_drawn(const Json& source, Omissions& omissions) {
+    const bool triangles = mode_of(source) >= mode_triangles;
     const bool positions = find_attribute(source, "POSITION").has_value();
     omissions.points_or_lines |= !triangles;
     omissions.no_positions |= triangles && !positions;
-    omissions.morph_targets |= source.has_targets;
+    omissions.morph_targets |= !list_in(source, "targets").empty();
     omissions.second_colours |= find_attribute(source, "COLOR_1").has_value();
     return triangles && positions;
 }
@@ -180,10 +190,11 @@ std::uint64_t triangle_count(std::uint64_t order, int mode) {
 }
 
 /// Counts what read_primitive needs, without the vertices that it selects.
-void count_triangles(const Document& document, const PrimitiveSource& source, ImportBudget& budget) {
+void count_triangles(const Document& document, const Json& source, ImportBudget& budget) {
+    const int indices = indices_of(source);
     const std::uint64_t order =
-        element_count(document, source.indices >= 0 ? source.indices : *find_attribute(source, "POSITION"));
-    const std::uint64_t triangles = triangle_count(order, source.mode);
+        element_count(document, indices >= 0 ? indices : *find_attribute(source, "POSITION"));
+    const std::uint64_t triangles = triangle_count(order, mode_of(source));
     budget.add_triangles(triangles);
     budget.add_memory(order * sizeof(std::uint32_t) + triangles * sizeof(Corners));
     if (!find_attribute(source, "NORMAL")) {
@@ -192,7 +203,7 @@ void count_triangles(const Document& document, const PrimitiveSource& source, Im
 }
 
 /// Without indices if no triangle has an area.
-Primitive read_primitive(const Document& document, const PrimitiveSource& source, ImportBudget& budget) {
+Primitive read_primitive(const Document& document, const Json& source, ImportBudget& budget) {
     const int positions = *find_attribute(source, "POSITION");
     const std::size_t vertex_count = element_count(document, positions);
     count_triangles(document, source, budget);
@@ -205,7 +216,7 @@ Primitive read_primitive(const Document& document, const PrimitiveSource& source
 
     Primitive primitive;
     primitive.vertices = read_vertices(document, source, positions, selection);
-    std::vector<Corners> triangles = assemble(order, source.mode);
+    std::vector<Corners> triangles = assemble(order, mode_of(source));
     std::erase_if(triangles, [&](const Corners& corners) {
         return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
     });
@@ -220,11 +231,11 @@ Primitive read_primitive(const Document& document, const PrimitiveSource& source
     return primitive;
 }
 
-Mesh read_mesh(const Document& document, const MeshSource& source, const std::vector<ReadMaterial>& materials,
+Mesh read_mesh(const Document& document, const Json& source, const std::vector<ReadMaterial>& materials,
                Omissions& omissions, ImportBudget& budget) {
     Mesh mesh;
-    mesh.name = source.name;
-    for (const PrimitiveSource& part : source.primitives) {
+    mesh.name = text_in(source, "name");
+    for (const Json& part : source.at("primitives").items()) {
         if (!is_drawn(part, omissions)) {
             continue;
         }
@@ -232,8 +243,9 @@ Mesh read_mesh(const Document& document, const MeshSource& source, const std::ve
         if (primitive.indices.empty()) {
             continue;
         }
+        const int material = index_in(part, "material");
         const ReadMaterial& read =
-            part.material < 0 ? materials.back() : materials[static_cast<std::size_t>(part.material)];
+            material < 0 ? materials.back() : materials[static_cast<std::size_t>(material)];
         primitive.material = read.material;
         for (Vertex& vertex : primitive.vertices) {
             vertex.uv = glm::vec2(read.uv_transform * glm::vec3(vertex.uv, 1.0F));
@@ -264,14 +276,14 @@ std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const s
                                                      const std::vector<ReadMaterial>& materials,
                                                      ImportBudget& budget, const Progress& progress) {
     Omissions omissions;
-    std::vector<std::shared_ptr<const Mesh>> meshes(document.model.meshes.size());
+    std::vector<std::shared_ptr<const Mesh>> meshes(used.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (!used[i]) {
             continue;
         }
         progress("reading meshes", i, meshes.size());
         try {
-            Mesh mesh = read_mesh(document, document.model.meshes[i], materials, omissions, budget);
+            Mesh mesh = read_mesh(document, document.all("meshes")[i], materials, omissions, budget);
             meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
         } catch (const SceneError& error) {
             throw SceneError(fmt::format("mesh {}: {}", i, error.what()));

@@ -28,24 +28,13 @@ struct Visit {
     std::optional<std::size_t> parent;
 };
 
-const Json& node_at(const Document& document, int index) {
-    return document.nodes[static_cast<std::size_t>(index)];
-}
-
-/// Empty if the node has no such member.
-const Json& array_of(const Json& node, const char* member) {
-    static const Json none = Json::array();
-    const Json* const found = node.find(member);
-    return found ? *found : none;
-}
-
 const Json& children_of(const Document& document, int node) {
-    return array_of(node_at(document, node), "children");
+    return list_in(document.at("nodes", node), "children");
 }
 
 /// The parent of each node; -1 for a root.
 std::vector<int> find_parents(const Document& document) {
-    std::vector<int> parents(document.nodes.size(), -1);
+    std::vector<int> parents(document.all("nodes").size(), -1);
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
         for (const Json& child : children_of(document, node).items()) {
             int& parent = parents[child.whole<std::size_t>()];
@@ -83,8 +72,9 @@ void check_hierarchy(const Document& document) {
     }
 
     std::vector<bool> listed(parents.size(), false);
-    for (const int node : default_scene(document.model).nodes) {
-        const auto i = static_cast<std::size_t>(node);
+    for (const Json& root : list_in(default_scene(document), "nodes").items()) {
+        const int node = root.whole<int>();
+        const auto i = root.whole<std::size_t>();
         if (parents[i] >= 0) {
             throw SceneError(fmt::format("node {} is a root of the scene but has a parent", node));
         }
@@ -92,13 +82,6 @@ void check_hierarchy(const Document& document) {
             throw SceneError(fmt::format("node {} is a root of the scene twice", node));
         }
         listed[i] = true;
-    }
-}
-
-template <class Vector>
-void assign(Vector& vector, const Json& numbers) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        vector[static_cast<typename Vector::length_type>(i)] = static_cast<float>(numbers[i].number());
     }
 }
 
@@ -126,9 +109,9 @@ std::vector<Transform> read_matrix(const Json& numbers) {
 
 Transform read_translation_rotation_scale(const Json& node) {
     Transform transform;
-    assign(transform.translation, array_of(node, "translation"));
-    assign(transform.scale, array_of(node, "scale"));
-    const Json& numbers = array_of(node, "rotation");
+    transform.translation = vector_in(node, "translation", transform.translation);
+    transform.scale = vector_in(node, "scale", transform.scale);
+    const Json& numbers = list_in(node, "rotation");
     if (numbers.empty()) {
         return transform;
     }
@@ -145,7 +128,7 @@ Transform read_translation_rotation_scale(const Json& node) {
 /// Outermost first; more than one if the node is sheared.
 std::vector<Transform> read_transforms(const Json& node, int index) {
     try {
-        const Json& matrix = array_of(node, "matrix");
+        const Json& matrix = list_in(node, "matrix");
         std::vector<Transform> transforms =
             matrix.empty() ? std::vector{read_translation_rotation_scale(node)} : read_matrix(matrix);
         if (!std::ranges::all_of(transforms, is_finite)) {
@@ -157,29 +140,30 @@ std::vector<Transform> read_transforms(const Json& node, int index) {
     }
 }
 
-Camera read_camera(const CameraSource& source, int index) {
-    const bool endless = source.is_perspective && source.far_plane == 0.0;
+Camera read_camera(const Json& source, int index) {
+    constexpr float endless = std::numeric_limits<float>::infinity();
+    const bool is_perspective = source.at("type").is("perspective");
+    const Json& lens = source.at(source.at("type").text());
     Camera camera;
-    camera.near_plane = static_cast<float>(source.near_plane);
-    camera.far_plane =
-        endless ? std::numeric_limits<float>::infinity() : static_cast<float>(source.far_plane);
+    camera.near_plane = number_in(lens, "znear", 0.0F);
+    camera.far_plane = number_in(lens, "zfar", endless);
     if (camera.far_plane <= camera.near_plane) {
         throw SceneError(fmt::format("camera {}: its zfar of {} is not beyond its znear of {}", index,
                                      camera.far_plane, camera.near_plane));
     }
-    if (source.is_perspective) {
-        camera.vertical_fov = static_cast<float>(source.vertical_fov);
+    if (is_perspective) {
+        camera.vertical_fov = number_in(lens, "yfov", 0.0F);
     } else {
         camera.projection = Camera::Projection::orthographic;
-        camera.half_height = static_cast<float>(source.half_height);
+        camera.half_height = number_in(lens, "ymag", 0.0F);
     }
     return camera;
 }
 
-SpotLight read_cones(const LightSource& source, int index) {
+SpotLight read_cones(const Json& source, int index) {
     SpotLight light;
-    light.inner_cone = static_cast<float>(source.inner_cone);
-    light.outer_cone = std::min(static_cast<float>(source.outer_cone), half_pi);
+    light.inner_cone = number_in(source, "spot/innerConeAngle", 0.0F);
+    light.outer_cone = std::min(number_in(source, "spot/outerConeAngle", half_pi / 2.0F), half_pi);
     if (light.inner_cone >= light.outer_cone) {
         throw SceneError(fmt::format("light {}: its inner cone of {} is not inside its outer cone of {}",
                                      index, light.inner_cone, light.outer_cone));
@@ -187,55 +171,48 @@ SpotLight read_cones(const LightSource& source, int index) {
     return light;
 }
 
-decltype(StagedEntity::light) read_light(const LightSource& source, int index) {
-    glm::vec3 colour(1.0F);
-    for (std::size_t i = 0; i < source.colour.size(); ++i) {
-        colour[static_cast<glm::length_t>(i)] = static_cast<float>(source.colour[i]);
-    }
-    const auto intensity = static_cast<float>(source.intensity);
-    const float range =
-        source.range > 0.0 ? static_cast<float>(source.range) : std::numeric_limits<float>::infinity();
+decltype(StagedEntity::light) read_light(const Json& source, int index) {
+    const auto colour = vector_in(source, "color", glm::vec3(1.0F));
+    const float intensity = number_in(source, "intensity", 1.0F);
+    const float range = number_in(source, "range", std::numeric_limits<float>::infinity());
+    const bool casts_shadow = flag_in(source, "extensions/CANDELA_light/castsShadow", true);
 
-    if (source.type == "directional") {
-        return DirectionalLight{colour, intensity, source.casts_shadow};
+    const std::string& type = source.at("type").text();
+    if (type == "directional") {
+        return DirectionalLight{colour, intensity, casts_shadow};
     }
-    if (source.type == "point") {
-        return PointLight{colour, intensity, range, source.casts_shadow};
+    if (type == "point") {
+        return PointLight{colour, intensity, range, casts_shadow};
     }
-    if (source.type != "spot") {
-        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(source.type)));
+    if (type != "spot") {
+        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(type)));
     }
     SpotLight light = read_cones(source, index);
     light.colour = colour;
     light.intensity = intensity;
     light.range = range;
-    light.casts_shadow = source.casts_shadow;
+    light.casts_shadow = casts_shadow;
     return light;
-}
-
-/// An index that the node holds; -1 for none.
-int index_of(const Json& node, std::string_view path) {
-    const Json* const index = node.find_path(path);
-    return index ? index->whole<int>() : -1;
 }
 
 /// Index of the node's light; -1 for none.
 int light_of(const Json& node) {
-    return index_of(node, "extensions/KHR_lights_punctual/light");
+    return index_in(node, "extensions/KHR_lights_punctual/light");
 }
 
+constexpr std::string_view all_lights = "extensions/KHR_lights_punctual/lights";
+
 std::string name_of(const Document& document, int index) {
-    const Json& node = node_at(document, index);
+    const Json& node = document.at("nodes", index);
     if (const Json* const name = node.find("name")) {
         return name->text();
     }
-    const auto name_in = [](const auto& list, int i) {
-        return i < 0 ? std::string() : list[static_cast<std::size_t>(i)].name;
+    const auto name_in = [&](std::string_view list, int i) {
+        return i < 0 ? std::string() : text_in(document.at(list, i), "name");
     };
-    const Model& model = document.model;
     for (std::string name :
-         {name_in(model.cameras, index_of(node, "camera")), name_in(model.lights, light_of(node)),
-          name_in(model.meshes, index_of(node, "mesh"))}) {
+         {name_in("cameras", index_in(node, "camera")), name_in(all_lights, light_of(node)),
+          name_in("meshes", index_in(node, "mesh"))}) {
         if (!name.empty()) {
             return name;
         }
@@ -245,23 +222,22 @@ std::string name_of(const Document& document, int index) {
 
 /// Adds the node's mesh, camera and light to its (innermost) entity.
 void equip(StagedEntity& entity, const Document& document, const Json& node) {
-    const Model& model = document.model;
-    entity.mesh = index_of(node, "mesh");
-    if (const int camera = index_of(node, "camera"); camera >= 0) {
-        entity.camera = read_camera(model.cameras[static_cast<std::size_t>(camera)], camera);
+    entity.mesh = index_in(node, "mesh");
+    if (const int camera = index_in(node, "camera"); camera >= 0) {
+        entity.camera = read_camera(document.at("cameras", camera), camera);
     }
     if (const int light = light_of(node); light >= 0) {
-        entity.light = read_light(model.lights[static_cast<std::size_t>(light)], light);
+        entity.light = read_light(document.at(all_lights, light), light);
     }
 }
 
 }  // namespace
 
-const SceneSource& default_scene(const Model& model) {
-    if (model.scenes.empty()) {
+const Json& default_scene(const Document& document) {
+    if (document.all("scenes").empty()) {
         throw SceneError("it has no scene");
     }
-    return model.scenes[static_cast<std::size_t>(std::max(model.default_scene, 0))];
+    return document.at("scenes", number_in(document.json, "scene", 0));
 }
 
 std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
@@ -269,23 +245,25 @@ std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& bud
     check_hierarchy(document);
     std::vector<StagedEntity> entities;
     std::vector<Visit> ahead;  // the next one last
-    const std::vector<int>& roots = default_scene(document.model).nodes;
-    std::for_each(roots.rbegin(), roots.rend(), [&](int node) { ahead.push_back({node, 1, {}}); });
+    const Json& roots = list_in(default_scene(document), "nodes");
+    for (std::size_t i = roots.size(); i-- > 0;) {
+        ahead.push_back({roots[i].whole<int>(), 1, {}});
+    }
     while (!ahead.empty()) {
         auto [node, level, parent] = ahead.back();
         ahead.pop_back();
         budget.check_depth(level);
         if (entities.size() % 4096 == 0) {
-            progress("reading nodes", entities.size(), document.nodes.size());
+            progress("reading nodes", entities.size(), document.all("nodes").size());
         }
-        for (const Transform& transform : read_transforms(node_at(document, node), node)) {
+        for (const Transform& transform : read_transforms(document.at("nodes", node), node)) {
             StagedEntity& entity = entities.emplace_back();
             entity.parent = parent;
             entity.name = name_of(document, node);
             entity.transform = transform;
             parent = entities.size() - 1;
         }
-        equip(entities.back(), document, node_at(document, node));
+        equip(entities.back(), document, document.at("nodes", node));
         const Json& children = children_of(document, node);
         for (std::size_t i = children.size(); i-- > 0;) {
             ahead.push_back({children[i].whole<int>(), level + 1, parent});

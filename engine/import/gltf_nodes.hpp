@@ -23,7 +23,7 @@ struct StagedEntity {
 };
 
 /// The scene that the file names as default, else its first. Throws SceneError if there is none.
-[[nodiscard]] const SceneSource& default_scene(const Model& model);
+[[nodiscard]] const Json& default_scene(const Document& document);
 
 /// The nodes of the default scene (the first scene if no default is given), parents before children, siblings
 /// in the file's order. A sheared node makes two entities with its name, the first the parent of the second

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_constants.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
@@ -125,6 +126,15 @@ Check has(std::initializer_list<const char*> members) {
     };
 }
 
+/// Checks for a member that is named like the value of "type", if that is one of `kinds`.
+Check has_its_kind(std::vector<std::string_view> kinds) {
+    return [kinds = std::move(kinds)](const Json& value, const Json&) -> Problem {
+        const std::string& kind = value.at("type").text();
+        const bool needed = std::ranges::find(kinds, kind) != kinds.end();
+        return needed && !value.contains(kind) ? fmt::format("has no \"{}\"", kind) : Problem{};
+    };
+}
+
 Check version() {
     return [](const Json& value, const Json&) -> Problem {
         if (!value.is_string()) {
@@ -196,9 +206,9 @@ std::vector<Rule> rules() {
         {"accessors.[]", has({"componentType", "count", "type"})},
         {"accessors.[].bufferView", buffer_view},
         {"accessors.[].byteOffset", size},
-        {"accessors.[].componentType", index},
+        {"accessors.[].componentType", whole(signed_byte, floating_point)},
         {"accessors.[].count", whole(1, most_elements)},
-        {"accessors.[].type", text()},
+        {"accessors.[].type", one_of({"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})},
         {"accessors.[].normalized", flag()},
         {"accessors.[].sparse", has({"count", "indices", "values"})},
         {"accessors.[].sparse.count", whole(1, std::numeric_limits<int>::max())},
@@ -261,7 +271,8 @@ std::vector<Rule> rules() {
 
         {"cameras.[]", has({"type"})},
         {"cameras.[].name", text()},
-        {"cameras.[].type", text()},
+        {"cameras.[].type", one_of({"perspective", "orthographic"})},
+        {"cameras.[]", has_its_kind({"perspective", "orthographic"})},
         {"cameras.[].perspective", has({"yfov", "znear"})},
         {"cameras.[].perspective.yfov", number(field_of_view)},
         {"cameras.[].perspective.znear", number(positive)},
@@ -275,6 +286,7 @@ std::vector<Rule> rules() {
         {"extensions.KHR_lights_punctual.lights.[]", has({"type"})},
         {"extensions.KHR_lights_punctual.lights.[].name", text()},
         {"extensions.KHR_lights_punctual.lights.[].type", text()},
+        {"extensions.KHR_lights_punctual.lights.[]", has_its_kind({"spot"})},
         {"extensions.KHR_lights_punctual.lights.[].color", numbers(3, unit)},
         {"extensions.KHR_lights_punctual.lights.[].intensity", number(not_negative)},
         {"extensions.KHR_lights_punctual.lights.[].range", number(positive)},

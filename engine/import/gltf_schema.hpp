@@ -5,9 +5,9 @@
 namespace candela::gltf {
 
 /// Checks the part of a glTF 2.0 document that the import reads: structure, types, array lengths, ranges of
-/// numbers, and that every index refers to something that exists. TinyGLTF treats a member of the wrong type
-/// or with a negative value as absent, so later code could not detect it. Throws SceneError, which names the
-/// first invalid member, such as `nodes[3].mesh is 7, but there are 2 meshes`.
+/// numbers, and that every index refers to something that exists. What reads the document relies on it.
+/// Throws SceneError, which names the first invalid member, such as `nodes[3].mesh is 7, but there are 2
+/// meshes`.
 void check_schema(const Json& document);
 
 }  // namespace candela::gltf

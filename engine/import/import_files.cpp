@@ -8,9 +8,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tiny_gltf.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "engine/import/gltf_parser.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
@@ -36,12 +36,13 @@ std::string percent_decoded(std::string_view uri) {
 }
 
 Content decode_data(const std::string& uri) {
-    std::optional<std::vector<unsigned char>> bytes = decode_data_uri(uri);
-    if (!bytes) {
+    std::vector<unsigned char> bytes;
+    std::string media_type;
+    if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) {
         throw SceneError(
             fmt::format("the data URI {}... is empty or of an unknown kind", readable(uri.substr(0, 40))));
     }
-    return std::make_shared<const std::vector<unsigned char>>(std::move(*bytes));
+    return std::make_shared<const std::vector<unsigned char>>(std::move(bytes));
 }
 
 fs::path or_current(fs::path folder) {

@@ -154,8 +154,9 @@ TEST_SUITE("malformed glTF") {
             {"/meshes/0/primitives/0/mode", "7", "meshes[0].primitives[0].mode is 7, which is out of range"},
             {"/meshes/0/primitives/0/attributes", "", "meshes[0].primitives[0] has no \"attributes\""},
             {"/meshes/0/primitives", "{}", "meshes[0].primitives is not an array"},
-            {"/accessors/0/componentType", "7", "Invalid `componentType` in accessor. Got 7"},
-            {"/accessors/0/type", "\"VEC5\"", "Unsupported `type` for accessor object. Got \"VEC5\""},
+            {"/accessors/0/componentType", "7", "accessors[0].componentType is 7, which is out of range"},
+            {"/accessors/0/type", "\"VEC5\"",
+             "accessors[0].type is \"VEC5\", not one of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4"},
         });
     }
 
@@ -248,7 +249,8 @@ TEST_SUITE("malformed glTF") {
              "light 0: its inner cone of 0.2 is not inside its outer cone of 0.2"},
             {"/extensions/KHR_lights_punctual/lights/0/spot/outerConeAngle", "2",
              "extensions.KHR_lights_punctual.lights[0].spot.outerConeAngle is 2, which is out of range"},
-            {"/extensions/KHR_lights_punctual/lights/0/spot", "", "Spot light description not found"},
+            {"/extensions/KHR_lights_punctual/lights/0/spot", "",
+             "extensions.KHR_lights_punctual.lights[0] has no \"spot\""},
             {"/extensions/KHR_lights_punctual/lights/0/type", "\"lava\"",
              "light 0 has the unknown type \"lava\""},
             {"/extensions/KHR_lights_punctual/lights", "7",
@@ -258,7 +260,7 @@ TEST_SUITE("malformed glTF") {
              "cameras[0].perspective.yfov is 3.2, which is out of range"},
             {"/cameras/0/perspective/znear", "0", "cameras[0].perspective.znear is 0, which is out of range"},
             {"/cameras/0/perspective/zfar", "0.5", "camera 0: its zfar of 0.5 is not beyond its znear of 1"},
-            {"/cameras/0/perspective", "", "Perspective camera description not found"},
+            {"/cameras/0/perspective", "", "cameras[0] has no \"perspective\""},
             {"/cameras/1/orthographic/ymag", "0", "cameras[1].orthographic.ymag is 0, which is out of range"},
             {"/cameras/1/orthographic/zfar", "1", "camera 1: its zfar of 1 is not beyond its znear of 1"},
             {"/cameras/1/orthographic/zfar", "", "cameras[1].orthographic has no \"zfar\""},
