@@ -47,10 +47,10 @@ struct Light {
     vec3 direction;  // unit, in which the light travels
     float range;     // metres; may be infinite
     vec3 intensity;  // candela; directional: lux
-    int shadow;      // index into the shadows, -1: none
-    vec2 shape;      // spot: the cone's falloff is (y - (1 - cos) x)²; directional: half extents of the footprint, metres
     float cos_outer;  // spot: of the cone
+    vec2 shape;      // spot: the cone's falloff is (y - (1 - cos) x)²; directional: half extents of the footprint, metres
     float pad0 DEFAULT(0.0);
+    float pad1 DEFAULT(0.0);
 };
 
 // What all lights have in common. A uniform block: shaders/lights/light_list.glsl.
@@ -64,14 +64,16 @@ struct LightConstants {
 #define SHADOW_CUBE 0u
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u
+#define SHADOW_NONE 3u
 
+// The shadow map of the light with the same index.
 struct Shadow {
     mat4 from_world;  // to clip space; unused by cubes
     vec3 axis;        // the map's viewing direction; unused by cubes
     float texel;      // width of a texel at a depth of 1 metre, metres; directional: at any depth
     float near_plane; // metres, of perspective maps
     uint layer;       // of the map array, or cube of the cube array
-    uint kind;        // SHADOW_*
+    uint kind;        // SHADOW_*; the light has no shadow map: SHADOW_NONE, and nothing else counts
     float ray_offset; // metres above a surface, where rays to the light start
 };
 

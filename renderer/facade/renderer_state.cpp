@@ -429,13 +429,14 @@ std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {
 }
 
 LightReport Renderer::State::report_lights(const ViewHandles& view) const {
-    LightReport report{.count = static_cast<std::uint32_t>(runtime_.value(frame_.lights).entries.size())};
+    LightReport report{.count =
+                           static_cast<std::uint32_t>(runtime_.value(frame_.lights.table).entries.size())};
     if (!shows_light(configuration_.show)) {
         return report;  // shadow maps are culled
     }
-    const ShadowPlan& shadows = runtime_.value(frame_.shadows);
-    report.with_shadow = static_cast<std::uint32_t>(shadows.shadows.size());
-    report.shadow_views = runtime_.value(frame_.drawn_shadows).newly_drawn;
+    const ShadowPlan& shadows = runtime_.value(frame_.lights.shadows.plan);
+    report.with_shadow = shadows.cubes + shadows.maps;
+    report.shadow_views = runtime_.value(frame_.lights.shadows.drawn).newly_drawn;
     report.without_shadow = shadows.lights_without;
     if (!view.lists) {
         return report;

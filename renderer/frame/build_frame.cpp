@@ -19,18 +19,8 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
     if (contents.sky) {
         sky = add_sky(graph, gpu.scene_check(), sky_patches(configuration.vpls.count));
     }
-    frame.lights = add_lights(graph, gpu.scene_check(), tracing.metrics, sky);
-    const ShadowMaps shadows =
-        add_shadow_maps(graph, gpu, scene, frame.lights, frame.metrics, configuration.shadows);
-    frame.shadows = shadows.plan;
-    frame.drawn_shadows = shadows.drawn;
-    const LightBuffers buffers = add_light_upload(graph, gpu, frame.lights, shadows.plan);
-    return {.scene = scene,
-            .tracing = tracing,
-            .buffers = buffers,
-            .lights = {frame.lights, buffers.lights},
-            .shadows = shadows,
-            .sky = sky};
+    frame.lights = add_lights(graph, gpu, scene, tracing.metrics, sky, configuration.shadows);
+    return {.scene = scene, .tracing = tracing, .lights = frame.lights, .sky = sky};
 }
 
 /// Begins the part of the graph that belongs to one view.
@@ -68,8 +58,8 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
     }
     const auto environment = lit.sky ? std::optional(lit.sky->environment) : std::nullopt;
     frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
-    const Refined refined =
-        add_refinement(graph, *frame.refinement_clock, lit.scene, {frame.lights, environment}, requested);
+    const Refined refined = add_refinement(graph, *frame.refinement_clock, lit.scene,
+                                           {frame.lights.table, environment}, requested);
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
         begin_view(graph, i);
         ViewHandles& view = frame.views[i];
@@ -117,8 +107,8 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
     const VplSettings& settings = wanted.settings;
     if (settings.placement == VplPlacement::paths) {
         const ValueHandle<VplPlan> plan =
-            add_vpl_paths(graph, frame.metrics, frame.lights, refinement, settings);
-        frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.buffers.lights);
+            add_vpl_paths(graph, frame.metrics, lit.lights.table, refinement, settings);
+        frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer);
         return {plan, frame.vpls->vpls, {}, {}};
     }
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");

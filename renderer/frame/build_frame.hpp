@@ -11,7 +11,6 @@
 #include "renderer/passes/indirect/vpl_reconstruct.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"
-#include "renderer/passes/lights/shadow_maps.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/surfaces/host_surfaces.hpp"
@@ -38,9 +37,7 @@ struct ViewHandles {
 /// Handles into the frame graph, of all views.
 struct FrameHandles {
     ValueHandle<SceneMetrics> metrics;
-    ValueHandle<LightTable> lights;
-    ValueHandle<ShadowPlan> shadows;
-    ValueHandle<DrawnShadows> drawn_shadows;
+    SceneLights lights;
     /// Imported: see add_scene_motion; none without surfels.
     std::optional<ValueHandle<std::uint64_t>> epoch;
     std::optional<Vpls> vpls;                                      ///< none without indirect light

@@ -85,11 +85,7 @@ TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
 
 /// What the passes that shade read, all but gathered light.
 Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>& lists) {
-    Lighting lighting{.lights = shared.lit.lights.table,
-                      .buffers = shared.lit.buffers,
-                      .shadows = shared.lit.shadows,
-                      .lists = lists,
-                      .show = shared.configuration.show};
+    Lighting lighting{.lights = shared.lit.lights, .lists = lists, .show = shared.configuration.show};
     if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
         lighting.shadow_rays = shared.lit.tracing;
     }
@@ -130,7 +126,7 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
                     .depth = surfaces.depth,
                     .normal = surfaces.normal,
                     .albedo = surfaces.albedo,
-                    .lights = shared.lit.buffers.lights};
+                    .lights = shared.lit.lights.buffer};
     if (shared.vpls) {
         parts.vpls = shared.vpls->light.vpls.vpls;
     }

@@ -14,9 +14,7 @@ namespace candela {
 struct LitScene {
     SceneData scene;
     Tracing tracing;
-    LightBuffers buffers;
     SceneLights lights;
-    ShadowMaps shadows;
     std::optional<Sky> sky;
 };
 

@@ -10,7 +10,7 @@
 
 #ifndef SHADOW_RAYS
 
-float shadow_visibility(Light light, Surface surface) { return 1.0; }
+float shadow_visibility(uint index, Light light, Surface surface) { return 1.0; }
 
 #else
 
@@ -111,11 +111,11 @@ bool is_blocked(Shadow shadow, vec3 position, vec3 normal, vec3 light_position) 
 // renderer/passes/indirect/vpl_light.hpp). Only where the shadows of many lights end does it cast them all.
 int shadow_rays_left = MOST_SHADOW_RAYS;
 
-// Share of the light that reaches the surface, which must face it, in [0, 1]. It is neither 0 nor 1 only where the rays
-// are used up.
-float shadow_visibility(Light light, Surface surface) {
-    if (light.shadow < 0) return 1.0;
-    Shadow shadow = shadows[light.shadow];
+// Share of the light lights[index] that reaches the surface, which must face it, in [0, 1]. It is neither 0 nor 1 only
+// where the rays are used up.
+float shadow_visibility(uint index, Light light, Surface surface) {
+    if (shadows[index].kind == SHADOW_NONE) return 1.0;
+    Shadow shadow = shadows[index];
     vec3 position = visible_position(surface, shadow.ray_offset);
     float lit;
     if (shadow.kind == SHADOW_CUBE) {

@@ -16,11 +16,12 @@
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 
-vec3 irradiance_from_light(Light light, Surface surface) {
+// `light` is lights[index].
+vec3 irradiance_from_light(uint index, Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
     float cos_surface = dot(surface.normal, incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
-    return incident.irradiance * (cos_surface * shadow_visibility(light, surface));
+    return incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
 }
 
 #ifndef DIRECT_HIDDEN
@@ -32,14 +33,16 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
     for (int s = 0; s < SURFACES; ++s) {
         LightListRange list = light_list_at(pixels[s], surfaces[s].position);
         for (uint i = part_first; i < min(list.size, part_first + part_size); ++i) {
-            irradiance[s] += irradiance_from_light(lights[light_list_entry(list, i)], surfaces[s]);
+            uint index = light_list_entry(list, i);
+            irradiance[s] += irradiance_from_light(index, lights[index], surfaces[s]);
         }
     }
 #else
     LightListRange list = light_list_at(pixels[0], surfaces[0].position);
     for (uint i = part_first; i < min(list.size, part_first + part_size); ++i) {
-        Light light = lights[light_list_entry(list, i)];
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_light(light, surfaces[s]);
+        uint index = light_list_entry(list, i);
+        Light light = lights[index];
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_light(index, light, surfaces[s]);
     }
 #endif
 }

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/vpls/vpl_paths.hpp"
 #include "tests/renderer/path_fixture.hpp"
 

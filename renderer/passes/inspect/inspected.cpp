@@ -44,7 +44,7 @@ std::optional<glm::vec4> shadow_terms(const ShadowPlan& plan, bool cubes, std::u
     constexpr std::uint32_t faces = 6;
     const std::uint32_t map = cubes ? layer / faces : layer;
     const auto found = std::ranges::find_if(plan.shadows, [&](const gpu::Shadow& shadow) {
-        return shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
+        return shadow.kind != SHADOW_NONE && shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
     });
     if (found == plan.shadows.end()) {
         return std::nullopt;

@@ -44,9 +44,8 @@ LightTable::Entry directional_entry(Entity entity, const ParallelLight& light, c
                       .direction = light.direction,
                       .range = std::numeric_limits<float>::infinity(),
                       .intensity = light.illuminance,
-                      .shadow = no_shadow,
-                      .shape = shape,
-                      .cos_outer = 0.0F},
+                      .cos_outer = 0.0F,
+                      .shape = shape},
             .flux = light.illuminance * (4.0F * shape.x * shape.y),
             .casts_shadow = light.casts_shadow};
 }

@@ -7,7 +7,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
-#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/view/view.hpp"
 
 namespace candela {

@@ -10,7 +10,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/scene/scene_check.hpp"
 
 namespace candela {
@@ -49,7 +49,6 @@ extern const LightKind directional_light;
 /// By gpu::Light::kind.
 inline constexpr std::array<const LightKind*, 3> light_kinds{&point_light, &spot_light, &directional_light};
 
-inline constexpr int no_shadow = -1;  ///< until add_light_upload sets the index
 inline constexpr float hemisphere = 2.0F * std::numbers::pi_v<float>;  ///< steradians
 
 /// The direction in which a light with this local-to-world matrix shines: its local -Z axis.

@@ -4,6 +4,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/passes/lights/light_bins.hpp"
+#include "renderer/passes/lights/lights.hpp"
 
 namespace candela {
 

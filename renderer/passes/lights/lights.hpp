@@ -1,52 +1,30 @@
 #pragma once
 
-#include <optional>
-#include <vector>
+#include <candela/configuration.hpp>
 
-#include <candela/ecs/world.hpp>
+#include <optional>
+
 #include <candela/graph/frame_graph.hpp>
-#include "renderer/gpu/gpu_types.hpp"
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/passes/lights/light_table.hpp"
+#include "renderer/passes/lights/shadow_maps.hpp"
 #include "renderer/passes/scene/bvh.hpp"
-#include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/sky/sky.hpp"
 
 namespace candela {
 
-/// The lights of the world in the form that shaders read. `gpu::Light::shadow` is not yet set:
-/// add_light_upload does that.
-struct LightTable {
-    struct Entry {
-        Entity entity;
-        gpu::Light light;
-        /// Emitted, in lm for intensities in cd (or W for W/sr). Directional: through its footprint.
-        glm::vec3 flux{0.0F};
-        bool casts_shadow = true;
-        bool operator==(const Entry&) const = default;
-    };
-    std::vector<Entry> entries;
-    bool operator==(const LightTable&) const = default;
-};
-
-/// The lights for the CPU and for shaders, in the same order.
+/// The lights of the scene, for the CPU and in the same order for shaders, and their shadows.
 struct SceneLights {
     ValueHandle<LightTable> table;
+    BufferHandle<gpu::LightConstants> constants;
     BufferHandle<gpu::Light> buffer;
+    ShadowMaps shadows;
 };
 
-/// Adds node `lights` (CPU): gathers the light components: point lights, then spot lights, then directional
-/// lights, then the suns of the sky. Lights that emit nothing, or that `check` does not accept, are left out.
-/// Depends on the light components,
-/// Transform, the sky and the scene's metrics.
-[[nodiscard]] ValueHandle<LightTable> add_lights(FrameGraph& graph, SceneCheck& check,
-                                                 ValueHandle<SceneMetrics> metrics,
-                                                 const std::optional<Sky>& sky);
-
-/// Two unit vectors that form an orthonormal basis with the unit vector n, as in shaders/maths.glsl: Duff et
-/// al., "Building an Orthonormal Basis, Revisited" (2017), eq. 3.
-struct Basis {
-    glm::vec3 tangent;
-    glm::vec3 bitangent;
-};
-[[nodiscard]] Basis basis_around(glm::vec3 n);
+/// Adds node `lights` (CPU): see add_light_table; the nodes of add_shadow_maps; and `light-upload` (CPU, then
+/// upload): the table and the shadows as buffers.
+[[nodiscard]] SceneLights add_lights(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
+                                     ValueHandle<SceneMetrics> metrics, const std::optional<Sky>& sky,
+                                     const ShadowSettings& settings);
 
 }  // namespace candela

@@ -18,9 +18,8 @@ LightTable::Entry point_entry(Entity entity, const PointLight& light, const glm:
                       .direction = glm::vec3(0.0F),
                       .range = light.range,
                       .intensity = intensity,
-                      .shadow = no_shadow,
-                      .shape = glm::vec2(0.0F),
-                      .cos_outer = 0.0F},
+                      .cos_outer = 0.0F,
+                      .shape = glm::vec2(0.0F)},
             .flux = intensity * (2.0F * hemisphere),
             .casts_shadow = light.casts_shadow};
 }

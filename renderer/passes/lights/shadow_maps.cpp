@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/layer_target.hpp"
 #include "renderer/passes/lights/light_kind.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
@@ -62,31 +63,40 @@ const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
                                           {{0, 0, 1}, {0, -1, 0}},
                                           {{0, 0, -1}, {0, -1, 0}}}};
 
+const gpu::Shadow no_shadow{.from_world = glm::mat4(1.0F),
+                            .axis = glm::vec3(0.0F),
+                            .texel = 0.0F,
+                            .near_plane = 0.0F,
+                            .layer = 0,
+                            .kind = SHADOW_NONE,
+                            .ray_offset = 0.0F};
+
 /// Lengths that the maps of all lights have in common, metres.
 struct MapLengths {
     float near_plane;
     float ray_offset;
 };
 
-void add_cube(ShadowPlan& plan, const gpu::Light& light, const MapLengths& lengths,
-              std::uint32_t resolution) {
-    plan.shadows.push_back({.from_world = glm::mat4(1.0F),
-                            .axis = glm::vec3(0.0F),
-                            .texel = 2.0F / static_cast<float>(resolution),
-                            .near_plane = lengths.near_plane,
-                            .layer = plan.cubes,
-                            .kind = SHADOW_CUBE,
-                            .ray_offset = lengths.ray_offset});
+gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const MapLengths& lengths,
+                     std::uint32_t resolution) {
+    const gpu::Shadow shadow{.from_world = glm::mat4(1.0F),
+                             .axis = glm::vec3(0.0F),
+                             .texel = 2.0F / static_cast<float>(resolution),
+                             .near_plane = lengths.near_plane,
+                             .layer = plan.cubes,
+                             .kind = SHADOW_CUBE,
+                             .ray_offset = lengths.ray_offset};
     const glm::mat4 projection = reversed_perspective(1.0F, lengths.near_plane);
     for (std::uint32_t face = 0; face < cube_faces; ++face) {
         const glm::mat4 view = look_along(light.position, faces[face].direction, faces[face].up);
         plan.views.push_back({projection * view, true, plan.cubes * cube_faces + face});
     }
     ++plan.cubes;
+    return shadow;
 }
 
-void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, const MapLengths& lengths,
-             std::uint32_t resolution) {
+gpu::Shadow add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape,
+                    const MapLengths& lengths, std::uint32_t resolution) {
     const float near_plane = lengths.near_plane;
     const auto texels = static_cast<float>(resolution);
     const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
@@ -110,8 +120,8 @@ void add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape
         shadow.from_world = reversed_orthographic(half, std::max(shape.depth, near_plane)) * view;
     }
     plan.views.push_back({shadow.from_world, false, plan.maps});
-    plan.shadows.push_back(shadow);
     ++plan.maps;
+    return shadow;
 }
 
 /// Light indices by decreasing flux; lights of equal flux keep their order.
@@ -207,12 +217,35 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
     }
 }
 
+struct PlannedShadows {
+    ValueHandle<ShadowPlan> plan;
+    BufferHandle<gpu::Shadow> shadows;
+};
+
+PlannedShadows add_shadow_plan(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
+                               ValueHandle<SceneMetrics> metrics, const ShadowSettings& settings) {
+    return graph.add("shadow-plan", [&](Pass& pass) {
+        pass.read(lights);
+        pass.read(metrics);
+        pass.parameter(settings);
+        const PlannedShadows out{
+            .plan = pass.write(graph.value<ShadowPlan>("shadow plan")),
+            .shadows = pass.write(growing_buffer<gpu::Shadow>(graph, "shadow buffer"), Usage::copy)};
+        pass.run([=, &gpu](Execution& run) {
+            ShadowPlan plan = plan_shadows(run.value(lights), run.value(metrics), settings);
+            upload<gpu::Shadow>(gpu, run, out.shadows, plan.shadows);
+            run.set(out.plan, std::move(plan));
+        });
+        return out;
+    });
+}
+
 }  // namespace
 
 ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                         const ShadowSettings& settings) {
     ShadowPlan plan;
-    plan.shadow_of_light.assign(lights.entries.size(), -1);
+    plan.shadows.assign(lights.entries.size(), no_shadow);
     const MapLengths lengths{.near_plane = std::max(relative_near_plane * metrics.radius(), 1e-9F),
                              .ray_offset = metrics.ray_offset()};
     const auto bytes = [](std::uint64_t resolution, std::uint64_t layers) {
@@ -234,12 +267,8 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
             continue;
         }
         budget -= cost;
-        plan.shadow_of_light[i] = static_cast<std::int32_t>(plan.shadows.size());
-        if (cube) {
-            add_cube(plan, entry.light, lengths, settings.cube_resolution);
-        } else {
-            add_map(plan, entry.light, shape, lengths, settings.map_resolution);
-        }
+        plan.shadows[i] = cube ? add_cube(plan, entry.light, lengths, settings.cube_resolution)
+                               : add_map(plan, entry.light, shape, lengths, settings.map_resolution);
     }
     return plan;
 }
@@ -247,16 +276,7 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
 ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                            ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                            const ShadowSettings& settings) {
-    const auto plan = graph.add("shadow-plan", [&](Pass& pass) {
-        pass.read(lights);
-        pass.read(metrics);
-        pass.parameter(settings);
-        const auto out = pass.write(graph.value<ShadowPlan>("shadow plan"));
-        pass.run([=](Execution& run) {
-            run.set(out, plan_shadows(run.value(lights), run.value(metrics), settings));
-        });
-        return out;
-    });
+    const auto [plan, shadows] = add_shadow_plan(graph, gpu, lights, metrics, settings);
     return graph.add("shadow-maps", [&](Pass& pass) {
         const std::vector<ResourceHandle> surfaces = read_meshes(pass, scene);
         pass.read(plan);
@@ -267,6 +287,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                   {"MASKED", "SHADOW_MAP"})};
         const ShadowMaps out{
             .plan = plan,
+            .shadows = shadows,
             .cubes = pass.update(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
                                  Usage::layer_target),
             .maps = pass.update(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
@@ -278,6 +299,12 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         });
         return out;
     });
+}
+
+void read_shadow_maps(Pass& pass, const ShadowMaps& shadows) {
+    pass.read(shadows.shadows, {Usage::storage, BINDING_SHADOWS});
+    pass.read(shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
+    pass.read(shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
 }
 
 }  // namespace candela

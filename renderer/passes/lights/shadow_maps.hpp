@@ -7,7 +7,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
-#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 
 namespace candela {
@@ -21,10 +21,9 @@ struct ShadowPlan {
         std::uint32_t layer = 0;  ///< of the cube array (face layer % 6 of cube layer / 6) or the map array
         bool operator==(const View&) const = default;
     };
-    std::vector<std::int32_t> shadow_of_light;  ///< by light of the table: index into `shadows`; -1: none
-    std::vector<gpu::Shadow> shadows;
+    std::vector<gpu::Shadow> shadows;  ///< by light of the table
     std::vector<View> views;
-    std::uint32_t cubes = 0;
+    std::uint32_t cubes = 0;  ///< cubes and flat maps: how many lights have one
     std::uint32_t maps = 0;
     std::uint32_t lights_without = 0;  ///< should cast shadows, but exceed the budget or the layer limit
     bool operator==(const ShadowPlan&) const = default;
@@ -40,8 +39,9 @@ struct DrawnShadows {
 /// The shadow maps of all lights.
 struct ShadowMaps {
     ValueHandle<ShadowPlan> plan;
-    TextureHandle cubes;  ///< cube array, depth32f, reversed: 1 at the near plane
-    TextureHandle maps;   ///< 2D array, depth32f, reversed
+    BufferHandle<gpu::Shadow> shadows;  ///< by light of the table
+    TextureHandle cubes;                ///< cube array, depth32f, reversed: 1 at the near plane
+    TextureHandle maps;                 ///< 2D array, depth32f, reversed
     ValueHandle<DrawnShadows> drawn;
 };
 
@@ -49,16 +49,19 @@ struct ShadowMaps {
 [[nodiscard]] ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                                       const ShadowSettings& settings);
 
-/// Adds nodes `shadow-plan` (CPU: plan_shadows) and `shadow-maps` (raster): depth of the scene as seen from
-/// every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on Curved Surfaces", 1978).
-/// A point light has the six faces of a cube, a spot light the cone or a cube, a directional light the
-/// rectangle that the scene covers; where its map shows an edge, shading traces a ray (sun_shadow in
-/// shaders/lights/shadow.glsl). Both sides of all triangles are drawn, without holes of masks and without
-/// blended surfaces. Views whose content is unchanged are kept: if a light moves, only its views are drawn;
-/// if a mesh moves, all are; if the camera moves, none. Depends on meshes, materials, lights and the scene's
-/// metrics. shaders/lights/shadow.glsl derives the bias.
+/// Adds nodes `shadow-plan` (CPU: plan_shadows, then upload of the shadows) and `shadow-maps` (raster): depth
+/// of the scene as seen from every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on
+/// Curved Surfaces", 1978). A point light has the six faces of a cube, a spot light the cone or a cube, a
+/// directional light the rectangle that the scene covers. Where a map shows an edge, shading traces a ray
+/// (shaders/lights/shadow.glsl, which also derives the bias). Both sides of all triangles are drawn, without
+/// holes of masks and without blended surfaces. Views whose content is unchanged are kept: if a light moves,
+/// only its views are drawn; if a mesh moves, all are; if the camera moves, none. Depends on meshes,
+/// materials, lights and the scene's metrics.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);
+
+/// For a pass whose shader includes shadow.glsl.
+void read_shadow_maps(Pass& pass, const ShadowMaps& shadows);
 
 }  // namespace candela

@@ -36,9 +36,8 @@ LightTable::Entry spot_entry(Entity entity, const SpotLight& light, const glm::m
                       .direction = direction_of(world),
                       .range = light.range,
                       .intensity = intensity,
-                      .shadow = no_shadow,
-                      .shape = {1.0F / ramp, outer / ramp},
-                      .cos_outer = 1.0F - outer},
+                      .cos_outer = 1.0F - outer,
+                      .shape = {1.0F / ramp, outer / ramp}},
             .flux = intensity * (hemisphere * (inner + ramp / 3.0F)),
             .casts_shadow = light.casts_shadow};
 }

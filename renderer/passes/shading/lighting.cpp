@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
-#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/loop_parts.hpp"
 
 namespace candela {
@@ -20,34 +19,6 @@ bool is_sun_with_shadow(const LightTable::Entry& entry) {
 }
 
 }  // namespace
-
-LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                              ValueHandle<ShadowPlan> plan) {
-    return graph.add("light-upload", [&](Pass& pass) {
-        pass.read(lights);
-        pass.read(plan);
-        const LightBuffers out{
-            .constants = pass.write(
-                graph.buffer<gpu::LightConstants>("light constants", 1, Lifetime::persistent), Usage::copy),
-            .lights =
-                pass.write(graph.buffer<gpu::Light>("light buffer", 1, Lifetime::persistent), Usage::copy),
-            .shadows =
-                pass.write(graph.buffer<gpu::Shadow>("shadow buffer", 1, Lifetime::persistent), Usage::copy)};
-        pass.run([=, &gpu](Execution& run) {
-            const LightTable& table = run.value(lights);
-            const ShadowPlan& shadows = run.value(plan);
-            std::vector<gpu::Light> records;
-            for (std::size_t i = 0; i < table.entries.size(); ++i) {
-                records.push_back(table.entries[i].light);
-                records.back().shadow = shadows.shadow_of_light[i];
-            }
-            upload_one(gpu, run, out.constants, gpu::LightConstants{.count = light_count(table)});
-            upload<gpu::Light>(gpu, run, out.lights, records);
-            upload<gpu::Shadow>(gpu, run, out.shadows, shadows.shadows);
-        });
-        return out;
-    });
-}
 
 std::vector<std::string> lighting_variant(const Lighting& lighting) {
     std::vector<std::string> words =
@@ -82,17 +53,15 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
 }
 
 void read_lighting(Pass& pass, const Lighting& lighting) {
-    pass.read(lighting.lights);
+    pass.read(lighting.lights.table);
     pass.parameter(lighting.show);
     pass.parameter(lighting.most_vpls);
     if (!shows_light(lighting.show)) {
         return;
     }
-    pass.read(lighting.buffers.constants, {Usage::uniform, UNIFORMS_LIGHTS});
-    pass.read(lighting.buffers.lights, {Usage::storage, BINDING_LIGHTS});
-    pass.read(lighting.buffers.shadows, {Usage::storage, BINDING_SHADOWS});
-    pass.read(lighting.shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
-    pass.read(lighting.shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
+    pass.read(lighting.lights.constants, {Usage::uniform, UNIFORMS_LIGHTS});
+    pass.read(lighting.lights.buffer, {Usage::storage, BINDING_LIGHTS});
+    read_shadow_maps(pass, lighting.lights.shadows);
     if (lighting.shadow_rays) {
         read_tracing(pass, *lighting.shadow_rays);
     }
@@ -109,7 +78,7 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
 
 std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting) {
     constexpr std::int64_t few_suns = 8;
-    const LightTable& lights = run.value(lighting.lights);
+    const LightTable& lights = run.value(lighting.lights.table);
     const bool many_rays =
         lighting.shadow_rays && std::ranges::count_if(lights.entries, is_sun_with_shadow) > few_suns;
     return loop_parts(shows_direct(lighting.show) ? light_count(lights) : 0, many_rays ? 8 : 8192);

@@ -13,27 +13,12 @@
 #include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"
-#include "renderer/passes/lights/shadow_maps.hpp"
 
 namespace candela {
 
-/// The lights on the GPU, in the order of the LightTable, and their shadow maps.
-struct LightBuffers {
-    BufferHandle<gpu::LightConstants> constants;
-    BufferHandle<gpu::Light> lights;
-    BufferHandle<gpu::Shadow> shadows;
-};
-
-/// Adds node `light-upload` (CPU, then upload): the lights, each with the index of its shadow. Depends on the
-/// lights and the shadow plan.
-[[nodiscard]] LightBuffers add_light_upload(FrameGraph& graph, const Gpu& gpu, ValueHandle<LightTable> lights,
-                                            ValueHandle<ShadowPlan> plan);
-
 /// Everything that the evaluator in shaders/shading/lighting.glsl reads.
 struct Lighting {
-    ValueHandle<LightTable> lights;
-    LightBuffers buffers;
-    ShadowMaps shadows;
+    SceneLights lights;
     std::optional<Tracing> shadow_rays{};  ///< none: lights have no shadows
     /// VPLs that are evaluated while shading; none: no indirect light, or it was gathered before.
     std::optional<VplLight> vpls{};

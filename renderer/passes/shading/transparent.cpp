@@ -82,7 +82,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
             if (sorted.empty()) {
                 return;
             }
-            check_lights(run.value(lighting.lights).entries.size());
+            check_lights(run.value(lighting.lights.table).entries.size());
             bind_meshes(gpu, run, scene);
             program.use(loop_parts(most_lights, most_lights).front());
             for (const SortedGroup& next : sorted) {

@@ -8,7 +8,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
-#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/view/view.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu_types.hpp"
-#include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/view/refinement.hpp"
 
