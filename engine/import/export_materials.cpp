@@ -11,6 +11,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_extensions.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
@@ -81,12 +82,9 @@ std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& mate
     if (const auto found = materials_.find(material); found != materials_.end()) {
         return found->second;
     }
-    try {
-        const std::size_t index = draft_.add("materials", describe(*material));
-        return materials_.emplace(material, index).first->second;
-    } catch (const SceneError& error) {
-        throw SceneError(fmt::format("material \"{}\": {}", readable(material->name), error.what()));
-    }
+    Json json =
+        naming(fmt::format("material \"{}\"", readable(material->name)), [&] { return describe(*material); });
+    return materials_.emplace(material, draft_.add("materials", std::move(json))).first->second;
 }
 
 /// Metalness 0 and roughness 1 make it diffuse in other renderers, too.

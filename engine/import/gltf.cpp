@@ -8,7 +8,7 @@
 #include "engine/import/gltf_materials.hpp"
 #include "engine/import/gltf_meshes.hpp"
 #include "engine/import/gltf_nodes.hpp"
-#include "engine/import/naming_file.hpp"
+#include "engine/import/naming.hpp"
 
 namespace candela {
 

@@ -12,6 +12,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_extensions.hpp"
 #include "engine/import/gltf_schema.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
@@ -133,11 +134,9 @@ std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes
                                  ImportFiles& files) {
     std::vector<Buffer> buffers;
     for (const Json& description : list_in(document, "buffers").items()) {
-        try {
-            buffers.push_back(load_buffer(description, buffers.size(), binary, files));
-        } catch (const SceneError& error) {
-            throw SceneError(fmt::format("buffer {}: {}", buffers.size(), error.what()));
-        }
+        const std::size_t index = buffers.size();
+        buffers.push_back(naming(fmt::format("buffer {}", index),
+                                 [&] { return load_buffer(description, index, binary, files); }));
     }
     return buffers;
 }

@@ -7,6 +7,7 @@
 #include <candela/scene/sky_picture.hpp>
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_nodes.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/import/sky_picture_size.hpp"
 
 namespace candela::gltf {
@@ -22,15 +23,13 @@ std::shared_ptr<const SkyPicture> decode_sky(Bytes bytes, ImportBudget& budget) 
 /// Null if there is none.
 std::shared_ptr<const SkyPicture> read_picture(const Document& document, const Json& source,
                                                ImportFiles& files, ImportBudget& budget) {
-    try {
+    return naming("the environment's picture", [&]() -> std::shared_ptr<const SkyPicture> {
         if (const int view = index_in(source, "bufferView"); view >= 0) {
             return decode_sky(buffer_view_bytes(document, view), budget);
         }
         const std::string uri = text_in(source, "uri");
         return uri.empty() ? nullptr : decode_sky(*files.read(uri), budget);
-    } catch (const SceneError& error) {
-        throw SceneError(fmt::format("the environment's picture: {}", error.what()));
-    }
+    });
 }
 
 }  // namespace

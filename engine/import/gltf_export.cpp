@@ -21,7 +21,7 @@
 #include "engine/import/export_meshes.hpp"
 #include "engine/import/exr.hpp"
 #include "engine/import/gltf_extensions.hpp"
-#include "engine/import/naming_file.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/import/output_files.hpp"
 #include "engine/import/sky_picture_size.hpp"
 #include "engine/import/unit_length.hpp"
@@ -153,7 +153,7 @@ class WorldWriter {
 
     void write_nodes() {
         for (const Entity entity : nodes_) {
-            naming(entity, [&] { draft_.add("nodes", describe_node(entity)); });
+            gltf::naming(describe(world_, entity), [&] { draft_.add("nodes", describe_node(entity)); });
         }
         Json scene = Json::object();
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -183,7 +183,7 @@ class WorldWriter {
             counting = is_kept(entity) ? entity : counting;
             return is_kept(entity);
         }));
-        naming(counting, [&] { describe_environment(counting); });
+        gltf::naming(describe(world_, counting), [&] { describe_environment(counting); });
         std::erase(entities, counting);
         for (const Entity entity : entities) {
             warn(entity, "its environment is left out: a glTF scene has one");
@@ -193,15 +193,6 @@ class WorldWriter {
  private:
     void warn(Entity entity, std::string_view what) {
         draft_.warnings.push_back(fmt::format("{}: {}", describe(world_, entity), what));
-    }
-
-    template <class Action>
-    void naming(Entity entity, Action action) {
-        try {
-            action();
-        } catch (const SceneError& error) {
-            throw SceneError(fmt::format("{}: {}", describe(world_, entity), error.what()));
-        }
     }
 
     [[nodiscard]] std::size_t node_of(Entity entity) const {

@@ -12,6 +12,7 @@
 #include "engine/import/decode_image.hpp"
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_constants.hpp"
+#include "engine/import/naming.hpp"
 
 namespace candela::gltf {
 
@@ -92,11 +93,7 @@ class ImageReader {
             return nullptr;
         }
         const Wraps wraps = wraps_of(document_, texture);
-        try {
-            return load(image, wraps);
-        } catch (const SceneError& error) {
-            throw SceneError(fmt::format("image {}: {}", image, error.what()));
-        }
+        return naming(fmt::format("image {}", image), [&] { return load(image, wraps); });
     }
 
     void warn(std::string warning) { document_.warnings.push_back(std::move(warning)); }

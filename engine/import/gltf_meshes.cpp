@@ -14,6 +14,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_constants.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
 
 namespace candela::gltf {
@@ -282,12 +283,10 @@ std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const s
             continue;
         }
         progress("reading meshes", i, meshes.size());
-        try {
-            Mesh mesh = read_mesh(document, document.all("meshes")[i], materials, omissions, budget);
-            meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
-        } catch (const SceneError& error) {
-            throw SceneError(fmt::format("mesh {}: {}", i, error.what()));
-        }
+        Mesh mesh = naming(fmt::format("mesh {}", i), [&] {
+            return read_mesh(document, document.all("meshes")[i], materials, omissions, budget);
+        });
+        meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
     }
     report(omissions, document.warnings);
     return meshes;

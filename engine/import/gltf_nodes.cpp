@@ -12,6 +12,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/decompose.hpp"
 #include "engine/import/gltf_document.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
 #include "engine/readable.hpp"
 
@@ -126,18 +127,14 @@ Transform read_translation_rotation_scale(const Json& node) {
 }
 
 /// Outermost first; more than one if the node is sheared.
-std::vector<Transform> read_transforms(const Json& node, int index) {
-    try {
-        const Json& matrix = list_in(node, "matrix");
-        std::vector<Transform> transforms =
-            matrix.empty() ? std::vector{read_translation_rotation_scale(node)} : read_matrix(matrix);
-        if (!std::ranges::all_of(transforms, is_finite)) {
-            throw SceneError("its transform overflows");
-        }
-        return transforms;
-    } catch (const SceneError& error) {
-        throw SceneError(fmt::format("node {}: {}", index, error.what()));
+std::vector<Transform> read_transforms(const Json& node) {
+    const Json& matrix = list_in(node, "matrix");
+    std::vector<Transform> transforms =
+        matrix.empty() ? std::vector{read_translation_rotation_scale(node)} : read_matrix(matrix);
+    if (!std::ranges::all_of(transforms, is_finite)) {
+        throw SceneError("its transform overflows");
     }
+    return transforms;
 }
 
 Camera read_camera(const Json& source, int index) {
@@ -256,14 +253,16 @@ std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& bud
         if (entities.size() % 4096 == 0) {
             progress("reading nodes", entities.size(), document.all("nodes").size());
         }
-        for (const Transform& transform : read_transforms(document.at("nodes", node), node)) {
+        const Json& json = document.at("nodes", node);
+        for (const Transform& transform :
+             naming(fmt::format("node {}", node), [&] { return read_transforms(json); })) {
             StagedEntity& entity = entities.emplace_back();
             entity.parent = parent;
             entity.name = name_of(document, node);
             entity.transform = transform;
             parent = entities.size() - 1;
         }
-        equip(entities.back(), document, document.at("nodes", node));
+        equip(entities.back(), document, json);
         const Json& children = children_of(document, node);
         for (std::size_t i = children.size(); i-- > 0;) {
             ahead.push_back({children[i].whole<int>(), level + 1, parent});

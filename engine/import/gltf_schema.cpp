@@ -26,7 +26,7 @@ using Check = std::function<Problem(const Json& value, const Json& document)>;
 
 struct Rule {
     /// Members joined by dots; `[]` means each item of an array, `{}` each member of an object.
-    std::string_view path;
+    std::string path;
     Check check;
 };
 
@@ -173,6 +173,19 @@ Check index_into(const char* path, const char* plural) {
     };
 }
 
+/// The rules of a textureInfo, a texture with the coordinates that are used for it.
+void add_texture_rules(std::vector<Rule>& rules, const std::string& path, const Check& texture) {
+    const std::string transform = path + ".extensions.KHR_texture_transform";
+    const Check set = whole(0, std::numeric_limits<int>::max());
+    rules.push_back({path, has({"index"})});
+    rules.push_back({path + ".index", texture});
+    rules.push_back({path + ".texCoord", set});
+    rules.push_back({transform + ".offset", numbers(2, any)});
+    rules.push_back({transform + ".rotation", number(any)});
+    rules.push_back({transform + ".scale", numbers(2, any)});
+    rules.push_back({transform + ".texCoord", set});
+}
+
 std::vector<Rule> rules() {
     const Check accessor = index_into("accessors", "accessors");
     const Check buffer = index_into("buffers", "buffers");
@@ -189,7 +202,7 @@ std::vector<Rule> rules() {
     const Check size = whole(0, any_size);
     const Check index = whole(0, std::numeric_limits<int>::max());
 
-    return {
+    std::vector<Rule> all = {
         {"asset", has({"version"})},
         {"asset.version", version()},
         {"extensionsUsed.[]", text()},
@@ -233,20 +246,8 @@ std::vector<Rule> rules() {
         {"materials.[].alphaCutoff", number(not_negative)},
         {"materials.[].emissiveFactor", numbers(3, not_negative)},
         {"materials.[].pbrMetallicRoughness.baseColorFactor", numbers(4, unit)},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture", has({"index"})},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture.index", texture},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture.texCoord", index},
         {"materials.[].pbrMetallicRoughness.metallicFactor", number(unit)},
         {"materials.[].pbrMetallicRoughness.roughnessFactor", number(unit)},
-        {"materials.[].pbrMetallicRoughness.metallicRoughnessTexture", has({"index"})},
-        {"materials.[].pbrMetallicRoughness.metallicRoughnessTexture.index", texture},
-        {"materials.[].normalTexture", has({"index"})},
-        {"materials.[].normalTexture.index", texture},
-        {"materials.[].occlusionTexture", has({"index"})},
-        {"materials.[].occlusionTexture.index", texture},
-        {"materials.[].emissiveTexture", has({"index"})},
-        {"materials.[].emissiveTexture.index", texture},
-        {"materials.[].emissiveTexture.texCoord", index},
         {"materials.[].extensions.KHR_materials_emissive_strength.emissiveStrength", number(not_negative)},
 
         {"meshes.[]", has({"primitives"})},
@@ -254,18 +255,6 @@ std::vector<Rule> rules() {
         {"meshes.[].primitives.[]", has({"attributes"})},
         {"meshes.[].primitives.[].attributes.{}", accessor},
         {"meshes.[].primitives.[].indices", accessor},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.offset",
-         numbers(2, any)},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.rotation",
-         number(any)},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.scale",
-         numbers(2, any)},
-        {"materials.[].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.texCoord",
-         index},
-        {"materials.[].emissiveTexture.extensions.KHR_texture_transform.offset", numbers(2, any)},
-        {"materials.[].emissiveTexture.extensions.KHR_texture_transform.rotation", number(any)},
-        {"materials.[].emissiveTexture.extensions.KHR_texture_transform.scale", numbers(2, any)},
-        {"materials.[].emissiveTexture.extensions.KHR_texture_transform.texCoord", index},
         {"meshes.[].primitives.[].material", material},
         {"meshes.[].primitives.[].mode", whole(0, 6)},
 
@@ -313,6 +302,12 @@ std::vector<Rule> rules() {
         {"scenes.[].extensions.CANDELA_environment.uri", text()},
         {"scene", scene},
     };
+    for (const char* use :
+         {"pbrMetallicRoughness.baseColorTexture", "pbrMetallicRoughness.metallicRoughnessTexture",
+          "normalTexture", "occlusionTexture", "emissiveTexture"}) {
+        add_texture_rules(all, fmt::format("materials.[].{}", use), texture);
+    }
+    return all;
 }
 
 /// Where a value is in the document. Names are made only for messages: there may be millions of values.

@@ -267,11 +267,6 @@ std::span<const JsonMember> Json::members() const {
     return object ? std::span(object->members) : std::span<const JsonMember>();
 }
 
-std::span<JsonMember> Json::members() {
-    auto* const object = std::get_if<JsonObject>(&value_);
-    return object ? std::span(object->members) : std::span<JsonMember>();
-}
-
 const Json* Json::find(std::string_view name) const {
     const auto* const object = std::get_if<JsonObject>(&value_);
     return object ? value_in(*object, name) : nullptr;
@@ -314,12 +309,8 @@ void Json::push_back(Json item) {
 }
 
 void Json::erase(std::string_view name) {
-    erase_members([name](const JsonMember& member) { return member.name == name; });
-}
-
-void Json::erase_members(const std::function<bool(const JsonMember& member)>& is_unwanted) {
     if (auto* const object = std::get_if<JsonObject>(&value_)) {
-        std::erase_if(object->members, is_unwanted);
+        std::erase_if(object->members, [name](const JsonMember& member) { return member.name == name; });
     }
 }
 

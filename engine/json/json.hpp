@@ -3,9 +3,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -114,7 +112,6 @@ class Json {
     [[nodiscard]] std::span<Json> items();
     /// The members of an object; none of other values.
     [[nodiscard]] std::span<const JsonMember> members() const;
-    [[nodiscard]] std::span<JsonMember> members();
     /// How many items or members it has.
     [[nodiscard]] std::size_t size() const { return items().size() + members().size(); }
     [[nodiscard]] bool empty() const { return size() == 0; }
@@ -136,8 +133,6 @@ class Json {
     /// Null becomes an array.
     void push_back(Json item);
     void erase(std::string_view name);
-    /// Removes the members for which `is_unwanted` holds.
-    void erase_members(const std::function<bool(const JsonMember& member)>& is_unwanted);
     /// Adds the members of another object, which replace those with the same name.
     void update(const Json& other);
 

@@ -16,6 +16,16 @@ namespace candela::gltf {
 /// Longest message, without the name of the file. It may quote several names.
 inline constexpr std::size_t longest_message = 300;
 
+/// Runs a part of an import or export. A SceneError then names what it concerns.
+template <class Action>
+auto naming(std::string_view what, Action action) {
+    try {
+        return action();
+    } catch (const SceneError& error) {
+        throw SceneError(fmt::format("{}: {}", what, error.what()));
+    }
+}
+
 /// Runs the import or export and turns every exception into a SceneError that names the file.
 template <class Action>
 auto naming_file(std::string_view name, Action action) {
