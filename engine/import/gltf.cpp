@@ -14,13 +14,6 @@ namespace candela {
 
 namespace {
 
-void set_light(World&, Entity, std::monostate) {}
-
-template <class Light>
-void set_light(World& world, Entity entity, const Light& light) {
-    world.set(entity, light);
-}
-
 std::uint64_t count_triangles(const Mesh& mesh) {
     std::uint64_t triangles = 0;
     for (const Primitive& primitive : mesh.primitives) {
@@ -56,7 +49,9 @@ ImportReport create_entities(std::vector<gltf::StagedEntity> staged,
         if (source.camera) {
             world.set(entity, *source.camera);
         }
-        std::visit([&](const auto& light) { set_light(world, entity, light); }, source.light);
+        if (source.light) {
+            std::visit([&](const auto& light) { world.set(entity, light); }, *source.light);
+        }
         report.entities.push_back(entity);
     }
     return report;

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
@@ -21,6 +19,7 @@
 #include "engine/import/export_meshes.hpp"
 #include "engine/import/exr.hpp"
 #include "engine/import/gltf_extensions.hpp"
+#include "engine/import/gltf_lights.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/output_files.hpp"
 #include "engine/import/sky_picture_size.hpp"
@@ -55,7 +54,8 @@ Entity parent_of(const World& world, Entity entity) {
 /// All that are nodes if nothing is left out. Throws SceneError if a parent was destroyed.
 std::set<Entity> find_nodes(const World& world) {
     std::set<Entity> entities;
-    collect<MeshInstance, PointLight, SpotLight, DirectionalLight, Camera>(world, entities);
+    collect<MeshInstance, Camera>(world, entities);
+    visit_lights(world, [&](Entity entity, const auto& /*light*/) { entities.insert(entity); });
     for (const auto& [entity, transform] : world.view<Transform>()) {
         if (!world.has<Environment>(entity)) {  // which ignores its transform
             entities.insert(entity);
@@ -128,23 +128,6 @@ Json describe_camera(const Camera& camera) {
     return {{"type", "perspective"}, {"perspective", std::move(lens)}};
 }
 
-/// The members that all kinds of lights have. glTF's colours are at most 1.
-Json describe_light(const char* type, const glm::vec3& colour, float strength, bool casts_shadow) {
-    const float most = std::max({1.0F, colour.r, colour.g, colour.b});
-    Json json = {{"type", type}, {"color", to_json(colour / most)}, {"intensity", to_json(strength * most)}};
-    if (!casts_shadow) {
-        json["extensions"][gltf::light_extension] = {{"castsShadow", false}};
-    }
-    return json;
-}
-
-/// Without a range the light reaches everywhere; glTF allows no range of zero.
-void add_range(float range, Json& light) {
-    if (std::isfinite(range)) {
-        light["range"] = to_json(std::max(range, std::numeric_limits<float>::min()));
-    }
-}
-
 /// Writes the components of entities.
 class WorldWriter {
  public:
@@ -213,8 +196,8 @@ class WorldWriter {
         if (const auto* const camera = world_.find<Camera>(entity)) {
             add_camera(entity, *camera, node);
         }
-        if (std::optional<Json> light = find_light(entity)) {
-            add_light(std::move(*light), node);
+        if (const std::optional<AnyLight> light = find_light(entity)) {
+            add_light(entity, *light, node);
         }
         return node;
     }
@@ -262,54 +245,30 @@ class WorldWriter {
         node["camera"] = draft_.add("cameras", describe_camera(camera));
     }
 
-    void add_light(Json light, Json& node) {
-        if (light.contains("extensions")) {
+    void add_light(Entity entity, const AnyLight& light, Json& node) {
+        check(fault_of(light));
+        gltf::WrittenLight written = gltf::write_light(light);
+        if (!written.warning.empty()) {
+            warn(entity, written.warning);
+        }
+        if (written.json.contains("extensions")) {
             draft_.use_extension(gltf::light_extension);
         }
         draft_.use_extension(gltf::lights_extension);
         Json& lights = draft_.document["extensions"][gltf::lights_extension]["lights"];
-        lights.push_back(std::move(light));
+        lights.push_back(std::move(written.json));
         node["extensions"][gltf::lights_extension] = {{"light", lights.size() - 1}};
     }
 
-    std::optional<Json> find_light(Entity entity) {
-        std::vector<Json> lights;
-        if (const auto* const light = world_.find<PointLight>(entity)) {
-            lights.push_back(describe_point_light(*light));
-        }
-        if (const auto* const light = world_.find<SpotLight>(entity)) {
-            lights.push_back(describe_spot_light(entity, *light));
-        }
-        if (const auto* const light = world_.find<DirectionalLight>(entity)) {
-            check(fault_of(*light));
-            lights.push_back(
-                describe_light("directional", light->colour, light->illuminance, light->casts_shadow));
-        }
-        if (lights.size() > 1) {
-            throw SceneError("it has several lights, but a node of glTF has only one");
-        }
-        return lights.empty() ? std::nullopt : std::optional(std::move(lights.front()));
-    }
-
-    Json describe_point_light(const PointLight& light) {
-        check(fault_of(light));
-        Json json = describe_light("point", light.colour, light.intensity, light.casts_shadow);
-        add_range(light.range, json);
-        return json;
-    }
-
-    Json describe_spot_light(Entity entity, const SpotLight& light) {
-        check(fault_of(light));
-        Json json = describe_light("spot", light.colour, light.intensity, light.casts_shadow);
-        add_range(light.range, json);
-        const float outer = std::min(light.outer_cone, std::numbers::pi_v<float> / 2.0F);
-        const float inner = std::min(light.inner_cone, std::nextafter(outer, 0.0F));
-        if (inner != light.inner_cone || outer != light.outer_cone) {
-            warn(entity,
-                 "its cones are narrowed: the outer one to 90 degrees, the inner one to the outer one");
-        }
-        json["spot"] = {{"innerConeAngle", to_json(inner)}, {"outerConeAngle", to_json(outer)}};
-        return json;
+    [[nodiscard]] std::optional<AnyLight> find_light(Entity entity) const {
+        std::optional<AnyLight> found;
+        visit_lights_of(world_, entity, [&](const auto& light) {
+            if (found) {
+                throw SceneError("it has several lights, but a node of glTF has only one");
+            }
+            found = light;
+        });
+        return found;
     }
 
     void describe_environment(Entity entity) {

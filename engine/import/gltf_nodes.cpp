@@ -12,15 +12,13 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/decompose.hpp"
 #include "engine/import/gltf_document.hpp"
+#include "engine/import/gltf_lights.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
-#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
 namespace {
-
-constexpr float half_pi = 1.57079632679489662F;
 
 /// A node to convert, its level in the hierarchy, and the index of its parent's entity.
 struct Visit {
@@ -155,41 +153,6 @@ Camera read_camera(const Json& source, int index) {
         camera.half_height = number_in(lens, "ymag", 0.0F);
     }
     return camera;
-}
-
-SpotLight read_cones(const Json& source, int index) {
-    SpotLight light;
-    light.inner_cone = number_in(source, "spot/innerConeAngle", 0.0F);
-    light.outer_cone = std::min(number_in(source, "spot/outerConeAngle", half_pi / 2.0F), half_pi);
-    if (light.inner_cone >= light.outer_cone) {
-        throw SceneError(fmt::format("light {}: its inner cone of {} is not inside its outer cone of {}",
-                                     index, light.inner_cone, light.outer_cone));
-    }
-    return light;
-}
-
-decltype(StagedEntity::light) read_light(const Json& source, int index) {
-    const auto colour = vector_in(source, "color", glm::vec3(1.0F));
-    const float intensity = number_in(source, "intensity", 1.0F);
-    const float range = number_in(source, "range", std::numeric_limits<float>::infinity());
-    const bool casts_shadow = flag_in(source, "extensions/CANDELA_light/castsShadow", true);
-
-    const std::string& type = source.at("type").text();
-    if (type == "directional") {
-        return DirectionalLight{colour, intensity, casts_shadow};
-    }
-    if (type == "point") {
-        return PointLight{colour, intensity, range, casts_shadow};
-    }
-    if (type != "spot") {
-        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(type)));
-    }
-    SpotLight light = read_cones(source, index);
-    light.colour = colour;
-    light.intensity = intensity;
-    light.range = range;
-    light.casts_shadow = casts_shadow;
-    return light;
 }
 
 /// Index of the node's light; -1 for none.

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <candela/scene/components.hpp>
@@ -18,7 +17,7 @@ struct StagedEntity {
     std::string name;
     Transform transform;  ///< `parent` is null
     int mesh = -1;        ///< index into the document's meshes; -1 for none
-    std::variant<std::monostate, PointLight, SpotLight, DirectionalLight> light;
+    std::optional<AnyLight> light;
     std::optional<Camera> camera;
 };
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 #include <span>
+#include <variant>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -53,19 +54,6 @@ Fault negative_or_infinite(std::string_view what) {
     return fmt::format("{} is negative or not finite", what);
 }
 
-Fault fault_of_light(glm::vec3 colour, std::string_view strength_name, float strength) {
-    if (!is_amount(colour)) {
-        return negative_or_infinite("the colour");
-    }
-    if (!is_amount(strength)) {
-        return negative_or_infinite(fmt::format("the {}", strength_name));
-    }
-    if (!is_amount(colour * strength)) {
-        return fmt::format("the product of colour and {} is not finite", strength_name);
-    }
-    return {};
-}
-
 Fault fault_of_brightness(std::string_view what, glm::vec3 light) {
     if (std::max({light.r, light.g, light.b}) > brightest) {
         return fmt::format("{} is above {:g}", what, brightest);
@@ -73,9 +61,38 @@ Fault fault_of_brightness(std::string_view what, glm::vec3 light) {
     return {};
 }
 
-Fault fault_of_range(float range) {
-    if (!is_amount(range, Limit::infinite)) {
+/// Of what all kinds of lights have.
+template <class Light>
+Fault fault_of_strength_and_range(const Light& light) {
+    const LightTraits<Light>& kind = light_traits<Light>;
+    if (!is_amount(light.colour)) {
+        return negative_or_infinite("the colour");
+    }
+    if (!is_amount(strength_of(light))) {
+        return negative_or_infinite(fmt::format("the {}", kind.strength_name));
+    }
+    if (!is_amount(light.colour * strength_of(light))) {
+        return fmt::format("the product of colour and {} is not finite", kind.strength_name);
+    }
+    if (kind.range != nullptr && !is_amount(light.*kind.range, Limit::infinite)) {
         return "the range is negative or not a number";
+    }
+    return {};
+}
+
+/// Of what only this kind of light has.
+template <class Light>
+Fault fault_of_shape(const Light& /*light*/) {
+    return {};
+}
+
+Fault fault_of_shape(const SpotLight& light) {
+    if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {
+        return negative_or_infinite("a cone");
+    }
+    if (light.outer_cone < narrowest_cone) {
+        return fmt::format("the outer cone of {} is narrower than {:g} radians", light.outer_cone,
+                           narrowest_cone);
     }
     return {};
 }
@@ -257,27 +274,13 @@ Fault fault_of(const SkyPicture& picture) {
     return {};
 }
 
-Fault fault_of(const PointLight& light) {
-    Fault fault = fault_of_light(light.colour, "intensity", light.intensity);
-    return fault ? fault : fault_of_range(light.range);
-}
-
-Fault fault_of(const SpotLight& light) {
-    if (Fault fault = fault_of_light(light.colour, "intensity", light.intensity)) {
-        return fault;
-    }
-    if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {
-        return negative_or_infinite("a cone");
-    }
-    if (light.outer_cone < narrowest_cone) {
-        return fmt::format("the outer cone of {} is narrower than {:g} radians", light.outer_cone,
-                           narrowest_cone);
-    }
-    return fault_of_range(light.range);
-}
-
-Fault fault_of(const DirectionalLight& light) {
-    return fault_of_light(light.colour, "illuminance", light.illuminance);
+Fault fault_of(const AnyLight& light) {
+    return std::visit(
+        [](const auto& of_kind) {
+            const Fault fault = fault_of_strength_and_range(of_kind);
+            return fault ? fault : fault_of_shape(of_kind);
+        },
+        light);
 }
 
 Fault fault_of(const Environment& environment) {
@@ -310,16 +313,14 @@ Fault fault_of(const glm::mat4& world) {
     return {};
 }
 
-Fault too_bright(const PointLight& light) {
-    return fault_of_brightness("the product of colour and intensity", light.colour * light.intensity);
-}
-
-Fault too_bright(const SpotLight& light) {
-    return fault_of_brightness("the product of colour and intensity", light.colour * light.intensity);
-}
-
-Fault too_bright(const DirectionalLight& light) {
-    return fault_of_brightness("the product of colour and illuminance", light.colour * light.illuminance);
+Fault too_bright(const AnyLight& light) {
+    return std::visit(
+        []<class Light>(const Light& of_kind) {
+            return fault_of_brightness(
+                fmt::format("the product of colour and {}", light_traits<Light>.strength_name),
+                of_kind.colour * strength_of(of_kind));
+        },
+        light);
 }
 
 Fault too_bright(const Environment& environment) {

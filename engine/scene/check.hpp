@@ -30,18 +30,14 @@ enum class Strictness : std::uint8_t {
 /// Reads all texels.
 [[nodiscard]] Fault fault_of(const SkyPicture& picture);
 
-[[nodiscard]] Fault fault_of(const PointLight& light);
-[[nodiscard]] Fault fault_of(const SpotLight& light);
-[[nodiscard]] Fault fault_of(const DirectionalLight& light);
+[[nodiscard]] Fault fault_of(const AnyLight& light);
 /// Without its picture.
 [[nodiscard]] Fault fault_of(const Environment& environment);
 [[nodiscard]] Fault fault_of(const Camera& camera);
 /// Of a local-to-world matrix.
 [[nodiscard]] Fault fault_of(const glm::mat4& world);
 // What is finite, but so bright that its picture would not be. All else must have been checked.
-[[nodiscard]] Fault too_bright(const PointLight& light);
-[[nodiscard]] Fault too_bright(const SpotLight& light);
-[[nodiscard]] Fault too_bright(const DirectionalLight& light);
+[[nodiscard]] Fault too_bright(const AnyLight& light);
 [[nodiscard]] Fault too_bright(const Environment& environment);
 [[nodiscard]] Fault too_bright(const Mesh& mesh);
 

@@ -2,8 +2,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/lights.hpp>
 #include "renderer/passes/lights/light_kind.hpp"
 
 // Directional lights; shaders/lights/directional_light.glsl is the other half.
@@ -50,8 +50,7 @@ LightTable::Entry directional_entry(Entity entity, const ParallelLight& light, c
             .casts_shadow = light.casts_shadow};
 }
 
-const LightKind directional_light{.read = [](Pass& pass) { pass.read<DirectionalLight>(); },
-                                  .gather = gather_directional_lights,
+const LightKind directional_light{.gather = gather_directional_lights,
                                   .bounds =
                                       [](const gpu::Light& light) {
                                           return LightBounds{light.position, light.range};

@@ -5,11 +5,13 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <numbers>
+#include <variant>
 #include <vector>
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/lights.hpp>
 #include "renderer/passes/lights/light_table.hpp"
 #include "renderer/passes/scene/scene_check.hpp"
 
@@ -32,8 +34,6 @@ struct ShadowShape {
 /// All that the CPU needs to know of a kind of light. Each kind is one C++ file, which defines one of these,
 /// and one shader file: shaders/lights/point_light.glsl and its siblings.
 struct LightKind {
-    /// Declares the read of the kind's component.
-    void (*read)(Pass& pass);
     /// Appends the lights of this kind that are in the world and that `check` accepts.
     void (*gather)(const World& world, SceneCheck& check, const SceneMetrics& metrics,
                    std::vector<LightTable::Entry>& entries);
@@ -46,8 +46,10 @@ extern const LightKind point_light;
 extern const LightKind spot_light;
 extern const LightKind directional_light;
 
-/// By gpu::Light::kind.
-inline constexpr std::array<const LightKind*, 3> light_kinds{&point_light, &spot_light, &directional_light};
+/// By gpu::Light::kind, in the order of AnyLight.
+inline constexpr auto light_kinds =
+    std::to_array<const LightKind*>({&point_light, &spot_light, &directional_light});
+static_assert(light_kinds.size() == std::variant_size_v<AnyLight>);
 
 inline constexpr float hemisphere = 2.0F * std::numbers::pi_v<float>;  ///< steradians
 

@@ -57,9 +57,7 @@ Basis basis_around(glm::vec3 n) {
 ValueHandle<LightTable> add_light_table(FrameGraph& graph, SceneCheck& check,
                                         ValueHandle<SceneMetrics> metrics, const std::optional<Sky>& sky) {
     return graph.add("lights", [&](Pass& pass) {
-        for (const LightKind* const kind : light_kinds) {
-            kind->read(pass);
-        }
+        for_each_light_kind([&]<class Light>(const LightTraits<Light>&) { pass.read<Light>(); });
         pass.read<Transform>();
         pass.read(metrics);
         if (sky) {

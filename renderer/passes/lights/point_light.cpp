@@ -1,8 +1,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/lights.hpp>
 #include "renderer/passes/lights/light_kind.hpp"
 
 // Point lights; shaders/lights/point_light.glsl is the other half.
@@ -32,7 +32,6 @@ void gather_point_lights(const World& world, SceneCheck& check, const SceneMetri
 }  // namespace
 
 const LightKind point_light{
-    .read = [](Pass& pass) { pass.read<PointLight>(); },
     .gather = gather_point_lights,
     .bounds =
         [](const gpu::Light& light) {

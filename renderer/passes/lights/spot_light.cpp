@@ -2,8 +2,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/lights.hpp>
 #include "renderer/passes/lights/light_kind.hpp"
 
 // Spot lights; shaders/lights/spot_light.glsl is the other half.
@@ -67,9 +67,6 @@ ShadowShape shadow_of_spot(const gpu::Light& light, const SceneMetrics& /*metric
 
 }  // namespace
 
-const LightKind spot_light{.read = [](Pass& pass) { pass.read<SpotLight>(); },
-                           .gather = gather_spot_lights,
-                           .bounds = bounds_of_spot,
-                           .shadow = shadow_of_spot};
+const LightKind spot_light{.gather = gather_spot_lights, .bounds = bounds_of_spot, .shadow = shadow_of_spot};
 
 }  // namespace candela

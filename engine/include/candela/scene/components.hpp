@@ -16,12 +16,14 @@
 
 #include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
+#include <candela/scene/lights.hpp>
 
 namespace candela {
 
-// The components of a scene. All are plain values that compare by value. Large data (meshes, images) is
-// shared and immutable, so comparing pointers is enough to detect a change. Conventions are those of glTF:
-// right-handed, +Y up, cameras and lights point along their local -Z, lengths in metres, linear RGB.
+// The components of a scene; lights are in lights.hpp. All are plain values that compare by value. Large data
+// (meshes, images) is shared and immutable, so comparing pointers is enough to detect a change. Conventions
+// are those of glTF: right-handed, +Y up, cameras and lights point along their local -Z, lengths in metres,
+// linear RGB.
 
 /// Display name of the entity; not unique.
 struct Name {
@@ -113,35 +115,6 @@ struct Mesh {
 struct MeshInstance {
     std::shared_ptr<const Mesh> mesh;
     bool operator==(const MeshInstance&) const = default;
-};
-
-/// Isotropic point light at the entity's origin. Its intensity does not scale with the transform.
-struct PointLight {
-    glm::vec3 colour{1.0F};  ///< linear, multiplies `intensity`
-    float intensity = 1.0F;  ///< candela
-    /// Metres; the light falls to zero at this distance (KHR_lights_punctual).
-    float range = std::numeric_limits<float>::infinity();
-    bool casts_shadow = true;
-    bool operator==(const PointLight&) const = default;
-};
-
-/// Spot light at the entity's origin along its -Z.
-struct SpotLight {
-    glm::vec3 colour{1.0F};                                ///< linear, multiplies `intensity`
-    float intensity = 1.0F;                                ///< candela, inside the inner cone
-    float range = std::numeric_limits<float>::infinity();  ///< metres
-    float inner_cone = 0.0F;                               ///< radians from the axis, < outer_cone
-    float outer_cone = 0.785398163F;                       ///< radians from the axis, <= pi/2
-    bool casts_shadow = true;
-    bool operator==(const SpotLight&) const = default;
-};
-
-/// Parallel light travelling along the entity's -Z.
-struct DirectionalLight {
-    glm::vec3 colour{1.0F};    ///< linear, multiplies `illuminance`
-    float illuminance = 1.0F;  ///< lux, on a surface that faces the light
-    bool casts_shadow = true;
-    bool operator==(const DirectionalLight&) const = default;
 };
 
 /// Radiance from all directions as an equirectangular picture, rows top to bottom, tightly packed: the top
