@@ -139,15 +139,10 @@
     X(ProgramUniform1i, PROGRAMUNIFORM1I) \
     X(ProgramUniform1ui, PROGRAMUNIFORM1UI) \
     X(ProgramUniform1f, PROGRAMUNIFORM1F) \
-    X(ProgramUniform1fv, PROGRAMUNIFORM1FV) \
     X(ProgramUniform2fv, PROGRAMUNIFORM2FV) \
     X(ProgramUniform3fv, PROGRAMUNIFORM3FV) \
     X(ProgramUniform4fv, PROGRAMUNIFORM4FV) \
-    X(ProgramUniform2iv, PROGRAMUNIFORM2IV) \
-    X(ProgramUniform3iv, PROGRAMUNIFORM3IV) \
     X(ProgramUniform2uiv, PROGRAMUNIFORM2UIV) \
-    X(ProgramUniform3uiv, PROGRAMUNIFORM3UIV) \
-    X(ProgramUniform4uiv, PROGRAMUNIFORM4UIV) \
     X(ProgramUniformMatrix3fv, PROGRAMUNIFORMMATRIX3FV) \
     X(ProgramUniformMatrix4fv, PROGRAMUNIFORMMATRIX4FV) \
     /* draws and dispatches */ \

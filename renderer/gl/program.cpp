@@ -167,10 +167,6 @@ void Program::find_uniforms() {
     }
 }
 
-void Program::use() const {
-    gl().UseProgram(name());
-}
-
 void Program::use(const Uniforms& uniforms) const {
     require_each_once(uniforms);
     for (const Uniform& uniform : uniforms) {
@@ -197,65 +193,6 @@ GLint Program::location(std::string_view uniform) const {
     const auto found = uniforms_.find(uniform);
     if (found == uniforms_.end()) throw ProgramError(fmt::format("{}: no uniform '{}'", label_, uniform));
     return found->second.location;
-}
-
-bool Program::has(std::string_view uniform) const {
-    const auto found = uniforms_.find(uniform);
-    return found != uniforms_.end() && found->second.location >= 0;
-}
-
-void Program::set(std::string_view uniform, bool value) const {
-    set(uniform, value ? 1 : 0);
-}
-void Program::set(std::string_view uniform, int value) const {
-    gl().ProgramUniform1i(name(), location(uniform), value);
-}
-void Program::set(std::string_view uniform, std::uint32_t value) const {
-    gl().ProgramUniform1ui(name(), location(uniform), value);
-}
-void Program::set(std::string_view uniform, float value) const {
-    gl().ProgramUniform1f(name(), location(uniform), value);
-}
-void Program::set(std::string_view uniform, const glm::vec2& value) const {
-    gl().ProgramUniform2fv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::vec3& value) const {
-    gl().ProgramUniform3fv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::vec4& value) const {
-    gl().ProgramUniform4fv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::ivec2& value) const {
-    gl().ProgramUniform2iv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::ivec3& value) const {
-    gl().ProgramUniform3iv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::uvec2& value) const {
-    gl().ProgramUniform2uiv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::uvec3& value) const {
-    gl().ProgramUniform3uiv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::uvec4& value) const {
-    gl().ProgramUniform4uiv(name(), location(uniform), 1, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::mat3& value) const {
-    gl().ProgramUniformMatrix3fv(name(), location(uniform), 1, GL_FALSE, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, const glm::mat4& value) const {
-    gl().ProgramUniformMatrix4fv(name(), location(uniform), 1, GL_FALSE, glm::value_ptr(value));
-}
-void Program::set(std::string_view uniform, std::span<const float> values) const {
-    gl().ProgramUniform1fv(name(), location(uniform), static_cast<GLsizei>(values.size()), values.data());
-}
-void Program::set(std::string_view uniform, std::span<const glm::vec4> values) const {
-    gl().ProgramUniform4fv(name(), location(uniform), static_cast<GLsizei>(values.size()),
-                           reinterpret_cast<const float*>(values.data()));
-}
-void Program::set(std::string_view uniform, std::span<const glm::mat4> values) const {
-    gl().ProgramUniformMatrix4fv(name(), location(uniform), static_cast<GLsizei>(values.size()), GL_FALSE,
-                                 reinterpret_cast<const float*>(values.data()));
 }
 
 Program compile(Device& device, const ShaderLibrary& library, const std::vector<std::string>& stages,

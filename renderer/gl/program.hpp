@@ -1,12 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
-#include <glm/mat3x3.hpp>
-#include <glm/mat4x4.hpp>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,10 +16,8 @@
 
 namespace candela::gl {
 
-/// A linked program. Uniforms are set by name, whether or not the program is in use. An array is set by its
-/// name without "[0]", starting with its first element. Setting a uniform that no shader file declares throws
-/// ProgramError. One that is declared but not active is ignored, because drivers remove uniforms that a
-/// variant does not use.
+/// A linked program. Each use gives all its uniforms, by name. One that is declared but not active is
+/// ignored, because drivers remove uniforms that a variant does not use.
 class Program : public Object {
  public:
     Program() = default;
@@ -33,31 +26,9 @@ class Program : public Object {
     Program(Device& device, std::string_view label, std::span<const GLuint> shaders,
             const std::set<std::string>& declared);
 
-    void use() const;
-    /// Uses the program for the next draws or dispatches, with these uniforms. Throws ProgramError if one
-    /// that is active is missing or given twice, and if no shader file declares one.
-    void use(const Uniforms& uniforms) const;
-
-    /// Whether `uniform` is an active uniform outside of uniform blocks.
-    [[nodiscard]] bool has(std::string_view uniform) const;
-
-    void set(std::string_view uniform, bool value) const;
-    void set(std::string_view uniform, int value) const;
-    void set(std::string_view uniform, std::uint32_t value) const;
-    void set(std::string_view uniform, float value) const;
-    void set(std::string_view uniform, const glm::vec2& value) const;
-    void set(std::string_view uniform, const glm::vec3& value) const;
-    void set(std::string_view uniform, const glm::vec4& value) const;
-    void set(std::string_view uniform, const glm::ivec2& value) const;
-    void set(std::string_view uniform, const glm::ivec3& value) const;
-    void set(std::string_view uniform, const glm::uvec2& value) const;
-    void set(std::string_view uniform, const glm::uvec3& value) const;
-    void set(std::string_view uniform, const glm::uvec4& value) const;
-    void set(std::string_view uniform, const glm::mat3& value) const;
-    void set(std::string_view uniform, const glm::mat4& value) const;
-    void set(std::string_view uniform, std::span<const float> values) const;
-    void set(std::string_view uniform, std::span<const glm::vec4> values) const;
-    void set(std::string_view uniform, std::span<const glm::mat4> values) const;
+    /// Uses the program for the next draws or dispatches, with these uniforms. Throws ProgramError for one
+    /// that is active and missing, given twice or of another type, and for one that no shader file declares.
+    void use(const Uniforms& uniforms = {}) const;
 
  private:
     void link(std::string_view label, std::span<const GLuint> shaders) const;
@@ -66,12 +37,12 @@ class Program : public Object {
     [[nodiscard]] GLint location(std::string_view uniform) const;
     void require_each_once(const Uniforms& uniforms) const;
 
-    std::string label_;
     struct Known {
         GLint location = -1;  // -1: declared, but not active
-        std::optional<std::size_t>
-            value_index{};  // of Uniform::Value; none: not active, a texture or an image
+        /// Index in Uniform::Value of its type; none for textures, images and what is not active.
+        std::optional<std::size_t> value_index{};
     };
+    std::string label_;
     std::map<std::string, Known, std::less<>> uniforms_;
 };
 

@@ -23,20 +23,6 @@ namespace candela {
     return (count + a_group - 1) / a_group;
 }
 
-/// Calls `dispatch(first)` for first = 0, `most`, 2 `most`, ... below `count`, at least once, with a barrier
-/// in between. Bounds the loops of an invocation: software drivers silently stop all of them after 65,535
-/// iterations in total.
-template <class Dispatch>
-void in_parts(const gl::Functions& gl, std::uint32_t count, std::uint32_t most, GLbitfield barrier,
-              Dispatch dispatch) {
-    for (std::uint32_t first = 0; first == 0 || first < count; first += most) {
-        if (first > 0) {
-            gl.MemoryBarrier(barrier);
-        }
-        dispatch(first);
-    }
-}
-
 /// Throws gl::GlError that names the first limit that is too low for the renderer's shaders.
 void require_limits(const gl::Limits& limits);
 

@@ -2,6 +2,7 @@
 // VPL; neighbouring pixels sum different halves. The result is the mean of both estimates, weighted by the number of
 // VPLs behind each: theory.md, "Pixels without enough neighbours". One invocation per listed pixel.
 #include "bindings.glsl"
+#include "loop_part.glsl"
 #include "surfaces/visible_surface.glsl"
 #include "indirect/vpl_light.glsl"
 
@@ -14,9 +15,6 @@ layout(std430, binding = BINDING_FILL_LIST) readonly restrict buffer FillList {
     uint fill_pixels[];
 };
 
-uniform uint first_vpl;          // of the pixel's half, that this dispatch sums
-uniform uint vpls_per_dispatch;  // at most
-
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
 
 void main() {
@@ -25,8 +23,8 @@ void main() {
     ivec2 at = ivec2(packed_pixel & 0xffffu, packed_pixel >> 16);
     Surface surface = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
     vec3 irradiance = vec3(0.0);
-    uint end = min(vpl_constants.count, 2u * (first_vpl + vpls_per_dispatch));
-    for (uint i = 2u * first_vpl + uint(at.x + at.y) % 2u; i < end; i += 2u) {
+    uint end = min(vpl_constants.count, 2u * (part_first + part_size));
+    for (uint i = 2u * part_first + uint(at.x + at.y) % 2u; i < end; i += 2u) {
 #ifdef SURFELS
         // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
         irradiance += irradiance_from_vpl(vpls[i], surface);
@@ -36,6 +34,6 @@ void main() {
     }
     vec4 found = imageLoad(reconstructed, at);
     float weight = 1.0 / (found.a + 0.5);  // the sum over half of the VPLs is half of the estimate
-    if (first_vpl == 0u) found.rgb *= found.a * weight;
+    if (part_first == 0u) found.rgb *= found.a * weight;
     imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance, found.a));
 }

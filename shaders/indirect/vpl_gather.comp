@@ -2,15 +2,13 @@
 // handles a block of pixels of one class, `interleave` pixels apart, so that all its invocations loop over the same
 // VPLs; its z index is the class.
 #include "bindings.glsl"
+#include "loop_part.glsl"
 #include "shading/pixel_block.glsl"
 #include "surfaces/visible_surface.glsl"
 #include "indirect/vpl_light.glsl"
 #include "indirect/vpl_shares.glsl"
 
 layout(std430, binding = BINDING_VPL_ORDER) readonly restrict buffer VplOrder { uint vpl_order[]; };
-
-uniform uint first_vpl;          // of each share, that this dispatch sums; the sum of those before it is in the image
-uniform uint vpls_per_dispatch;  // at most
 
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D gathered;
 
@@ -29,8 +27,8 @@ void main() {
     }
     uint classes = interleave * interleave;
     uint share = share_of_class(offset);
-    uint first = share * vpl_constants.count / classes + first_vpl;
-    uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + vpls_per_dispatch) : first;
+    uint first = share * vpl_constants.count / classes + part_first;
+    uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + part_size) : first;
     for (uint i = first; i < last; ++i) {
         Vpl vpl = vpls[vpl_order[i]];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
@@ -39,7 +37,7 @@ void main() {
     for (int s = 0; s < SURFACES; ++s) {
         ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);
         vec4 sum = depth[s] > 0.0 ? vec4(float(classes) * irradiance[s], 1.0) : vec4(0.0);
-        if (first_vpl > 0u) sum.rgb += imageLoad(gathered, at).rgb;
+        if (part_first > 0u) sum.rgb += imageLoad(gathered, at).rgb;
         imageStore(gathered, at, sum);
     }
 }

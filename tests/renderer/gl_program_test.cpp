@@ -149,53 +149,34 @@ TEST_SUITE("gl program") {
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) buffer Results { float results[]; };
 uniform bool flag; uniform int i; uniform uint u; uniform float f;
-uniform vec2 v2; uniform vec3 v3; uniform vec4 v4;
-uniform ivec2 i2; uniform ivec3 i3; uniform uvec2 u2; uniform uvec3 u3; uniform uvec4 u4;
-uniform mat3 m3; uniform mat4 m4;
-uniform float fs[3]; uniform vec4 v4s[2]; uniform mat4 m4s[2];
+uniform vec2 v2; uniform vec3 v3; uniform vec4 v4; uniform uvec2 u2;
+uniform mat3 m3; uniform mat4 m4; uniform vec4 v4s[2];
 uniform float unused;
 void main() {
     int n = 0;
     results[n++] = flag ? 1.0 : 0.0; results[n++] = float(i); results[n++] = float(u); results[n++] = f;
-    results[n++] = v2.y; results[n++] = v3.z; results[n++] = v4.w;
-    results[n++] = float(i2.y); results[n++] = float(i3.z);
-    results[n++] = float(u2.y); results[n++] = float(u3.z); results[n++] = float(u4.w);
-    results[n++] = m3[2].x; results[n++] = m4[3].x;
-    results[n++] = fs[0] + fs[2]; results[n++] = v4s[1].y; results[n++] = m4s[1][3].y;
+    results[n++] = v2.y; results[n++] = v3.z; results[n++] = v4.w; results[n++] = float(u2.y);
+    results[n++] = m3[2].x; results[n++] = m4[3].x; results[n++] = v4s[1].y;
     results[n++] = float(VARIANT);
 }
 )"}};
-        const Program program = compile(device, ShaderLibrary{files}, {"sum.comp"}, {{"VARIANT", "18"}});
-        program.set("flag", true);
-        program.set("i", -2);
-        program.set("u", 3U);
-        program.set("f", 4.0F);
-        program.set("v2", glm::vec2(0, 5));
-        program.set("v3", glm::vec3(0, 0, 6));
-        program.set("v4", glm::vec4(0, 0, 0, 7));
-        program.set("i2", glm::ivec2(0, -8));
-        program.set("i3", glm::ivec3(0, 0, -9));
-        program.set("u2", glm::uvec2(0, 10));
-        program.set("u3", glm::uvec3(0, 0, 11));
-        program.set("u4", glm::uvec4(0, 0, 0, 12));
-        program.set("m3", glm::mat3(glm::vec3(0), glm::vec3(0), glm::vec3(13, 0, 0)));
-        program.set("m4", glm::translate(glm::mat4(1), glm::vec3(14, 0, 0)));
-        program.set("fs", std::array{7.0F, 0.0F, 8.0F});
-        program.set("v4s", std::array{glm::vec4(0), glm::vec4(0, 16, 0, 0)});
-        program.set("m4s", std::array{glm::mat4(1), glm::translate(glm::mat4(1), glm::vec3(0, 17, 0))});
-        program.set("unused", 1.0F);
-        CHECK_THROWS_WITH_AS(program.set("no_such_uniform", 1.0F), "sum.comp: no uniform 'no_such_uniform'",
-                             ProgramError);
-        CHECK(program.has("fs"));
-        CHECK_FALSE(program.has("unused"));
-        CHECK_FALSE(program.has("results"));
-
-        const Buffer results(device, "results", 18 * sizeof(float));
+        const Program program = compile(device, ShaderLibrary{files}, {"sum.comp"}, {{"VARIANT", "12"}});
+        const Buffer results(device, "results", 12 * sizeof(float));
         results.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-        program.use();
+        program.use({{"flag", true},
+                     {"i", -2},
+                     {"u", 3U},
+                     {"f", 4.0F},
+                     {"v2", glm::vec2(0, 5)},
+                     {"v3", glm::vec3(0, 0, 6)},
+                     {"v4", glm::vec4(0, 0, 0, 7)},
+                     {"u2", glm::uvec2(0, 8)},
+                     {"m3", glm::mat3(glm::vec3(0), glm::vec3(0), glm::vec3(9, 0, 0))},
+                     {"m4", glm::translate(glm::mat4(1), glm::vec3(10, 0, 0))},
+                     {"v4s", std::vector{glm::vec4(0), glm::vec4(0, 11, 0, 0)}},
+                     {"unused", 1.0F}});
         device.gl().DispatchCompute(1, 1, 1);
-        CHECK(results.download<float>() ==
-              std::vector<float>{1, -2, 3, 4, 5, 6, 7, -8, -9, 10, 11, 12, 13, 14, 15, 16, 17, 18});
+        CHECK(results.download<float>() == std::vector<float>{1, -2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     }
 
     TEST_CASE_FIXTURE(GlFixture, "a program is used with each of its active uniforms, once and of its type") {

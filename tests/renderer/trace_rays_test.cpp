@@ -94,8 +94,7 @@ class Tracer {
             read_tracing(pass, tracing);
             pass.side_effect();
             pass.run([this, tracing](Execution& run) {
-                program_.set("ray_count", ray_count_);
-                program_.use();
+                program_.use({{"ray_count", ray_count_}});
                 gpu_.gl().DispatchCompute(static_cast<GLuint>(ray_count_ + 31) / 32, 1, 1);
                 gpu_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
                 triangles_ = backend_.buffer(run.object(tracing.triangles)).download<gpu::TraceTriangle>();

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/gpu/loop_parts.hpp"
 
 namespace candela {
 namespace {
@@ -19,17 +21,15 @@ constexpr std::uint32_t least_rows = 60;
 
 /// Gathers in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
-void dispatch_gather(const gl::Functions& gl, const gl::Program& program, glm::uvec2 size,
-                     std::uint32_t interleave, std::uint32_t vpl_count, std::uint32_t most) {
+void gather(const Gpu& gpu, const gl::Program& program, glm::uvec2 size, std::uint32_t interleave,
+            std::uint32_t vpl_count, std::uint32_t most) {
     const glm::uvec2 of_class = (size + interleave - 1U) / interleave;
     const std::uint32_t classes = interleave * interleave;
-    const std::uint32_t share = (vpl_count + classes - 1) / classes;
-    program.set("vpls_per_dispatch", most);
-    program.use();
-    in_parts(gl, share, most, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, [&](std::uint32_t first) {
-        program.set("first_vpl", first);
-        gl.DispatchCompute(groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes);
-    });
+    const Groups blocks{groups(of_class.x, PIXEL_BLOCK), groups(of_class.y, PIXEL_BLOCK), classes};
+    ComputeSteps steps(gpu);
+    for (const gl::Uniforms& part : loop_parts(groups(vpl_count, classes), most)) {
+        steps.run(program, blocks, part + gl::Uniforms{{"interleave", interleave}});
+    }
 }
 
 }  // namespace
@@ -91,8 +91,7 @@ std::vector<std::uint32_t> order_vpls(const VplPlan& plan) {
 BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> plan) {
     return graph.add("vpl-order", [&](Pass& pass) {
         pass.read(plan);
-        const auto order =
-            pass.write(graph.buffer<std::uint32_t>("vpl order", 1, Lifetime::persistent), Usage::copy);
+        const auto order = pass.write(growing_buffer<std::uint32_t>(graph, "vpl order"), Usage::copy);
         pass.run([=, &gpu](Execution& run) {
             upload<std::uint32_t>(gpu, run, order, order_vpls(run.value(plan)));
         });
@@ -116,9 +115,8 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
             .order = order,
             .interleave = interleave};
         pass.run([=, &gpu, &program](Execution& run) {
-            program.set("interleave", interleave);
-            dispatch_gather(gpu.gl(), program, view.size, interleave, run.value(light.vpls.plan).vpl_count,
-                            max_vpls_per_invocation(light));
+            gather(gpu, program, view.size, interleave, run.value(light.vpls.plan).vpl_count,
+                   max_vpls_per_invocation(light));
         });
         return out;
     });

@@ -1,6 +1,8 @@
 #include "renderer/passes/indirect/vpl_reconstruct.hpp"
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
+#include "renderer/gpu/loop_parts.hpp"
 
 namespace candela {
 namespace {
@@ -23,10 +25,9 @@ std::uint32_t groups_of_row(glm::uvec2 size) {
     return groups(size.x, RECONSTRUCT_GROUP);
 }
 
-void dispatch(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) {
-    program.set("interleave", pixels.interleave);
-    program.use();
-    gpu.gl().DispatchCompute(groups_of_row(pixels.size), pixels.size.y, 1);
+void reconstruct(const Gpu& gpu, const gl::Program& program, const Pixels& pixels) {
+    ComputeSteps(gpu).run(program, {groups_of_row(pixels.size), pixels.size.y},
+                          {{"interleave", pixels.interleave}});
 }
 
 TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle gathered) {
@@ -37,7 +38,7 @@ TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, Textur
         const TextureHandle out =
             pass.write(graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}),
                        {Usage::storage, IMAGE_INDIRECT});
-        pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
+        pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels); });
         return out;
     });
 }
@@ -63,7 +64,7 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHa
             .fill_mask = pass.write(graph.buffer<std::uint32_t>(
                                         "fill mask", std::uint64_t{row_words(pixels.size)} * pixels.size.y),
                                     {Usage::storage, BINDING_FILL_MASK})};
-        pass.run([=, &gpu, &program](Execution&) { dispatch(gpu, program, pixels); });
+        pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels); });
         return out;
     });
 }
@@ -77,10 +78,8 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
                                                    Lifetime::persistent),
                        {Usage::storage, BINDING_FILL_LIST});
         pass.run([=, &gpu, &program](Execution&) {
-            program.set("row_words", row_words(size));
-            program.set("mask_words", row_words(size) * size.y);
-            program.use();
-            gpu.gl().DispatchCompute(1, 1, 1);
+            ComputeSteps(gpu).run(program, {},
+                                  {{"row_words", row_words(size)}, {"mask_words", row_words(size) * size.y}});
         });
         return list;
     });
@@ -88,14 +87,11 @@ BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns&
 
 /// Evaluates in as many dispatches as needed for each to evaluate at most `most` VPLs per pixel. Each adds to
 /// the sum of the ones before.
-void dispatch_fill(const gl::Functions& gl, const gl::Program& program, std::uint32_t vpl_count,
-                   std::uint32_t most) {
-    program.set("vpls_per_dispatch", most);
-    program.use();
-    in_parts(gl, (vpl_count + 1) / 2, most, GL_SHADER_IMAGE_ACCESS_BARRIER_BIT, [&](std::uint32_t first) {
-        program.set("first_vpl", first);
-        gl.DispatchComputeIndirect(0);
-    });
+void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, std::uint32_t most) {
+    ComputeSteps steps(gpu);
+    for (const gl::Uniforms& part : loop_parts((vpl_count + 1) / 2, most)) {
+        steps.run_indirect(program, part);
+    }
 }
 
 TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
@@ -109,8 +105,7 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"}, vpl_light_variant(light));
         const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
         pass.run([=, &gpu, &program](Execution& run) {
-            dispatch_fill(gpu.gl(), program, run.value(light.vpls.plan).vpl_count,
-                          max_vpls_per_invocation(light));
+            fill(gpu, program, run.value(light.vpls.plan).vpl_count, max_vpls_per_invocation(light));
         });
         return out;
     });

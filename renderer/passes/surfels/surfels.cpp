@@ -235,9 +235,8 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
         const Surfels out{
             .plan = pass.write(graph.value<VplPlan>("surfel plan")),
             .set = pass.write(graph.value<std::uint64_t>("surfel set")),
-            .surfels = pass.write(graph.buffer<gpu::Vpl>("surfels", 1, Lifetime::persistent), Usage::copy),
-            .points = pass.write(graph.buffer<gpu::CellPoint>("cell points", 1, Lifetime::persistent),
-                                 Usage::copy)};
+            .surfels = pass.write(growing_buffer<gpu::Vpl>(graph, "surfels"), Usage::copy),
+            .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
         pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
             const SpreadSurfels& spread_now = run.value(spread_surfels);
             const SurfelSet set = placed_in_world(spread_now, run.value(layout), run.value(placement));
