@@ -47,8 +47,6 @@ class Gpu {
 
     /// A vertex array for candela::Vertex (binding 0) and instance indices (binding 1): see draw_scene.hpp.
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }
-    /// A vertex array without attributes, for geometry that shaders generate.
-    [[nodiscard]] const gl::VertexArray& no_vertices() const { return no_vertices_; }
     /// A 1 × 1 white texture, for materials without an image.
     [[nodiscard]] const gl::Texture& white() const { return white_; }
     /// For textures of the host's, which may have any parameters: no filtering, mip level 0, no comparison.
@@ -71,8 +69,14 @@ class Gpu {
     /// Draws one triangle that covers the viewport; the vertex stage is fullscreen.vert.
     void draw_fullscreen(const gl::Program& program, const gl::Uniforms& uniforms = {},
                          const gl::RasterState& state = {});
+    /// Draws `count` points without attributes.
+    void draw_points(const gl::Program& program, std::uint32_t count, const gl::Uniforms& uniforms,
+                     const gl::RasterState& state);
 
  private:
+    void draw_generated(GLenum primitives, std::uint32_t vertices, const gl::Program& program,
+                        const gl::Uniforms& uniforms, const gl::RasterState& state);
+
     Log log_;
     SceneCheck scene_check_;
     gl::Device device_;
@@ -80,7 +84,7 @@ class Gpu {
     using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;
     std::map<ProgramKey, gl::Program> programs_;
     gl::VertexArray mesh_vertices_;
-    gl::VertexArray no_vertices_;
+    gl::VertexArray no_vertices_;  // for geometry that shaders generate
     gl::Texture white_;
     gl::Sampler nearest_;
     gl::Framebuffer layer_target_;

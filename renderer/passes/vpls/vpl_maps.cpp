@@ -40,10 +40,9 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node,
     if (!changed) {
         target.clear();
     }
-    node.program->use(changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()));
-    gpu.device().set_raster_state({.depth_test = gl::DepthTest::always});
-    gpu.no_vertices().bind();
-    gpu.gl().DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(run.value(node.vpls.plan).vpl_count));
+    gpu.draw_points(*node.program, run.value(node.vpls.plan).vpl_count,
+                    changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()),
+                    {.depth_test = gl::DepthTest::always});
 }
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
