@@ -67,8 +67,7 @@ class ExtensionTests : public RenderFixture {
                 const auto out = pass.write(graph.texture(name + " radiance", {frame.size, Format::rgba32f}),
                                             Usage::colour_target);
                 pass.run([=, this](Execution& run) {
-                    program->set("factor", factor(run.world()));
-                    program->use();
+                    program->use({{"factor", factor(run.world())}});
                     vertices->bind();
                     device.gl().DrawArrays(GL_TRIANGLES, 0, 3);
                 });

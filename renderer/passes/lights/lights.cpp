@@ -13,8 +13,8 @@ SceneLights add_lights(FrameGraph& graph, Gpu& gpu, const SceneData& scene, Valu
         pass.read(table);
         const SceneLights out{
             .table = table,
-            .constants = pass.write(
-                graph.buffer<gpu::LightConstants>("light constants", 1, Lifetime::persistent), Usage::copy),
+            .constants =
+                pass.write(growing_buffer<gpu::LightConstants>(graph, "light constants"), Usage::copy),
             .buffer = pass.write(growing_buffer<gpu::Light>(graph, "light buffer"), Usage::copy),
             .shadows = shadows};
         pass.run([=, &gpu](Execution& run) {
