@@ -71,10 +71,10 @@ std::vector<Entity> find_nodes(const World& world, const std::string& wanted) {
 
 /// Candela or lux; nullopt if the entity is not a light.
 std::optional<float> light_strength(const World& world, Entity entity) {
-    if (const auto* light = world.find<PointLight>(entity)) return light->intensity;
-    if (const auto* light = world.find<SpotLight>(entity)) return light->intensity;
-    if (const auto* light = world.find<DirectionalLight>(entity)) return light->illuminance;
-    return std::nullopt;
+    std::optional<float> strength;
+    visit_lights_of(world, entity,
+                    [&](const auto& light) { strength = strength.value_or(strength_of(light)); });
+    return strength;
 }
 
 /// The name of an animated member that only lights have, or null.
@@ -99,13 +99,12 @@ void apply_transform(World& world, Entity entity, const Pose& pose) {
     world.set(entity, transform);
 }
 
-/// `strength` is the intensity while the light is on, in the unit of `member`.
-template <class Light>
-void apply_light(World& world, Entity entity, const Pose& pose, float strength, float Light::*member) {
-    if (!world.has<Light>(entity)) return;
-    world.edit<Light>(entity, [&](Light& light) {
+/// `strength`: of the light while it is on, in the unit of its kind.
+void apply_light(World& world, Entity entity, const Pose& pose, float strength) {
+    edit_lights_of(world, entity, [&](auto& light) {
         put(pose.colour, light.colour);
-        if (pose.intensity || pose.enabled) light.*member = pose.enabled.value_or(true) ? strength : 0.0F;
+        if (pose.intensity || pose.enabled)
+            strength_of(light) = pose.enabled.value_or(true) ? strength : 0.0F;
     });
 }
 
@@ -145,9 +144,7 @@ void Animation::apply(World& world, int frame) const {
         const Entity entity = driven_[i].entity;
         const float strength = pose.intensity.value_or(driven_[i].strength);
         apply_transform(world, entity, pose);
-        apply_light(world, entity, pose, strength, &PointLight::intensity);
-        apply_light(world, entity, pose, strength, &SpotLight::intensity);
-        apply_light(world, entity, pose, strength, &DirectionalLight::illuminance);
+        apply_light(world, entity, pose, strength);
     }
 }
 

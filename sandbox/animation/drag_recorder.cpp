@@ -135,15 +135,10 @@ void DragRecorder::record(const World& world, double seconds) {
         now.rotation = transform->rotation;
         now.scale = transform->scale;
     }
-    const auto add_light = [&](const auto* light, auto strength) {
-        if (light == nullptr) return;
-        now.intensity = light->*strength;
-        now.colour = light->colour;
-    };
-    add_light(world.find<PointLight>(entity_), &PointLight::intensity);
-    add_light(world.find<SpotLight>(entity_), &SpotLight::intensity);
-    add_light(world.find<DirectionalLight>(entity_), &DirectionalLight::illuminance);
-
+    visit_lights_of(world, entity_, [&](const auto& light) {
+        now.intensity = strength_of(light);
+        now.colour = light.colour;
+    });
     if (!records_.empty()) {
         now.seconds = std::max(seconds, records_.back().seconds);
         if (now.seconds - records_.back().seconds > longest_gap) {

@@ -96,9 +96,7 @@ float distance_to(const Handle& handle, glm::vec2 point) {
 }  // namespace
 
 Tool usable_tool(const World& world, Entity entity, Tool tool) {
-    const bool has_place =
-        world.has<PointLight>(entity) || world.has<SpotLight>(entity) || !world.has<DirectionalLight>(entity);
-    if (!has_place) return Tool::turn;
+    if (!has_place(world, entity)) return Tool::turn;
     const bool only_light =
         is_light(world, entity) && family_of(world, entity).size() == 1 && !world.has<MeshInstance>(entity);
     const bool useless =

@@ -1,6 +1,7 @@
 #include "sandbox/editing/history.hpp"
 
 #include <algorithm>
+#include <variant>
 
 namespace candela::sandbox {
 
@@ -21,6 +22,14 @@ void set_or_remove(World& world, Entity entity, const std::optional<C>& componen
     }
 }
 
+template <class Light>
+std::optional<Light> light_in(const std::vector<AnyLight>& lights) {
+    for (const AnyLight& light : lights) {
+        if (const auto* of_kind = std::get_if<Light>(&light)) return *of_kind;
+    }
+    return std::nullopt;
+}
+
 void set_states(World& world, const EntityStates& states) {
     for (const auto& [entity, state] : states) set_state(world, entity, state);
 }
@@ -35,11 +44,11 @@ std::vector<Entity> entities_of(const EntityStates& states) {
 }  // namespace
 
 EntityState state_of(const World& world, Entity entity) {
+    std::vector<AnyLight> lights;
+    visit_lights_of(world, entity, [&](const auto& light) { lights.emplace_back(light); });
     return {copy_of<Name>(world, entity),
             copy_of<Transform>(world, entity),
-            copy_of<PointLight>(world, entity),
-            copy_of<SpotLight>(world, entity),
-            copy_of<DirectionalLight>(world, entity),
+            std::move(lights),
             copy_of<MeshInstance>(world, entity),
             copy_of<Environment>(world, entity),
             copy_of<Camera>(world, entity)};
@@ -48,9 +57,9 @@ EntityState state_of(const World& world, Entity entity) {
 void set_state(World& world, Entity entity, const EntityState& state) {
     set_or_remove(world, entity, state.name);
     set_or_remove(world, entity, state.transform);
-    set_or_remove(world, entity, state.point_light);
-    set_or_remove(world, entity, state.spot_light);
-    set_or_remove(world, entity, state.directional_light);
+    for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
+        set_or_remove(world, entity, light_in<Light>(state.lights));
+    });
     set_or_remove(world, entity, state.mesh_instance);
     set_or_remove(world, entity, state.environment);
     set_or_remove(world, entity, state.camera);

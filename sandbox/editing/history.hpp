@@ -18,9 +18,7 @@ namespace candela::sandbox {
 struct EntityState {
     std::optional<Name> name;
     std::optional<Transform> transform;
-    std::optional<PointLight> point_light;
-    std::optional<SpotLight> spot_light;
-    std::optional<DirectionalLight> directional_light;
+    std::vector<AnyLight> lights;  ///< at most one of each kind
     std::optional<MeshInstance> mesh_instance;
     std::optional<Environment> environment;
     std::optional<Camera> camera;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -86,11 +87,6 @@ DragMode constrained(DragMode present, int axis) {
             free = {DragKind::move_in_plane};
     }
     return present == along ? free : along;
-}
-
-bool has_place(const World& world, Entity entity) {
-    return world.has<PointLight>(entity) || world.has<SpotLight>(entity) ||
-           !world.has<DirectionalLight>(entity);
 }
 
 /// A place for a new light, and where it shines.
@@ -336,13 +332,13 @@ bool Interaction::carry_out(Action action) {
             remove_selected();
             return true;
         case Action::add_point_light:
-            add(LightKind::point);
+            add(PointLight{});
             return true;
         case Action::add_spot_light:
-            add(LightKind::spot);
+            add(SpotLight{});
             return true;
         case Action::add_directional_light:
-            add(LightKind::directional);
+            add(DirectionalLight{});
             return true;
         case Action::tool_move:
             tool = Tool::move;
@@ -409,12 +405,14 @@ void Interaction::select_touched(const std::vector<Entity>& touched) {
     selected = is_present(*world_, touched.front()) ? std::optional(touched.front()) : std::nullopt;
 }
 
-void Interaction::add(LightKind kind) {
+void Interaction::add(const AnyLight& light) {
     const float radius = viewer_.scene_radius();
     const Ray middle = ray_through(viewport(), origin_ + 0.5F * size_);
     Place place = place_for_light(surfaces_, middle, viewer_.orbit().pivot(), light_height * radius);
-    if (kind == LightKind::directional) place.direction = {-0.4F, -1.0F, -0.3F};  // like a sun
-    selected = add_light(*world_, history_, kind, place.position, place.direction, 0.5F * radius);
+    const bool far_away =
+        std::visit([]<class Light>(const Light&) { return !light_traits<Light>.has_position; }, light);
+    if (far_away) place.direction = {-0.4F, -1.0F, -0.3F};  // like a sun
+    selected = add_light(*world_, history_, light, place.position, place.direction, 0.5F * radius);
 }
 
 void Interaction::copy_selected() {

@@ -114,7 +114,7 @@ class Interaction {
 
     void nudge_selected(int key, const Viewport& viewport);
     void select_touched(const std::vector<Entity>& touched);
-    void add(LightKind kind);
+    void add(const AnyLight& light);
     void copy_selected();
     void remove_selected();
     void frame_selected();

@@ -4,26 +4,18 @@
 
 #include <glm/geometric.hpp>
 
-#include <candela/scene/components.hpp>
+#include <candela/scene/lights.hpp>
 #include "sandbox/editing/placing.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 
-namespace {
-
-template <class Light>
-void add_markers(const World& world, std::vector<LightMarker>& markers) {
-    for (auto [entity, light] : world.view<Light>())
-        markers.push_back({entity, name_of(world, entity), light.colour, position_of(world, entity)});
-}
-
-}  // namespace
-
 std::vector<LightMarker> light_markers(const World& world) {
     std::vector<LightMarker> markers;
-    add_markers<PointLight>(world, markers);
-    add_markers<SpotLight>(world, markers);
+    visit_lights(world, [&]<class Light>(Entity entity, const Light& light) {
+        if (light_traits<Light>.has_position)
+            markers.push_back({entity, name_of(world, entity), light.colour, position_of(world, entity)});
+    });
     std::sort(markers.begin(), markers.end(),
               [](const LightMarker& a, const LightMarker& b) { return a.entity < b.entity; });
     return markers;

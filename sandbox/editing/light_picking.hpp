@@ -17,7 +17,7 @@ struct LightMarker {
     glm::vec3 position{0.0F};  ///< world space, metres
 };
 
-/// All lights that have a position (point and spot lights), in the order of their creation.
+/// All lights that have a position, in the order of their creation.
 [[nodiscard]] std::vector<LightMarker> light_markers(const World& world);
 
 /// The marker nearest to a position in the window, if it is within `radius`; both in window coordinates.

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <map>
 #include <set>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,40 +24,14 @@ std::string stem_of(const std::string& name) {
     return numbered ? name.substr(0, end) : name;
 }
 
+/// The strength of a new light of this kind: see add_light.
 template <class Light>
-float brightest(const World& world, float Light::*strength, float otherwise) {
+float usual_strength(const World& world, float reach) {
     float most = 0.0F;
-    for (auto [entity, light] : world.view<Light>()) most = std::max(most, light.*strength);
-    return most > 0.0F ? most : otherwise;
-}
-
-void set_light(World& world, Entity entity, LightKind kind, float reach) {
+    for (auto [entity, light] : world.view<Light>()) most = std::max(most, strength_of(light));
+    if (most > 0.0F) return most;
     constexpr float lux = 2.0F;
-    const float candela = lux * reach * reach;
-    switch (kind) {
-        case LightKind::point:
-            world.set(entity, PointLight{.intensity = brightest(world, &PointLight::intensity, candela)});
-            break;
-        case LightKind::spot:
-            world.set(entity, SpotLight{.intensity = brightest(world, &SpotLight::intensity, candela)});
-            break;
-        case LightKind::directional:
-            world.set(entity,
-                      DirectionalLight{.illuminance = brightest(world, &DirectionalLight::illuminance, lux)});
-            break;
-    }
-}
-
-std::string kind_name(LightKind kind) {
-    switch (kind) {
-        case LightKind::point:
-            return "point light";
-        case LightKind::spot:
-            return "spot light";
-        case LightKind::directional:
-            break;
-    }
-    return "directional light";
+    return light_traits<Light>.has_position ? lux * reach * reach : lux;
 }
 
 bool has_children(const World& world, Entity entity) {
@@ -69,11 +44,23 @@ bool has_children(const World& world, Entity entity) {
 }  // namespace
 
 bool is_light(const World& world, Entity entity) {
-    return world.has<PointLight>(entity) || has_direction(world, entity);
+    bool found = false;
+    visit_lights_of(world, entity, [&](const auto& /*light*/) { found = true; });
+    return found;
 }
 
 bool has_direction(const World& world, Entity entity) {
-    return world.has<SpotLight>(entity) || world.has<DirectionalLight>(entity);
+    bool found = false;
+    visit_lights_of(world, entity,
+                    [&]<class Light>(const Light&) { found |= light_traits<Light>.has_direction; });
+    return found;
+}
+
+bool has_place(const World& world, Entity entity) {
+    bool found = false;
+    visit_lights_of(world, entity,
+                    [&]<class Light>(const Light&) { found |= light_traits<Light>.has_position; });
+    return found || !is_light(world, entity);
 }
 
 bool is_present(const World& world, Entity entity) {
@@ -90,16 +77,21 @@ std::string unique_name(const World& world, const std::string& wanted) {
     return fmt::format("{} {}", stem, number);
 }
 
-Entity add_light(World& world, History& history, LightKind kind, const glm::vec3& position,
+Entity add_light(World& world, History& history, const AnyLight& light, const glm::vec3& position,
                  const glm::vec3& direction, float reach) {
-    const Entity light = world.create();
-    history.begin(world, "add " + kind_name(kind), {light});
-    world.set(light, Name{unique_name(world, kind_name(kind))});
-    set_light(world, light, kind, reach);
-    move_to(world, light, position);
-    if (kind != LightKind::point) aim(world, light, direction);
+    const Entity entity = world.create();
+    const auto add = [&]<class Light>(Light added) {
+        const LightTraits<Light>& kind = light_traits<Light>;
+        history.begin(world, fmt::format("add {}", kind.name), {entity});
+        world.set(entity, Name{unique_name(world, kind.name)});
+        strength_of(added) = usual_strength<Light>(world, reach);
+        world.set(entity, added);
+        move_to(world, entity, position);
+        if (kind.has_direction) aim(world, entity, direction);
+    };
+    std::visit(add, light);
     history.commit(world);
-    return light;
+    return entity;
 }
 
 Entity duplicate(World& world, History& history, Entity entity, const glm::vec3& offset) {

@@ -1,23 +1,23 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include <glm/vec3.hpp>
 
 #include <candela/ecs/world.hpp>
+#include <candela/scene/lights.hpp>
 #include "sandbox/editing/history.hpp"
 
 namespace candela::sandbox {
 
 // Adding, copying and deleting. All of these are one edit of the history.
 
-enum class LightKind : std::uint8_t { point, spot, directional };
-
 /// Whether the entity is a light of any kind.
 [[nodiscard]] bool is_light(const World& world, Entity entity);
-/// Whether the direction of the light matters: a spot or directional light.
+/// Whether the entity is a light that shines in a direction.
 [[nodiscard]] bool has_direction(const World& world, Entity entity);
+/// Whether it matters where the entity is. Only that of a light infinitely far away does not.
+[[nodiscard]] bool has_place(const World& world, Entity entity);
 /// Whether the entity has any component.
 [[nodiscard]] bool is_present(const World& world, Entity entity);
 
@@ -25,10 +25,10 @@ enum class LightKind : std::uint8_t { point, spot, directional };
 /// "lamp 3" become "lamp 2" if there is a "lamp" and no "lamp 2".
 [[nodiscard]] std::string unique_name(const World& world, const std::string& wanted);
 
-/// Adds a light at a world-space position; spot and directional lights point along `direction` (length > 0).
+/// Adds a light at a world-space position; if it has a direction, it shines along `direction` (length > 0).
 /// It is as bright as the brightest light of its kind; the first of its kind lights a surface at the distance
 /// `reach` (metres) with 2 lux.
-Entity add_light(World& world, History& history, LightKind kind, const glm::vec3& position,
+Entity add_light(World& world, History& history, const AnyLight& light, const glm::vec3& position,
                  const glm::vec3& direction, float reach);
 
 /// Copies an entity with everything below it, and moves the copy by `offset` (metres, world space).

@@ -80,9 +80,7 @@ void draw_selection(const World& world, std::optional<Entity>& selected) {
     const bool open = ImGui::BeginCombo("selected", selected ? name_of(world, *selected).c_str() : "nothing");
     note_control("selected", "a light or an object; or click on it in the picture");
     if (!open) return;
-    for (auto [entity, light] : world.view<PointLight>()) list_entity(world, entity, selected);
-    for (auto [entity, light] : world.view<SpotLight>()) list_entity(world, entity, selected);
-    for (auto [entity, light] : world.view<DirectionalLight>()) list_entity(world, entity, selected);
+    visit_lights(world, [&](Entity entity, const auto& /*light*/) { list_entity(world, entity, selected); });
     ImGui::Separator();
     for (auto [entity, mesh] : world.view<MeshInstance>()) list_entity(world, entity, selected);
     ImGui::EndCombo();
@@ -139,7 +137,11 @@ void draw_range(float& range) {
     if (limited) drag("range, m", range, 0.02F, 1e-3F, any, "metres; the light is zero from there on");
 }
 
-void draw_cones(SpotLight& light) {
+/// What only this kind of light has.
+template <class Light>
+void draw_shape(Light& /*light*/) {}
+
+void draw_shape(SpotLight& light) {
     constexpr float widest = 90.0F;
     constexpr float narrowest = 0.1F;
     float inner = glm::degrees(light.inner_cone);
@@ -156,34 +158,15 @@ void draw_cones(SpotLight& light) {
     light.outer_cone = glm::radians(outer);
 }
 
-/// What all kinds of lights have.
 template <class Light>
-void draw_emission(Light& light, float Light::*strength, const char* unit) {
-    drag(unit, light.*strength, 0.05F + 0.01F * light.*strength, 0.0F, any,
-         "of the light, in the middle of its cone");
+void draw_light(Light& light) {
+    const LightTraits<Light>& kind = light_traits<Light>;
+    float& strength = strength_of(light);
+    drag(kind.unit, strength, 0.05F + 0.01F * strength, 0.0F, any, "of the light, in the middle of its cone");
     colour("colour", light.colour, "linear RGB; multiplies the strength");
     checkbox("casts shadow", light.casts_shadow, "whether surfaces block its light");
-}
-
-void draw_light(World& world, Entity entity) {
-    if (world.has<PointLight>(entity)) {
-        world.edit<PointLight>(entity, [](PointLight& light) {
-            draw_emission(light, &PointLight::intensity, "candela");
-            draw_range(light.range);
-        });
-    }
-    if (world.has<SpotLight>(entity)) {
-        world.edit<SpotLight>(entity, [](SpotLight& light) {
-            draw_emission(light, &SpotLight::intensity, "candela");
-            draw_range(light.range);
-            draw_cones(light);
-        });
-    }
-    if (world.has<DirectionalLight>(entity)) {
-        world.edit<DirectionalLight>(entity, [](DirectionalLight& light) {
-            draw_emission(light, &DirectionalLight::illuminance, "lux");
-        });
-    }
+    if (kind.range != nullptr) draw_range(light.*kind.range);
+    draw_shape(light);
 }
 
 void draw_name(World& world, Entity entity) {
@@ -198,7 +181,7 @@ void draw_fields(Document& document, Entity entity) {
     EntityStates before = states_of(world, {entity});
     draw_name(world, entity);
     draw_transform(world, entity);
-    draw_light(world, entity);
+    edit_lights_of(world, entity, [](auto& light) { draw_light(light); });
     History& history = document.interaction.history();
     history.record(world, fmt::format("change {}", name_of(world, entity)), std::move(before));
     if (!ImGui::IsAnyItemActive()) history.end_of_gesture();

@@ -5,8 +5,8 @@
 
 #include <glm/geometric.hpp>
 
-#include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/lights.hpp>
 
 #include "sandbox/reference/constants.hpp"
 
@@ -15,27 +15,27 @@ namespace candela::reference {
 namespace {
 
 /// A point light with the entity's pose, which looks along its -Z. The callers fill in what differs.
-Light placed(WorldMatrices& world_matrices, Entity entity, glm::vec3 intensity, bool casts_shadow) {
-    const glm::mat4 to_world = world_matrices(entity);
+template <class Source>
+Light placed(const glm::mat4& to_world, const Source& source) {
     return {.kind = Light::Kind::point,
             .position = glm::vec3(to_world[3]),
             .direction = glm::normalize(-glm::vec3(to_world[2])),
-            .intensity = intensity,
+            .intensity = source.colour * strength_of(source),
             .range = infinity,
             .solid_angle = 4.0F * pi,
             .cone_scale = 0.0F,
             .cone_offset = 1.0F,
-            .casts_shadow = casts_shadow};
+            .casts_shadow = source.casts_shadow};
 }
 
-Light point(WorldMatrices& world_matrices, Entity entity, const PointLight& source) {
-    Light light = placed(world_matrices, entity, source.colour * source.intensity, source.casts_shadow);
+Light light_of(const glm::mat4& to_world, const PointLight& source) {
+    Light light = placed(to_world, source);
     light.range = source.range;
     return light;
 }
 
-Light spot(WorldMatrices& world_matrices, Entity entity, const SpotLight& source) {
-    Light light = placed(world_matrices, entity, source.colour * source.intensity, source.casts_shadow);
+Light light_of(const glm::mat4& to_world, const SpotLight& source) {
+    Light light = placed(to_world, source);
     light.kind = Light::Kind::spot;
     light.range = source.range;
     // As in the reference code of KHR_lights_punctual, including its guard against equal cones.
@@ -46,8 +46,8 @@ Light spot(WorldMatrices& world_matrices, Entity entity, const SpotLight& source
     return light;
 }
 
-Light directional(WorldMatrices& world_matrices, Entity entity, const DirectionalLight& source) {
-    Light light = placed(world_matrices, entity, source.colour * source.illuminance, source.casts_shadow);
+Light light_of(const glm::mat4& to_world, const DirectionalLight& source) {
+    Light light = placed(to_world, source);
     light.kind = Light::Kind::directional;
     return light;
 }
@@ -63,12 +63,9 @@ float cone(const Light& light, glm::vec3 to_light) {
 std::vector<Light> lights_of(const World& world) {
     std::vector<Light> lights;
     WorldMatrices world_matrices(world);
-    for (auto [entity, source] : world.view<PointLight>())
-        lights.push_back(point(world_matrices, entity, source));
-    for (auto [entity, source] : world.view<SpotLight>())
-        lights.push_back(spot(world_matrices, entity, source));
-    for (auto [entity, source] : world.view<DirectionalLight>())
-        lights.push_back(directional(world_matrices, entity, source));
+    visit_lights(world, [&](Entity entity, const auto& source) {
+        lights.push_back(light_of(world_matrices(entity), source));
+    });
     return lights;
 }
 

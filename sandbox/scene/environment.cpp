@@ -13,9 +13,9 @@ bool has_light(const World& world) {
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         if (emits(*instance.mesh)) return true;
     }
-    return world.count<PointLight>() + world.count<SpotLight>() + world.count<DirectionalLight>() +
-               world.count<Environment>() >
-           0;
+    std::size_t lights = world.count<Environment>();
+    for_each_light_kind([&]<class Light>(const LightTraits<Light>&) { lights += world.count<Light>(); });
+    return lights > 0;
 }
 
 Environment to_environment(const SkyChoice& choice) {

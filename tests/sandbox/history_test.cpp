@@ -175,13 +175,13 @@ TEST_SUITE("objects") {
     TEST_CASE("an added light stands and points as told, and undo takes all of it away") {
         World world;
         History history;
-        const Entity spot = add_light(world, history, LightKind::spot, {1, 2, 3}, {0, -2, 0}, 3.0F);
+        const Entity spot = add_light(world, history, SpotLight{}, {1, 2, 3}, {0, -2, 0}, 3.0F);
         CHECK(position_of(world, spot) == glm::vec3(1, 2, 3));
         CHECK(glm::distance(direction_of(world, spot), {0, -1, 0}) < 1e-6F);
         // E = I / d² is 2 lux at 3 metres.
         CHECK(world.get<SpotLight>(spot).intensity == 18.0F);
         world.edit<SpotLight>(spot, [](SpotLight& light) { light.intensity = 5.0F; });
-        const Entity next = add_light(world, history, LightKind::spot, {}, {1, 0, 0}, 3.0F);
+        const Entity next = add_light(world, history, SpotLight{}, {}, {1, 0, 0}, 3.0F);
         CHECK(world.get<SpotLight>(next).intensity == 5.0F);
         CHECK(world.get<Name>(next).value == "spot light 2");
         history.undo(world);
