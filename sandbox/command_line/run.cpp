@@ -27,8 +27,8 @@
 #include "sandbox/headless/report.hpp"
 #include "sandbox/scene/environment.hpp"
 #include "sandbox/scene/scene.hpp"
+#include "sandbox/window/run_window.hpp"
 #include "sandbox/window/window.hpp"
-#include "sandbox/window/window_session.hpp"
 
 namespace candela::sandbox {
 

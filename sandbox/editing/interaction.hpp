@@ -68,6 +68,7 @@ class Interaction {
     /// The scene camera that the viewer last started from.
     [[nodiscard]] Entity camera() const { return viewer_.camera(); }
     [[nodiscard]] History& history() { return history_; }
+    [[nodiscard]] const History& history() const { return history_; }
     [[nodiscard]] const SceneRays& surfaces() const { return surfaces_; }
     /// The entity that is being dragged.
     [[nodiscard]] std::optional<Entity> dragged() const;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "sandbox/editing/viewport.hpp"
-#include "sandbox/window/render_thread.hpp"
+#include "sandbox/window/frame_request.hpp"
 
 namespace candela::sandbox {
 

@@ -16,6 +16,7 @@ using MakeReference = std::function<std::unique_ptr<LiveReference>(std::function
 /// The reference of what the window shows: it is traced while nothing changes.
 class ReferenceView {
  public:
+    ReferenceView() = default;
     explicit ReferenceView(std::unique_ptr<LiveReference> tracer) : tracer_(std::move(tracer)) {}
 
     /// Whether the path tracer is built in.

@@ -8,75 +8,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include <glm/vec2.hpp>
-
-#include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
-#include "sandbox/files/picture.hpp"
+#include "sandbox/window/frame_request.hpp"
 #include "sandbox/window/thread_context.hpp"
 
 namespace candela::sandbox {
-
-using Clock = std::chrono::steady_clock;
-
-/// What the render thread is to show.
-struct FrameRequest {
-    std::shared_ptr<const World> world;  ///< a copy that nobody changes
-    Entity camera;
-    glm::uvec2 size{1};  ///< pixels
-    Configuration configuration;
-    std::optional<Configuration> other{};  ///< the same view is rendered with this one, too
-    /// Linear radiance that is tone-mapped into RenderedFrame::other, instead of `other`; may be null.
-    std::shared_ptr<const Picture> reference{};
-    std::optional<float> difference{};       ///< fills RenderedFrame::difference: this factor
-    std::optional<Inspection> inspection{};  ///< fills RenderedFrame::inspection
-    bool read_vpls = false;                  ///< fills RenderedFrame::vpls
-    bool read_radiance = false;              ///< fills RenderedFrame::radiance
-    bool cut = false;  ///< nothing moves on from the request before: no frame of reduced quality comes first
-    /// When the oldest input event that this request answers arrived.
-    std::optional<Clock::time_point> input{};
-    bool operator==(const FrameRequest&) const = default;
-};
-
-/// A VPL as the user sees it.
-struct VplDot {
-    glm::vec3 position{0.0F};  ///< world space, metres
-    glm::vec3 normal{0.0F};
-    glm::vec3 flux{0.0F};  ///< linear, in the lights' unit of flux
-    float area = 0.0F;     ///< m², of its cell; 0 for VPLs on paths
-};
-
-/// A texture that the render thread has finished, valid until the next call of RenderThread::take.
-struct FinishedTexture {
-    std::uint32_t texture = 0;  ///< GL name, rgba8, tone-mapped; the bottom row first
-    glm::uvec2 size{0};         ///< pixels
-};
-
-/// A frame that is ready to be shown.
-struct RenderedFrame {
-    std::uint64_t request = 0;  ///< its number
-    FinishedTexture picture;
-    std::optional<FinishedTexture> other;
-    std::optional<FinishedTexture> difference;   ///< |picture - other|, times the factor
-    std::optional<InspectionResult> inspection;  ///< its texture is like the others here
-    BufferElements elements;                 ///< the first ones of the inspected resource, if it is a buffer
-    std::optional<Clock::time_point> input;  ///< of the request, in its first frame only
-    /// Why the picture is older than the request, one per string: errors in its configuration, or what the
-    /// renderer threw.
-    std::vector<std::string> errors;
-    Configuration configuration;  ///< that the picture was rendered with
-    bool settled = false;         ///< no better picture of this request will follow
-    Quality quality;
-    std::shared_ptr<const Report> report;  ///< of this frame or of one shortly before; null after an error
-    std::vector<FrameReport> times;        ///< of frames whose GPU times have arrived since the last frame
-    std::shared_ptr<const std::string> graph;  ///< Renderer::describe as JSON
-    std::vector<VplDot> vpls;
-    std::shared_ptr<const Picture> radiance;
-};
 
 /// What a render thread is doing.
 enum class RenderStage : std::uint8_t { idle, compiling, rendering };

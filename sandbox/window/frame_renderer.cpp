@@ -1,0 +1,211 @@
+#include "sandbox/window/frame_renderer.hpp"
+
+#include <exception>
+#include <span>
+#include <utility>
+
+#include <glm/vec4.hpp>
+
+#include "sandbox/candela_private/gl.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+FinishedTexture finished(const Canvas& canvas) {
+    return {canvas.colour.name(), canvas.size()};
+}
+
+std::vector<VplDot> read_dots(gl::Device& device, const FrameResults& results) {
+    std::vector<gpu::Vpl> vpls(results.vpl_count);
+    if (vpls.empty()) return {};
+    gl::read_buffer(device.gl(), results.vpl_buffer, std::as_writable_bytes(std::span(vpls)));
+    std::vector<VplDot> dots;
+    dots.reserve(vpls.size());
+    for (const gpu::Vpl& vpl : vpls) {
+        if (vpl.map == IN_SKY || vpl.normal == glm::vec3(0.0F)) continue;
+        dots.push_back({vpl.position, vpl.normal, vpl.flux, vpl.area});
+    }
+    return dots;
+}
+
+std::shared_ptr<const Picture> read_radiance(gl::Device& device, const ResultTexture& result) {
+    if (result.texture == 0) return nullptr;
+    const std::vector<glm::vec4> texels = gl::read_texels(device.gl(), result.texture, result.size);
+    return std::make_shared<const Picture>(
+        flipped({glm::ivec2(result.size), {texels.begin(), texels.end()}}));
+}
+
+}  // namespace
+
+FrameRenderer::FrameRenderer(gl::GetProc functions, RendererOptions options)
+    : functions_(std::move(functions)),
+      options_(std::move(options)),
+      device_(functions_, gl::DebugOutput::off),
+      renderer_(make_renderer()) {}
+
+std::unique_ptr<Renderer> FrameRenderer::make_renderer() const {
+    return std::make_unique<Renderer>(functions_, options_);
+}
+
+void FrameRenderer::begin(FrameRequest request, std::uint64_t number) {
+    request_ = std::move(request);
+    number_ = number;
+    errors_.clear();
+}
+
+bool FrameRenderer::needs_compiling() const {
+    return !has_rendered_ || request_->configuration != renderer_->configuration() ||
+           (request_->other && (!other_ || *request_->other != other_->configuration()));
+}
+
+RenderedFrame FrameRenderer::render(std::size_t slot_index, bool reload) {
+    Slot& slot = slots_.at(slot_index);
+    RenderedFrame frame;
+    try {
+        if (reload) reload_error_ = replace_renderers();
+        frame = render_request(slot);
+    } catch (const std::exception& error) {
+        errors_.emplace_back(error.what());
+        // The slot may hold a part of a frame, or none.
+        fit(slot.picture, request_->size);
+        frame.picture = finished(slot.picture);
+        settled_ = true;
+    }
+    frame.request = number_;
+    frame.errors = errors_;
+    if (reload_error_) frame.errors.push_back(*reload_error_);
+    frame.settled = settled_;
+    frame.configuration = renderer_->configuration();
+    device_.finish();
+    return frame;
+}
+
+/// Returns why not, and keeps the old renderers, if a shader does not compile.
+std::optional<std::string> FrameRenderer::replace_renderers() {
+    try {
+        std::unique_ptr<Renderer> renderer = make_renderer();
+        const std::vector<std::string> errors = renderer->configure(renderer_->configuration());
+        if (!errors.empty()) return errors.front();
+        inspector_ = std::make_unique<ResourceInspector>(*renderer);
+        renderer_ = std::move(renderer);
+    } catch (const gl::ProgramError& error) {
+        return error.what();
+    }
+    other_.reset();
+    graph_.reset();
+    return std::nullopt;
+}
+
+RenderedFrame FrameRenderer::render_request(Slot& slot) {
+    Configuration wanted = request_->configuration;
+    if (std::exchange(request_->cut, false)) wanted.frame_budget_ms = 0.0F;
+    if (wanted != renderer_->configuration() && errors_.empty()) {
+        errors_ = renderer_->configure(wanted);
+        graph_.reset();
+    }
+    RenderedFrame frame;
+    if (request_->inspection != inspector_->shown()) {
+        for (const std::string& error : inspector_->show(request_->inspection)) errors_.push_back(error);
+        graph_.reset();
+    }
+    draw(*renderer_, slot.picture);
+    draw_second(frame, slot);
+    if (request_->inspection) inspect(frame, slot.inspection);
+    device_.finish();
+    settled_ = renderer_->settled() && (!other_ || other_->settled());
+    has_rendered_ = true;
+    frame.picture = finished(slot.picture);
+    frame.quality = renderer_->quality();
+    frame.report = report();
+    frame.times = renderer_->take_frames(true);
+    frame.graph = graph();
+    const FrameResults results = renderer_->results();
+    if (request_->read_vpls) frame.vpls = read_dots(device_, results);
+    if (request_->read_radiance) frame.radiance = read_radiance(device_, results.radiance);
+    return frame;
+}
+
+/// The picture to compare with.
+void FrameRenderer::draw_second(RenderedFrame& frame, Slot& slot) {
+    if (request_->reference || !request_->other) other_.reset();
+    if (request_->reference) {
+        draw_reference(slot.other);
+    } else if (request_->other) {
+        draw_other(slot.other);
+    } else {
+        return;
+    }
+    frame.other = finished(slot.other);
+    if (request_->difference && frame.other->size == request_->size)
+        frame.difference = draw_difference_of(slot);
+}
+
+/// Gives the canvas this size, in pixels.
+void FrameRenderer::fit(Canvas& canvas, glm::uvec2 size) {
+    if (canvas.colour.name() == 0 || canvas.size() != size) canvas = Canvas(device_, size, Format::rgba8);
+}
+
+void FrameRenderer::draw(Renderer& renderer, Canvas& canvas) {
+    fit(canvas, request_->size);
+    const RenderView view{.camera = request_->camera,
+                          .target = canvas.target(),
+                          .keep = {.radiance = request_->read_radiance, .vpls = request_->read_vpls}};
+    renderer.render(*request_->world, std::span(&view, 1));
+}
+
+void FrameRenderer::draw_other(Canvas& canvas) {
+    if (!other_) other_ = make_renderer();
+    for (const std::string& error : other_->configure(*request_->other)) errors_.push_back(error);
+    draw(*other_, canvas);
+}
+
+/// Reading the report back takes time, so this is done a few times per second, and for the last frame.
+std::shared_ptr<const Report> FrameRenderer::report() {
+    constexpr std::chrono::milliseconds interval(250);
+    const Clock::time_point now = Clock::now();
+    if (!report_ || settled_ || now - report_time_ > interval) {
+        report_ = std::make_shared<const Report>(renderer_->report());
+        report_time_ = now;
+    }
+    return report_;
+}
+
+FinishedTexture FrameRenderer::draw_difference_of(Slot& slot) {
+    fit(slot.difference, request_->size);
+    draw_difference(*renderer_, slot.picture.colour.name(), slot.other.colour.name(), *request_->difference,
+                    slot.difference.target());
+    return finished(slot.difference);
+}
+
+void FrameRenderer::inspect(RenderedFrame& frame, Canvas& canvas) {
+    constexpr std::uint64_t most_elements = 256;
+    frame.inspection = inspector_->result();
+    if (frame.inspection->texture == 0) {
+        frame.elements = inspector_->read_buffer(0, most_elements);
+        return;
+    }
+    fit(canvas, frame.inspection->size);
+    gl::copy_texels(device_.gl(), frame.inspection->texture, canvas.colour.name(), frame.inspection->size);
+    frame.inspection->texture = canvas.colour.name();
+}
+
+void FrameRenderer::draw_reference(Canvas& canvas) {
+    const Picture& picture = *request_->reference;
+    fit(canvas, picture.size);
+    renderer_->tone_map(flipped(picture).pixels, canvas.target());
+}
+
+/// The description changes with the graph, which also depends on the scene.
+std::shared_ptr<const std::string> FrameRenderer::graph() {
+    const auto& passes = renderer_->last_passes();
+    std::vector<std::string> names;
+    names.reserve(passes.size());
+    for (const PassRecord& pass : passes) names.emplace_back(pass.name);
+    if (!graph_ || names != graph_passes_)
+        graph_ = std::make_shared<const std::string>(renderer_->describe(GraphFormat::json));
+    graph_passes_ = std::move(names);
+    return graph_;
+}
+
+}  // namespace candela::sandbox

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <candela/gl_loader.hpp>
+#include <candela/inspection.hpp>
+#include <candela/renderer.hpp>
+#include "sandbox/headless/canvas.hpp"
+#include "sandbox/window/frame_request.hpp"
+
+namespace candela::sandbox {
+
+/// Renders the frames that requests ask for, into textures of its own. To be used like the renderer: in the
+/// GL context in which it was made.
+class FrameRenderer {
+ public:
+    /// Sets of textures. A frame leaves those of the other slots as they are.
+    static constexpr std::size_t slots = 3;
+
+    /// Throws what the Renderer throws.
+    FrameRenderer(gl::GetProc functions, RendererOptions options);
+
+    /// Replaces the request before it.
+    void begin(FrameRequest request, std::uint64_t number);
+    [[nodiscard]] bool has_request() const { return request_.has_value(); }
+    /// Whether rendering the request again would give the same picture.
+    [[nodiscard]] bool settled() const { return settled_; }
+    /// Whether the next frame has another graph than the last one, whose shaders may have to be compiled.
+    [[nodiscard]] bool needs_compiling() const;
+
+    /// The next frame of the request, in the textures of this slot, without RenderedFrame::input. With
+    /// `reload` it reads the shaders again. Throws nothing of the renderer's: RenderedFrame::errors has it.
+    [[nodiscard]] RenderedFrame render(std::size_t slot_index, bool reload);
+
+    [[nodiscard]] Renderer& renderer() { return *renderer_; }
+
+ private:
+    struct Slot {
+        Canvas picture;
+        Canvas other;
+        Canvas difference;
+        Canvas inspection;
+    };
+
+    [[nodiscard]] std::unique_ptr<Renderer> make_renderer() const;
+    std::optional<std::string> replace_renderers();
+    RenderedFrame render_request(Slot& slot);
+    void fit(Canvas& canvas, glm::uvec2 size);
+    void draw(Renderer& renderer, Canvas& canvas);
+    void draw_second(RenderedFrame& frame, Slot& slot);
+    void draw_other(Canvas& canvas);
+    void draw_reference(Canvas& canvas);
+    FinishedTexture draw_difference_of(Slot& slot);
+    void inspect(RenderedFrame& frame, Canvas& canvas);
+    std::shared_ptr<const Report> report();
+    std::shared_ptr<const std::string> graph();
+
+    gl::GetProc functions_;
+    RendererOptions options_;
+    gl::Device device_;
+    std::unique_ptr<Renderer> renderer_;
+    std::unique_ptr<ResourceInspector> inspector_ = std::make_unique<ResourceInspector>(*renderer_);
+    std::unique_ptr<Renderer> other_;  ///< while a request has a second configuration
+    std::array<Slot, slots> slots_;
+    std::optional<FrameRequest> request_;
+    std::uint64_t number_ = 0;
+    std::vector<std::string> errors_;          ///< of the request
+    std::optional<std::string> reload_error_;  ///< of the shaders that were read last
+    bool settled_ = true;
+    bool has_rendered_ = false;
+    std::shared_ptr<const Report> report_;
+    Clock::time_point report_time_;
+    std::shared_ptr<const std::string> graph_;
+    std::vector<std::string> graph_passes_;
+};
+
+}  // namespace candela::sandbox

@@ -1,0 +1,48 @@
+#include "sandbox/window/save_commands.hpp"
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sandbox/animation/script_writer.hpp"
+#include "sandbox/files/numbered_file.hpp"
+#include "sandbox/files/output_file.hpp"
+
+namespace candela::sandbox {
+
+SavedScene save_document(Document& document) {
+    const std::filesystem::path path = next_numbered_file(".gltf");
+    const std::array of_app{document.interaction.viewer()};
+    std::vector<std::string> warnings = save_scene(document.scene.world, path, of_app);
+    document.interaction.history().mark_saved();
+    return {path, std::move(warnings)};
+}
+
+std::filesystem::path save_configuration(const Configuration& configuration) {
+    std::filesystem::path path = next_numbered_file("-config.json");
+    write_text(path, write_configuration(configuration) + "\n");
+    return path;
+}
+
+std::string toggle_recording(Document& document) {
+    if (!document.recorder) {
+        const std::optional<Entity> selected = document.interaction.selected;
+        if (!selected) throw std::runtime_error("select what is to be recorded first");
+        document.recorder.emplace(document.scene.world, *selected);
+        return "recording the motion of the selection; Ctrl+R ends it";
+    }
+    const std::filesystem::path path = next_numbered_file("-animation.json");
+    const Script script = document.recorder->finish();
+    document.recorder.reset();
+    save_script(script, document.scene.path, path);
+    return written(path);
+}
+
+std::string written(const std::filesystem::path& path) {
+    return fmt::format("wrote {}", std::filesystem::absolute(path).lexically_normal().string());
+}
+
+}  // namespace candela::sandbox

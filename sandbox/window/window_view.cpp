@@ -1,0 +1,95 @@
+#include "sandbox/window/window_view.hpp"
+
+#include <candela/scene/hierarchy.hpp>
+#include "sandbox/panels/controls.hpp"
+#include "sandbox/panels/overlay.hpp"
+#include "sandbox/panels/quality_panel.hpp"
+#include "sandbox/panels/resource_view.hpp"
+#include "sandbox/panels/scene_panel.hpp"
+#include "sandbox/panels/view_panel.hpp"
+#include "sandbox/panels/vpl_dots.hpp"
+#include "sandbox/window/gui.hpp"
+
+namespace candela::sandbox {
+
+namespace {
+
+void draw_pictures(const RenderedFrame& shown, const Comparison& comparison, const Rectangle& scene) {
+    const bool is_difference = shown.difference && comparison.mode == CompareMode::difference;
+    draw_picture(is_difference ? shown.difference->texture : shown.picture.texture, scene);
+    if (shown.other && comparison.mode == CompareMode::divider)
+        draw_picture(shown.other->texture, scene, comparison.divider, 1.0F);
+}
+
+void draw_overlay(const SessionState& state) {
+    const Interaction& interaction = state.document->interaction;
+    const World& world = state.document->scene.world;
+    const Rectangle& scene = state.layout.scene;
+    const Viewport viewport = make_viewport(world, interaction.viewer(), scene.size, scene.corner);
+    const glm::vec3 eye(world_matrix(world, interaction.viewer())[3]);
+    if (state.app.vpls) {
+        draw_vpl_dots(state.shown->vpls, viewport,
+                      [&](const glm::vec3& point) { return !interaction.surfaces().blocked(eye, point); });
+    }
+    const Overlay overlay = interaction.overlay(viewport, !ImGui::GetIO().WantCaptureMouse);
+    draw_lights(overlay.lights);
+    if (overlay.gizmo) draw_gizmo(*overlay.gizmo, overlay.active);
+}
+
+/// A tab, whose content `draw` draws while it is open.
+template <class F>
+void tab(const char* name, const char* tip, const F& draw) {
+    const bool open = ImGui::BeginTabItem(name);
+    note_control(name, tip);
+    if (!open) return;
+    draw();
+    ImGui::EndTabItem();
+}
+
+void draw_tabs(SessionState& state, std::vector<Action>& wanted) {
+    tab("Scene", "cameras, lights, objects, animation", [&] {
+        if (state.document) wanted = draw_scene_panel(*state.document, state.app, state.report());
+    });
+    tab("Quality", "how a frame is computed",
+        [&] { draw_quality_panel(state.app.configuration, state.shown ? state.shown->quality : Quality{}); });
+    tab("Light", "what of the light is shown; comparisons",
+        [&] { draw_view_panel(state.app, state.reference, state.costs.frame().mean_ms); });
+    tab("Graph", "what the frame graph does, and what it costs",
+        [&] { draw_graph_panel(state.selection, state.graph, state.costs); });
+}
+
+}  // namespace
+
+void draw_scene(SessionState& state, glm::vec2 window) {
+    ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, {window.x, window.y},
+                                                  IM_COL32(24, 24, 26, 255));
+    if (!state.shown || !state.document) return;
+    const RenderedFrame& shown = *state.shown;
+    if (state.selection.resource && shown.inspection)
+        return draw_resource(*state.selection.resource, state.selection.inspection, *shown.inspection,
+                             shown.elements, state.layout.scene);
+    draw_pictures(shown, state.app.comparison, state.layout.scene);
+    draw_overlay(state);
+    draw_divider(state.app.comparison, state.layout.scene);
+}
+
+std::vector<Action> draw_panel(SessionState& state) {
+    const Rectangle& panel = state.layout.panel;
+    if (panel.size.x < 1.0F) return {};
+    std::vector<Action> wanted;
+    ImGui::SetNextWindowPos({panel.corner.x, panel.corner.y});
+    ImGui::SetNextWindowSize({panel.size.x, panel.size.y});
+    constexpr ImGuiWindowFlags docked = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
+                                        ImGuiWindowFlags_NoBringToFrontOnFocus;
+    if (ImGui::Begin("panel", nullptr, docked) && ImGui::BeginTabBar("tabs")) {
+        ImGui::PushItemWidth(0.55F * ImGui::GetContentRegionAvail().x);
+        draw_tabs(state, wanted);
+        ImGui::PopItemWidth();
+        ImGui::EndTabBar();
+    }
+    ImGui::End();
+    return wanted;
+}
+
+}  // namespace candela::sandbox
