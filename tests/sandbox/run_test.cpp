@@ -9,6 +9,7 @@
 
 #include "sandbox/files/picture.hpp"
 #include "sandbox/scene/scene.hpp"
+#include "tests/sandbox/picture_reader.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 namespace candela::sandbox {

@@ -11,6 +11,7 @@
 
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/files/picture.hpp"
+#include "tests/sandbox/picture_reader.hpp"
 #include "tests/study/flip.hpp"
 #include "tests/study/heat.hpp"
 #include "tests/study/measures.hpp"

@@ -50,8 +50,9 @@ TEST_SUITE("compare") {
         picture.pixels[1] = glm::vec3(1.5F);
         picture.pixels[3] = glm::vec3(9.0F);
         write_pfm(folder / "a.pfm", picture);
-        const std::vector<float> mask{1.0F, 1.0F, 1.0F, 0.0F};
-        sandbox::write_grey_pfm(folder / "mask.pfm", {2, 2}, mask);
+        Picture mask = constant({2, 2}, glm::vec3(1.0F));
+        mask.pixels[3] = glm::vec3(0.0F);
+        write_pfm(folder / "mask.pfm", mask);
         const std::string text =
             compare({folder / "a.pfm", folder / "b.pfm", folder / "mask.pfm", folder / "heat.png", {}});
         // 0.25 / 1.01 / 3, and the square root of the pixel's own 0.25 / 1.01.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sandbox/files/output_file.hpp"
+#include "tests/sandbox/picture_reader.hpp"
 #include "tests/study/scene_hash.hpp"
 
 namespace candela::study {
