@@ -9,8 +9,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/hierarchy.hpp>
-#include "sandbox/candela_private/rays.hpp"
 #include "sandbox/editing/placing.hpp"
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 

@@ -91,19 +91,4 @@ std::vector<Entity> family_of(const World& world, Entity entity) {
     return family;
 }
 
-Box box_of(const World& world, const std::vector<Entity>& entities) {
-    Box box;
-    WorldMatrices world_matrices(world);
-    for (const Entity entity : entities) {
-        const auto* instance = world.find<MeshInstance>(entity);
-        if (instance == nullptr) continue;
-        const glm::mat4 to_world = world_matrices(entity);
-        for (const Primitive& primitive : instance->mesh->primitives) {
-            for (const Vertex& vertex : primitive.vertices)
-                box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));
-        }
-    }
-    return box;
-}
-
 }  // namespace candela::sandbox

@@ -7,7 +7,6 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
-#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 
@@ -35,8 +34,5 @@ void aim(World& world, Entity entity, const glm::vec3& direction);
 
 /// The entity and all that has it among its parents, ascending.
 [[nodiscard]] std::vector<Entity> family_of(const World& world, Entity entity);
-
-/// The box around the meshes of these entities; world space, metres. Empty without meshes.
-[[nodiscard]] Box box_of(const World& world, const std::vector<Entity>& entities);
 
 }  // namespace candela::sandbox

@@ -14,7 +14,6 @@
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
-#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 
@@ -101,16 +100,25 @@ std::optional<std::string> animation_of(const Scene& scene) {
     return scene.animation ? std::optional(scene.animation->script().path.string()) : std::nullopt;
 }
 
-Bounds bounds(const World& world) {
+Box box_of(const World& world, const std::vector<Entity>& entities) {
     Box box;
     WorldMatrices world_matrices(world);
-    for (auto [entity, instance] : world.view<MeshInstance>()) {
+    for (const Entity entity : entities) {
+        const auto* instance = world.find<MeshInstance>(entity);
+        if (instance == nullptr) continue;
         const glm::mat4 to_world = world_matrices(entity);
-        for (const Primitive& primitive : instance.mesh->primitives) {
+        for (const Primitive& primitive : instance->mesh->primitives) {
             for (const Vertex& vertex : primitive.vertices)
                 box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));
         }
     }
+    return box;
+}
+
+Bounds bounds(const World& world) {
+    std::vector<Entity> all;
+    for (auto [entity, instance] : world.view<MeshInstance>()) all.push_back(entity);
+    const Box box = box_of(world, all);
     if (box.lower.x > box.upper.x) return {};
     return {(box.lower + box.upper) * 0.5F, glm::length(box.upper - box.lower) * 0.5F};
 }

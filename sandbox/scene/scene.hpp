@@ -11,6 +11,7 @@
 #include <candela/ecs/world.hpp>
 #include <candela/scene/gltf.hpp>
 #include "sandbox/animation/animation.hpp"
+#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 
@@ -46,6 +47,9 @@ struct Scene {
 /// export_gltf.
 std::vector<std::string> save_scene(const World& world, const std::filesystem::path& path,
                                     std::span<const Entity> of_app);
+
+/// The box around the meshes of these entities; world space, metres. Empty without meshes.
+[[nodiscard]] Box box_of(const World& world, const std::vector<Entity>& entities);
 
 /// The bounding sphere of the bounding box of all mesh instances; world space, metres. Radius 0 without
 /// meshes.

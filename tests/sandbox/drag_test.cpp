@@ -9,6 +9,7 @@
 
 #include <candela/scene/hierarchy.hpp>
 #include "sandbox/editing/placing.hpp"
+#include "sandbox/scene/scene.hpp"
 #include "tests/sandbox/editing_scene.hpp"
 
 namespace candela::sandbox {
@@ -25,7 +26,7 @@ constexpr float tolerance_world = 1e-4F;
 constexpr float gap = 0.1F;
 
 /// A room's floor at y = 0 and a light over it, seen obliquely from above.
-struct Scene {
+struct EditedScene {
     World world;
     Entity floor = add_mesh(world, square(10.0F),
                             {.rotation = glm::angleAxis(-glm::half_pi<float>(), glm::vec3(1, 0, 0))});
@@ -33,7 +34,7 @@ struct Scene {
     Viewport viewport = make_viewport(world, eye, size, origin);
     SceneRays surfaces;
 
-    Scene() { surfaces.update_and_wait(world); }
+    EditedScene() { surfaces.update_and_wait(world); }
 
     glm::vec2 seen(const glm::vec3& point) const { return project(viewport, point).value(); }
 
@@ -47,7 +48,7 @@ struct Scene {
 
 TEST_SUITE("drag") {
     TEST_CASE("in the plane of the view, the grabbed point stays under the pointer and keeps its depth") {
-        Scene scene;
+        EditedScene scene;
         const glm::vec3 start(0.3F, 1.2F, 0.4F);
         const Entity light = add_point_light(scene.world, {}, add_skewing_parent(scene.world));
         move_to(scene.world, light, start);
@@ -64,7 +65,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("along an axis, the point stays on the axis and under a pointer that stays on it") {
-        Scene scene;
+        EditedScene scene;
         const glm::vec3 start(0.3F, 1.2F, 0.4F);
         const Entity light = add_point_light(scene.world, {}, add_skewing_parent(scene.world));
         for (const int axis : {0, 1, 2}) {
@@ -84,7 +85,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("along an axis that points at the eye, or beyond its vanishing point, nothing moves") {
-        Scene scene;
+        EditedScene scene;
         const Entity front = add_eye(scene.world, {0.0F, 1.0F, 5.0F}, {0.0F, 1.0F, 0.0F});
         scene.viewport = make_viewport(scene.world, front, size, origin);
         const Entity light = add_point_light(scene.world, {0.0F, 1.0F, 0.0F});
@@ -105,7 +106,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("over a surface, a light keeps the gap and an object rests on it") {
-        Scene scene;
+        EditedScene scene;
         const Entity light = add_point_light(scene.world, {0.0F, 2.0F, 0.0F});
         const Entity parent = add_skewing_parent(scene.world);
         const Entity box = add_mesh(scene.world, cube(0.25F), {.parent = parent});
@@ -130,7 +131,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("turning around an axis follows the pointer, also below a parent") {
-        Scene scene;
+        EditedScene scene;
         const Entity parent = scene.world.create();
         scene.world.set(parent,
                         Transform{.rotation = glm::angleAxis(0.7F, glm::normalize(glm::vec3(1, 2, 3))),
@@ -149,7 +150,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("turning around the view turns the picture of the object") {
-        Scene scene;
+        EditedScene scene;
         const Entity box = add_mesh(scene.world, cube(0.25F), {.translation = {0.0F, 0.5F, 0.0F}});
         const glm::vec2 centre = scene.seen({0.0F, 0.5F, 0.0F});
         CHECK(glm::distance(centre, origin + 0.5F * size) < tolerance_window);
@@ -162,7 +163,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("aiming points a light at what is under the pointer, also below a skewing parent") {
-        Scene scene;
+        EditedScene scene;
         const Entity light = scene.world.create();
         scene.world.set(light, Transform{.parent = add_skewing_parent(scene.world)});
         scene.world.set(light, SpotLight{});
@@ -174,7 +175,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("scaling along an axis keeps the grabbed point under the pointer; uniform scaling doubles") {
-        Scene scene;
+        EditedScene scene;
         const Entity box = add_mesh(scene.world, cube(0.25F),
                                     {.translation = {0.0F, 0.5F, 0.0F},
                                      .rotation = glm::angleAxis(0.4F, glm::vec3(0, 1, 0)),
@@ -198,7 +199,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("whatever is dragged in whatever view, numbers stay finite") {
-        Scene scene;
+        EditedScene scene;
         std::mt19937 random(1);
         std::uniform_real_distribution<float> pointer(-2000.0F, 2000.0F);
         std::uniform_int_distribution<int> whole(-2, 2);
@@ -222,7 +223,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("another mode continues from the start") {
-        Scene scene;
+        EditedScene scene;
         const Entity light = add_point_light(scene.world, {0.0F, 1.0F, 0.0F});
         Drag drag = scene.grab(light, {}, scene.seen({0.0F, 1.0F, 0.0F}));
         scene.follow(drag, {200.0F, 200.0F});
@@ -233,7 +234,7 @@ TEST_SUITE("drag") {
     }
 
     TEST_CASE("below a parent that is scaled to zero nothing moves, turns or aims") {
-        Scene scene;
+        EditedScene scene;
         const Entity parent = scene.world.create();
         scene.world.set(parent, Transform{.scale = {1.0F, 0.0F, 1.0F}});
         const Entity light = add_point_light(scene.world, {1.0F, 0.5F, 0.0F}, parent);
