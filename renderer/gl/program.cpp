@@ -89,7 +89,7 @@ std::optional<std::size_t> value_index(GLenum type, bool is_array) {
     return static_cast<std::size_t>(found - types.begin());
 }
 
-/// Sets the uniform at a location; at -1, OpenGL ignores it.
+/// Sets the uniform at a location.
 struct Setter {
     const Functions& gl;
     GLuint program;
@@ -170,7 +170,13 @@ void Program::find_uniforms() {
 void Program::use(const Uniforms& uniforms) const {
     require_each_once(uniforms);
     for (const Uniform& uniform : uniforms) {
-        std::visit(Setter{gl(), name(), location(uniform.name)}, uniform.value);
+        const auto found = uniforms_.find(uniform.name);
+        if (found == uniforms_.end()) {
+            throw ProgramError(fmt::format("{}: no uniform '{}'", label_, uniform.name));
+        }
+        if (found->second.value_index) {
+            std::visit(Setter{gl(), name(), found->second.location}, uniform.value);
+        }
     }
     gl().UseProgram(name());
 }
@@ -187,12 +193,6 @@ void Program::require_each_once(const Uniforms& uniforms) const {
         if (found->value.index() != known.value_index) fail("has another type");
         if (std::find_if(found + 1, uniforms.end(), is_meant) != uniforms.end()) fail("is set twice");
     }
-}
-
-GLint Program::location(std::string_view uniform) const {
-    const auto found = uniforms_.find(uniform);
-    if (found == uniforms_.end()) throw ProgramError(fmt::format("{}: no uniform '{}'", label_, uniform));
-    return found->second.location;
 }
 
 Program compile(Device& device, const ShaderLibrary& library, const std::vector<std::string>& stages,

@@ -33,13 +33,11 @@ class Program : public Object {
  private:
     void link(std::string_view label, std::span<const GLuint> shaders) const;
     void find_uniforms();
-    /// -1, which OpenGL ignores, for uniforms that are not active.
-    [[nodiscard]] GLint location(std::string_view uniform) const;
     void require_each_once(const Uniforms& uniforms) const;
 
     struct Known {
-        GLint location = -1;  // -1: declared, but not active
-        /// Index in Uniform::Value of its type; none for textures, images and what is not active.
+        GLint location = -1;
+        /// Index in Uniform::Value of its type; none for textures and images, and if it is not active.
         std::optional<std::size_t> value_index{};
     };
     std::string label_;
