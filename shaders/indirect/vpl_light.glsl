@@ -26,8 +26,8 @@ float geometry_term(Vpl vpl, Surface surface) {
     float height = -dot(vpl.normal, to_vpl);
     if (height <= -vpl_constants.crease_slack) return 0.0;
     height = max(height, 0.0);
-    float tilt = tilt_of(vpl.normal, surface.normal) * share_on_surface(vpl, -to_vpl - height * vpl.normal);
-    return sinking_disc_term(to_vpl, height, vpl.normal, vpl_constants.radius2, tilt, surface.normal);
+    float tilt = tilt_of(vpl.normal, face_normal(surface)) * share_on_surface(vpl, -to_vpl - height * vpl.normal);
+    return sinking_disc_term(to_vpl, height, vpl.normal, vpl_constants.radius2, tilt, shading_normal(surface));
 }
 
 #ifndef SURFELS
@@ -46,6 +46,11 @@ vec3 irradiance_from_vpl(Vpl vpl, Surface surface) { return vpl.flux * visible_g
 
 layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints { LitPoint lit_points[]; };
 
+// disc_term at a visible surface.
+float disc_term_at(Surface surface, vec3 position, vec3 normal, float radius2) {
+    return disc_term(position, normal, radius2, surface.position, face_normal(surface), shading_normal(surface));
+}
+
 // Whether the points of a cell are evaluated one by one: near the cell, and always if it emits light (EMITTERS), as
 // that light is direct.
 bool is_resolved(Vpl vpl, Surface surface) {
@@ -58,12 +63,12 @@ bool is_resolved(Vpl vpl, Surface surface) {
 // π times the unoccluded irradiance from the cell of a surfel.
 vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
     if (!is_resolved(vpl, surface)) {
-        return vpl.flux * disc_term(vpl.position, vpl.normal, vpl.radius2, surface.position, surface.normal);
+        return vpl.flux * disc_term_at(surface, vpl.position, vpl.normal, vpl.radius2);
     }
     vec3 sum = vec3(0.0);
     for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {
         LitPoint point = lit_points[i];
-        sum += point.flux * disc_term(point.position, point.normal, point.area / PI, surface.position, surface.normal);
+        sum += point.flux * disc_term_at(surface, point.position, point.normal, point.area / PI);
     }
     return sum;
 }
@@ -72,7 +77,7 @@ vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
 
 // π times the irradiance from a patch of the sky.
 vec3 irradiance_from_patch(Vpl sky_patch, Surface surface) {
-    PatchLight light = light_of_patch(sky_patch, surface.normal);
+    PatchLight light = light_of_patch(sky_patch, shading_normal(surface));
     if (light.cosine <= 0.0) return vec3(0.0);
     return sky_patch.flux * (light.cosine * visibility_of_sky(light.direction, surface));
 }

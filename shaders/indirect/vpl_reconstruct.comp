@@ -25,7 +25,7 @@ const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in w
 // Tangent plane of the surface at a pixel, in clip space. Its dot product with (x, y, z, 1) in normalised device
 // coordinates is the distance from the plane in pixel widths. See theory.md, "Same surface".
 vec4 tangent_plane(Surface surface) {
-    vec4 plane = vec4(surface.normal, -dot(surface.normal, surface.position)) * view.world_from_clip;
+    vec4 plane = vec4(face_normal(surface), -dot(face_normal(surface), surface.position)) * view.world_from_clip;
     return plane * (0.5 * view.target_size.y / length(view.world_from_clip[1].xyz));
 }
 
@@ -51,9 +51,9 @@ vec4 reconstruct(ivec2 at) {
             if (d < least || d > most || weight == 0.0) continue;
             ivec2 there = at + d * along;
             float z = texelFetch(surface_depth, there, 0).r;
-            vec3 normal = octahedral_decode(texelFetch(surface_normal, there, 0).rg);
+            vec3 normal = visible_face_normal(there);
             float off_plane = float(d) * step_off + plane.z * (z - depth);
-            if (abs(off_plane) > SAME_PLANE || dot(normal, surface.normal) < SAME_NORMAL) continue;
+            if (abs(off_plane) > SAME_PLANE || dot(normal, face_normal(surface)) < SAME_NORMAL) continue;
             vec4 found = texelFetch(gathered, there, 0);
             value += weight * vec4(found.rgb * found.a, found.a);
             fitting += weight;

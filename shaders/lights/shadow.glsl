@@ -119,13 +119,13 @@ float shadow_visibility(uint index, Light light, Surface surface) {
     vec3 position = visible_position(surface, shadow.ray_offset);
     float lit;
     if (shadow.kind == SHADOW_CUBE) {
-        lit = lit_in_cube(shadow, position - light.position, surface.normal);
+        lit = lit_in_cube(shadow, position - light.position, face_normal(surface));
     } else {
-        lit = lit_in_map(shadow, flat_receiver(shadow, position, surface.normal, light.position));
+        lit = lit_in_map(shadow, flat_receiver(shadow, position, face_normal(surface), light.position));
     }
     if (lit == 0.0 || lit == 4.0 || shadow_rays_left == 0) return 0.25 * lit;
     --shadow_rays_left;
-    return is_blocked(shadow, position, surface.normal, light.position) ? 0.0 : 1.0;
+    return is_blocked(shadow, position, face_normal(surface), light.position) ? 0.0 : 1.0;
 }
 
 #endif

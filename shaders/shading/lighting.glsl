@@ -19,7 +19,7 @@ layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light
 // `light` is lights[index].
 vec3 irradiance_from_light(uint index, Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
-    float cos_surface = dot(surface.normal, incident.direction);
+    float cos_surface = dot(shading_normal(surface), incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
     return incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
 }
@@ -93,7 +93,7 @@ void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out ve
 #ifdef SHOW_ALBEDO
         radiance[s] = surfaces[s].albedo;
 #else
-        radiance[s] = 0.5 * surfaces[s].normal + 0.5;
+        radiance[s] = 0.5 * shading_normal(surfaces[s]) + 0.5;
 #endif
     }
 }

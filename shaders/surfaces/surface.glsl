@@ -4,7 +4,7 @@
 
 struct Surface {
     vec3 position;   // world space, metres
-    vec3 normal;     // unit, on the side that the viewer sees
+    vec3 normal;     // to be read through face_normal or shading_normal
     vec3 albedo;     // linear
     vec3 to_viewer;  // unit
     float pixel;     // metres: a pixel's width at the position
@@ -14,6 +14,12 @@ struct PackedSurface {
     vec3 albedo;  // already rounded to half floats
     vec2 normal;  // octahedral
 };
+
+// Visibility, creases and the test whether pixels lie on the same surface use the face normal, and the response to light
+// the shading normal; unit vectors on the side that the viewer sees. Both are the interpolated normal of the vertices, or
+// the host's normal, because no material changes it. One member for both keeps arrays of surfaces small.
+vec3 face_normal(Surface surface) { return surface.normal; }
+vec3 shading_normal(Surface surface) { return surface.normal; }
 
 PackedSurface pack_surface(vec3 albedo, vec3 normal) {
     vec3 rounded = vec3(unpackHalf2x16(packHalf2x16(albedo.rg)), unpackHalf2x16(packHalf2x16(albedo.bb)).x);

@@ -6,6 +6,9 @@
 layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
 layout(binding = UNIT_DEPTH) uniform sampler2D surface_depth;
 
+// Face normal of the surface at a pixel.
+vec3 visible_face_normal(ivec2 at) { return octahedral_decode(texelFetch(surface_normal, at, 0).rg); }
+
 // `depth`: the pixel's window depth. 0 means that there is no surface; the result is then a surface at the near plane,
 // whose light is to be discarded. Depth 0 itself is at infinity, from where a ray would visit every node of the BVH: more
 // than software drivers allow, which then stop all loops of the neighbouring invocations, too.

@@ -11,13 +11,13 @@
 #if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && (defined(EMITTERS) || defined(SKY)))
 
 float visibility_of_sky(vec3 direction, Surface surface) {
-    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * surface.normal;
+    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
     return any_hit(origin, direction, 0.0, 1.0 / 0.0) ? 0.0 : 1.0;
 }
 
 float visibility_by_ray(Vpl vpl, Surface surface) {
     vec3 target = vpl.map_origin + vpl_constants.ray_offset * vpl.normal;
-    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * surface.normal;
+    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
     // At least as high above the VPL's plane as the target.
     origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;
     return any_hit(origin, target - origin, 0.0, 1.0) ? 0.0 : 1.0;
@@ -109,7 +109,7 @@ float vpl_visibility(Vpl vpl, Surface surface) {
     vec3 tangent, bitangent;
     basis_around(vpl.normal, tangent, bitangent);
     mat3 map_from_world = transpose(mat3(tangent, bitangent, vpl.normal));
-    vec3 normal = map_from_world * surface.normal;
+    vec3 normal = map_from_world * face_normal(surface);
     vec3 position = map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(vpl));
     float distance = length(position);
     float height = dot(normal, position);
