@@ -16,25 +16,33 @@
 
 layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 
+// What a surface reflects towards the viewer: a sum over the lights for each lobe of its material, without the factors
+// that all lights share, which radiance_of applies.
+struct Reflected {
+    vec3 diffuse;  // the irradiance
+};
+
+vec3 radiance_of(Reflected reflected, Surface surface) { return surface.albedo / PI * reflected.diffuse; }
+
 // `light` is lights[index].
-vec3 irradiance_from_light(uint index, Light light, Surface surface) {
+void add_light(inout Reflected reflected, uint index, Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
     float cos_surface = dot(shading_normal(surface), incident.direction);
-    if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
-    return incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
+    if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return;
+    reflected.diffuse += incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
 }
 
 #ifndef DIRECT_HIDDEN
 
-// Adds the irradiance from the lights of the surfaces' list. Loops over lights outside and surfaces inside, so that
-// each light is fetched once.
-void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
+// Adds the lights of the surfaces' list. Loops over lights outside and surfaces inside, so that each light is fetched
+// once.
+void add_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
 #ifdef LIGHT_LIST_PER_SURFACE
     for (int s = 0; s < SURFACES; ++s) {
         LightListRange list = light_list_at(pixels[s], surfaces[s].position);
         for (uint i = part_first; i < min(list.size, part_first + part_size); ++i) {
             uint index = light_list_entry(list, i);
-            irradiance[s] += irradiance_from_light(index, lights[index], surfaces[s]);
+            add_light(reflected[s], index, lights[index], surfaces[s]);
         }
     }
 #else
@@ -42,14 +50,14 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
     for (uint i = part_first; i < min(list.size, part_first + part_size); ++i) {
         uint index = light_list_entry(list, i);
         Light light = lights[index];
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_light(index, light, surfaces[s]);
+        for (int s = 0; s < SURFACES; ++s) add_light(reflected[s], index, light, surfaces[s]);
     }
 #endif
 }
 
 #else
 
-void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {}
+void add_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {}
 
 #endif
 
@@ -57,31 +65,35 @@ void gather_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec
 
 layout(binding = UNIT_INDIRECT) uniform sampler2D indirect_irradiance;
 
-// π times the irradiance from the VPLs, as vpl_gather.comp and later passes computed it.
-void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
-    for (int s = 0; s < SURFACES; ++s) irradiance[s] = texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb;
+// Adds the light of the VPLs, as vpl_gather.comp and later passes computed it: π times the irradiance.
+void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
+    for (int s = 0; s < SURFACES; ++s) {
+        reflected[s].diffuse += texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb / PI;
+    }
 }
 
 #elif defined(VPLS)
 
 #include "indirect/vpl_light.glsl"
 
-// π times the irradiance from the VPLs. There are no lists of VPLs, as a VPL reaches everything in front of it. If there
-// are more than MOST_VPLS, every n-th VPL is used and the sum multiplied by n, with an odd n, because paths often have an even
+// Adds the light of the VPLs. There are no lists of VPLs, as a VPL reaches everything in front of it. If there are more
+// than MOST_VPLS, every n-th VPL is used and the sum multiplied by n, with an odd n, because paths often have an even
 // number of VPLs and all bounces should be used; neighbouring pixels use different VPLs.
-void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {
+void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
+    vec3 irradiance[SURFACES];  // times π
+    for (int s = 0; s < SURFACES; ++s) irradiance[s] = vec3(0.0);
     uint count = vpl_constants.count;
     uint vpl_stride = count <= uint(MOST_VPLS) ? 1u : (count + uint(MOST_VPLS) - 1u) / uint(MOST_VPLS) | 1u;
     for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < count; i += vpl_stride) {
         Vpl vpl = vpls[i];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
     }
-    for (int s = 0; s < SURFACES; ++s) irradiance[s] *= float(vpl_stride);
+    for (int s = 0; s < SURFACES; ++s) reflected[s].diffuse += irradiance[s] * float(vpl_stride) / PI;
 }
 
 #else
 
-void gather_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout vec3 irradiance[SURFACES]) {}
+void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {}
 
 #endif
 
@@ -100,18 +112,17 @@ void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out ve
 
 #else
 
-// Radiance that the surfaces reflect: ρ/π times their irradiance. `pixels`: their pixels, counted from the target's
-// lower left corner. SHOW_IRRADIANCE: as if they were white.
+// Radiance that the surfaces reflect. `pixels`: their pixels, counted from the target's lower left corner.
+// SHOW_IRRADIANCE: as if they were white.
 void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
-    vec3 direct[SURFACES];
-    vec3 indirect[SURFACES];
-    for (int s = 0; s < SURFACES; ++s) direct[s] = indirect[s] = vec3(0.0);
-    gather_lights(surfaces, pixels, direct);
-    if (part_first == 0u) gather_indirect(surfaces, pixels, indirect);
+    Reflected reflected[SURFACES];
+    for (int s = 0; s < SURFACES; ++s) reflected[s] = Reflected(vec3(0.0));
+    add_lights(surfaces, pixels, reflected);
+    if (part_first == 0u) add_indirect(surfaces, pixels, reflected);
 #ifdef SHOW_IRRADIANCE
     for (int s = 0; s < SURFACES; ++s) surfaces[s].albedo = vec3(1.0);
 #endif
-    for (int s = 0; s < SURFACES; ++s) radiance[s] = surfaces[s].albedo / PI * (direct[s] + indirect[s] / PI);
+    for (int s = 0; s < SURFACES; ++s) radiance[s] = radiance_of(reflected[s], surfaces[s]);
 }
 
 #endif
