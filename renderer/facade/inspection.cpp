@@ -83,7 +83,7 @@ struct CANDELA_PRIVATE ResourceInspector::State : std::enable_shared_from_this<S
 /// Adds the passes for the resource, in the first view whose frame has it.
 void ResourceInspector::State::declare(FrameGraph& graph, Gpu& gpu, const ViewFrame& frame) {
     declared &= frame.index > 0;
-    const auto found = declared ? std::nullopt : find_inspected(graph, frame, wanted.resource);
+    const auto found = declared ? std::nullopt : find_inspected(graph, wanted.resource);
     if (!found) {
         return;
     }

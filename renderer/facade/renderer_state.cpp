@@ -40,7 +40,10 @@ class TimedFrame {
 FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index, double cpu_ms) {
     FrameReport report{.index = index, .cpu_ms = cpu_ms, .gpu_ms = 0.0, .passes = {}};
     for (const PassRecord& pass : passes) {
-        report.passes.push_back({std::string(pass.name), pass.ran, pass.cpu_ms, 0.0});
+        report.passes.push_back({.name = std::string(pass.name),
+                                 .ran = pass.ran,
+                                 .cpu_ms = pass.cpu_ms,
+                                 .workload = static_cast<Workload>(pass.tag)});
     }
     return report;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <glm/common.hpp>
-#include <string_view>
 
 namespace candela {
 namespace {
@@ -25,30 +24,16 @@ bool is_better(const Quality& a, const Quality& b) {
 
 }  // namespace
 
-std::span<const std::string_view> pixel_passes() {
-    static constexpr std::array<std::string_view, 15> names{"gbuffer",         "depth-prepass",
-                                                            "tile-depths",     "light-tiles",
-                                                            "light-clusters",  "vpl-reconstruct-rows",
-                                                            "vpl-reconstruct", "vpl-fill-list",
-                                                            "vpl-fill",        "forward",
-                                                            "deferred",        "transparent",
-                                                            "accumulate",      "blended-light-tiles",
-                                                            "host-surfaces"};
-    return names;
-}
-
 FrameCost cost_of(const FrameReport& frame) {
     FrameCost cost;
     for (const PassReport& pass : frame.passes) {
         if (!pass.ran) {
             continue;
         }
-        // Without the number of the view: see view_ending.
-        const std::string_view name = std::string_view(pass.name).substr(0, pass.name.find(' '));
-        if (name == "vpl-gather") {
-            cost.gather += pass.gpu_ms;
-        } else if (std::ranges::find(pixel_passes(), name) != pixel_passes().end()) {
+        if (pass.workload == Workload::pixels) {
             cost.pixels += pass.gpu_ms;
+        } else if (pass.workload == Workload::pixels_vpls) {
+            cost.gather += pass.gpu_ms;
         }
     }
     cost.rest = std::max(std::max(frame.cpu_ms, frame.gpu_ms) - cost.gather - cost.pixels, 0.0);

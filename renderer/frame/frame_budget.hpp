@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <string_view>
 
 #include <glm/vec2.hpp>
 
@@ -17,12 +15,8 @@ struct FrameCost {
     double rest = 0.0;    ///< with neither
 };
 
-/// Names of the passes whose time is proportional to the number of rendered pixels. `vpl-gather` is not among
-/// them: its time also depends on the interleave factor.
-[[nodiscard]] std::span<const std::string_view> pixel_passes();
-
-/// Splits the times of a measured frame. Only passes that ran count. `rest` is the remainder of the frame's
-/// CPU or GPU time, whichever is longer; it includes time between passes.
+/// Splits the times of a measured frame by the passes' workload. Only passes that ran count. `rest` is the
+/// remainder of the frame's CPU or GPU time, whichever is longer; it includes time between passes.
 [[nodiscard]] FrameCost cost_of(const FrameReport& frame);
 
 /// Expected time in milliseconds of a frame with quality `wanted`, given the cost of a frame with quality

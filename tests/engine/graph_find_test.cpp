@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <any>
 #include <optional>
 #include <string>
 
@@ -11,16 +12,7 @@ namespace {
 
 using namespace candela;
 
-/// Declares passes that write each kind of resource, and looks for them.
-struct Find : GraphFixture {
-    template <class Write>
-    void write(std::string_view pass, Write write) {
-        graph.add(pass, [&](Pass& declared) { write(declared); });
-    }
-    void write_value(std::string_view pass, ValueHandle<int> value) {
-        write(pass, [&](Pass& declared) { (void)declared.write(value); });
-    }
-};
+using Find = GraphFixture;
 
 TEST_SUITE("graph find") {
     TEST_CASE_FIXTURE(Find, "the newest version of a texture, by its name") {
@@ -34,7 +26,6 @@ TEST_SUITE("graph find") {
         CHECK(graph.find_texture("scene")->handle == second);
         CHECK_FALSE(graph.find_texture("scen"));
         CHECK_FALSE(graph.find_buffer("scene"));
-        CHECK_FALSE(graph.find_value<int>("scene"));
 
         // The handle is one that a pass may read, and that keeps the texture alive.
         graph.add("look", [&](Pass& pass) {
@@ -59,19 +50,40 @@ TEST_SUITE("graph find") {
         CHECK(graph.find_texture("depth")->handle == again);
     }
 
-    TEST_CASE_FIXTURE(Find, "buffers with the size of their elements, and values only with their type") {
+    TEST_CASE_FIXTURE(Find, "buffers with the size of their elements") {
         const auto buffer = graph.buffer<double>("sums", 3);
-        const auto value = graph.value<int>("count");
         CHECK_FALSE(graph.find_buffer("sums"));
-        CHECK_FALSE(graph.find_value<int>("count"));
         std::optional<BufferHandle<double>> written;
-        write("sum", [&](Pass& pass) { written = pass.write(buffer, Usage::storage); });
-        write_value("count", value);
+        graph.add("sum", [&](Pass& pass) { written = pass.write(buffer, Usage::storage); });
         CHECK(graph.find_buffer("sums")->handle == static_cast<ResourceHandle>(*written));
         CHECK(graph.find_buffer("sums")->stride == sizeof(double));
-        CHECK(graph.find_value<int>("count")->version == 1);
-        CHECK_FALSE(graph.find_value<unsigned>("count"));
         CHECK_FALSE(graph.find_texture("sums"));
+    }
+
+    TEST_CASE_FIXTURE(Find, "the note on a resource, of the type that its producer chose") {
+        struct Unit {
+            std::string name;
+            ValueHandle<int> scale;
+        };
+        const auto scale = graph.value<int>("scale");
+        const TextureHandle depth = draw("draw", {}, texture("depth"));
+        CHECK(graph.find_texture("depth")->note == nullptr);
+        graph.note(depth, 1);
+        graph.note(depth, Unit{"metres", scale});
+        const std::any* const note = graph.find_texture("depth")->note;
+        CHECK(std::any_cast<int>(note) == nullptr);
+        REQUIRE(std::any_cast<Unit>(note) != nullptr);
+        CHECK(std::any_cast<Unit>(note)->name == "metres");
+        CHECK(std::any_cast<Unit>(note)->scale == scale);
+
+        // It stays on later versions, and is not on the history.
+        static_cast<void>(draw("draw on", {}, depth));
+        CHECK(graph.find_texture("depth")->note != nullptr);
+        const TextureHandle mean = texture("mean");
+        graph.note(mean, 2);
+        const TextureHandle past = graph.history(mean);
+        static_cast<void>(draw("copy", {past}, mean));
+        CHECK(*std::any_cast<int>(graph.find_texture("mean")->note) == 2);
     }
 
     TEST_CASE_FIXTURE(Find, "neither histories nor imports are found, and parts when all are written") {

@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/engine/graph_fixture.hpp"
@@ -371,6 +374,25 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: CPU time is measured only if request
     switch_to();
     CHECK(runtime.run(world).passes.front().cpu_ms == 0.0);
     CHECK(runtime.run(world, Timing::on).passes.front().cpu_ms >= 2.0);
+}
+
+TEST_CASE_FIXTURE(GraphFixture, "the record carries what the host says about passes") {
+    enum class Room : std::uint8_t { kitchen, bath = 7 };
+    const auto work = [&](std::string_view name, std::optional<Room> room) {
+        graph.add(name, [&](Pass& pass) {
+            pass.side_effect();
+            if (room) {
+                pass.tag(Room::kitchen);
+                pass.tag(*room);
+            }
+        });
+    };
+    work("wash", Room::bath);
+    work("sleep", std::nullopt);
+    switch_to();
+    const auto& passes = runtime.run(world).passes;
+    CHECK(passes[0].tag == 7);
+    CHECK(passes[1].tag == 0);
 }
 
 }  // namespace

@@ -4,10 +4,20 @@
 
 #include <doctest/doctest.h>
 
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include <array>
 #include <chrono>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
+#include <vector>
+
+#include <candela/gl_loader.hpp>
 
 #include "tests/renderer/path_fixture.hpp"
 
@@ -16,6 +26,61 @@ using namespace candela;
 namespace {
 
 constexpr glm::uvec2 size{48, 32};
+
+/// Notes the sizes of the dispatches by the pass that makes them, of all renderers made with `noting`.
+class Dispatches {
+ public:
+    using Groups = std::vector<std::array<GLuint, 3>>;
+
+    [[nodiscard]] static gl::GetProc noting(gl::GetProc get_proc) {
+        return [get_proc = std::move(get_proc)](const char* name) -> void (*)() {
+            const auto found = get_proc(name);
+            if (std::string_view(name) == "glPushDebugGroup") {
+                push_ = reinterpret_cast<PFNGLPUSHDEBUGGROUPPROC>(found);
+                return reinterpret_cast<void (*)()>(&begin_pass);
+            }
+            if (std::string_view(name) == "glDispatchCompute") {
+                dispatch_ = reinterpret_cast<PFNGLDISPATCHCOMPUTEPROC>(found);
+                return reinterpret_cast<void (*)()>(&note);
+            }
+            return found;
+        };
+    }
+    /// By pass, since the last call.
+    [[nodiscard]] static std::map<std::string, Groups> take() { return std::exchange(by_pass_, {}); }
+
+ private:
+    static void begin_pass(GLenum source, GLuint id, GLsizei length, const GLchar* name) {
+        pass_.assign(name, static_cast<std::size_t>(length));
+        push_(source, id, length, name);
+    }
+    static void note(GLuint x, GLuint y, GLuint z) {
+        by_pass_[pass_].push_back({x, y, z});
+        dispatch_(x, y, z);
+    }
+
+    static inline std::string pass_;
+    static inline std::map<std::string, Groups> by_pass_;
+    static inline PFNGLPUSHDEBUGGROUPPROC push_ = nullptr;
+    static inline PFNGLDISPATCHCOMPUTEPROC dispatch_ = nullptr;
+};
+
+/// What a pass did in a frame: its dispatches, and the sizes of the textures and buffers that it wrote.
+struct Work {
+    Dispatches::Groups dispatches;
+    std::vector<nlohmann::json> written;
+    Workload workload = Workload::other;
+};
+using PassWork = std::map<std::string, Work>;
+
+/// Surfaces that emit, blended ones, and a sky.
+void add_all_that_is_drawn(World& world) {
+    Material glass = *diffuse(glm::vec3(0.5F));
+    glass.alpha_mode = AlphaMode::blend;
+    add(world, at({0.0F, 0.5F, 0.0F}), MeshInstance{square(0.1F, std::make_shared<const Material>(glass))});
+    add(world, at({0.0F, 0.3F, 0.0F}), MeshInstance{square(0.1F, emitter(glm::vec3(1.0F)))});
+    add(world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
+}
 
 class FrameBudgetTests : public PathFixture {
  protected:
@@ -49,6 +114,50 @@ class FrameBudgetTests : public PathFixture {
         return target.read();
     }
 
+    /// What each pass does in a frame with this budget while the camera moves: with one that no frame can
+    /// keep, the frame has fewer pixels than the target.
+    PassWork work(ShadingPath path, std::optional<HostSurfaces> surfaces, float budget_ms) {
+        const glm::uvec2 target_size(256, 160);
+        TestedRenderer noted(Dispatches::noting(context->get_proc()));
+        Configuration configuration = linear_configuration();
+        configuration.path = path;
+        configuration.interleave = Interleave::eight;
+        configuration.refinement.enabled = true;
+        configuration.frame_budget_ms = budget_ms;
+        REQUIRE(noted.configure(configuration).empty());
+        const RenderTarget target(device, target_size);
+        const RenderView view{.camera = scene.camera, .target = target.target(), .surfaces = surfaces};
+        std::vector<FrameReport> frames;
+        for (int i = 0; i < 3; ++i) {
+            move_camera();
+            static_cast<void>(Dispatches::take());
+            noted.render(scene.world, {&view, 1});
+            frames = noted.take_frames(true);
+        }
+        CHECK(noted.report().rendered_size == (budget_ms > 0.0F ? target_size / 4U : target_size));
+        return work_of(frames.back(), Dispatches::take(),
+                       nlohmann::json::parse(noted.describe(GraphFormat::json)));
+    }
+
+    static PassWork work_of(const FrameReport& frame, std::map<std::string, Dispatches::Groups> dispatches,
+                            const nlohmann::json& graph) {
+        std::map<std::string, nlohmann::json> sizes;
+        for (const auto& resource : graph["resources"]) {
+            sizes[resource["name"]] = {resource.value("size", nlohmann::json()),
+                                       resource.value("count", nlohmann::json())};
+        }
+        PassWork work;
+        for (std::size_t i = 0; i < frame.passes.size(); ++i) {
+            const PassReport& pass = frame.passes[i];
+            Work& done = work[pass.name];
+            done = {.dispatches = std::move(dispatches[pass.name]), .written = {}, .workload = pass.workload};
+            for (const auto& write : graph["passes"][i]["writes"]) {
+                done.written.push_back(sizes[write["resource"]]);
+            }
+        }
+        return work;
+    }
+
     Scene scene = cornell_box();
 };
 
@@ -59,40 +168,45 @@ TEST_SUITE("frame budget") {
         const FrameReport frame{.index = 0,
                                 .cpu_ms = 20.0,
                                 .gpu_ms = 30.0,
-                                .passes = {{"vpl-maps", true, 0.1, 5.0},
-                                           {"vpl-gather", true, 0.1, 12.0},
-                                           {"deferred", true, 0.1, 6.0},
-                                           {"vpl-reconstruct", true, 0.1, 3.0},
-                                           {"gbuffer", false, 0.0, 0.0}}};
+                                .passes = {{"vpl-maps", true, 0.1, 5.0, Workload::other},
+                                           {"vpl-gather", true, 0.1, 12.0, Workload::pixels_vpls},
+                                           {"deferred", true, 0.1, 6.0, Workload::pixels},
+                                           {"a host's", true, 0.1, 3.0, Workload::pixels},
+                                           {"gbuffer", false, 0.0, 1.0, Workload::pixels}}};
         const FrameCost cost = cost_of(frame);
         CHECK(cost.gather == 12.0);
         CHECK(cost.pixels == 9.0);
         CHECK(cost.rest == 9.0);
     }
 
-    TEST_CASE_FIXTURE(FrameBudgetTests, "the passes that the budget names exist in the graphs") {
-        std::string graphs;
-        Configuration configuration = linear_configuration();
-        configuration.refinement.enabled = true;
-        configuration.interleave = Interleave::eight;
-        for (const ShadingPath path : all_shading_paths) {
-            configuration.path = path;
-            configure(configuration);
-            graphs += renderer.describe(GraphFormat::json);
-        }
-        const RenderTarget target(device, {8, 8});
+    TEST_CASE_FIXTURE(FrameBudgetTests, "the passes whose work grows with the pixels declare that they do") {
+        add_all_that_is_drawn(scene.world);
         const gl::Texture texture(device, "host's", {.size = {8, 8}, .format = Format::rgba32f});
-        const RenderView view{
-            .camera = scene.camera,
-            .target = target.target(),
-            .surfaces =
-                HostSurfaces{.depth = texture.name(), .normal = texture.name(), .albedo = texture.name()}};
-        renderer.render(scene.world, {&view, 1});
-        graphs += renderer.describe(GraphFormat::json);
-        CHECK(graphs.find("\"vpl-gather\"") != std::string::npos);
-        for (const std::string_view name : pixel_passes()) {
-            CHECK_MESSAGE(graphs.find(fmt::format("\"{}\"", name)) != std::string::npos, name);
+        const HostSurfaces surfaces{
+            .depth = texture.name(), .normal = texture.name(), .albedo = texture.name()};
+        std::set<std::string> of_pixels;
+        for (const ShadingPath path : all_shading_paths) {
+            for (const bool hosted : {false, true}) {
+                CAPTURE(static_cast<int>(path));
+                CAPTURE(hosted);
+                const auto host = hosted ? std::optional(surfaces) : std::nullopt;
+                const PassWork coarse = work(path, host, 1e-3F);
+                const PassWork fine = work(path, host, 0.0F);
+                REQUIRE(fine.size() == coarse.size());
+                for (const auto& [pass, done] : fine) {
+                    const bool grows = done.dispatches != coarse.at(pass).dispatches ||
+                                       done.written != coarse.at(pass).written;
+                    CHECK_MESSAGE((done.workload != Workload::other) == grows, pass);
+                    CHECK((done.workload == Workload::pixels_vpls) == (pass == "vpl-gather"));
+                    if (grows) {
+                        of_pixels.insert(pass);
+                    }
+                }
+            }
         }
+        // Each pass of a view that draws or dispatches was there, besides the tone map, which covers the
+        // target.
+        CHECK(of_pixels.size() == 18);
     }
 
     TEST_CASE("the predicted time scales with the pixels, and with the VPLs per pixel") {

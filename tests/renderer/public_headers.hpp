@@ -19,3 +19,4 @@
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <candela/scene/sky_picture.hpp>
+#include <candela/workload.hpp>

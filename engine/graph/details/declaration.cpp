@@ -112,7 +112,7 @@ ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
     resources[of.resource].lifetime = Lifetime::persistent;
     resources[of.resource].history = previous;
     Resource history = resources[of.resource];
-    history.history = none;
+    history.history = history.note = none;
     history.history_of = of.resource;
     history.versions = 0;
     history.reader = history.writer = none;
@@ -190,6 +190,14 @@ std::string_view Declaration::why_no_parts(const Resource& whole, TexturePart pa
         }
     }
     return "";
+}
+
+void Declaration::add_note(ResourceHandle on, std::any note) {
+    if (on.graph != id || on.resource >= resources.size()) {
+        return error(ErrorCode::foreign_handle, "note on a resource of another graph");
+    }
+    resources[on.resource].note = size_of(notes);
+    notes.push_back(std::move(note));
 }
 
 ResourceHandle Declaration::find(std::string_view name, ResourceKind kind) const {

@@ -72,7 +72,8 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     std::vector<PassRecord> passes;
     passes.reserve(state.step_count());
     for (std::uint32_t position = 0; position < state.step_count(); ++position) {
-        passes.push_back({state.steps[position].name});
+        const detail::PassNode& pass = graph.declared().passes[graph.plan().order[position]];
+        passes.push_back({.name = pass.name, .tag = pass.tag});
     }
     if (verifying_) {
         state.contents.resize(state.versions.size());

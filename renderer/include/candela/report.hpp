@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <candela/graph/records.hpp>
+#include <candela/workload.hpp>
 
 namespace candela {
 
@@ -18,6 +19,7 @@ struct PassReport {
     bool ran = false;
     double cpu_ms = 0.0;
     double gpu_ms = 0.0;
+    Workload workload = Workload::other;
 };
 
 /// Times of one frame, in milliseconds. `index` counts the frames of a renderer from 0; `passes` are in graph

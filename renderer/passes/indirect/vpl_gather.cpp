@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/loop_parts.hpp"
@@ -103,6 +104,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
                             BufferHandle<std::uint32_t> order, const ViewData& view,
                             std::uint32_t interleave) {
     return graph.add("vpl-gather", [&](Pass& pass) {
+        pass.tag(Workload::pixels_vpls);
         read_geometry(pass, surfaces);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
         read_vpl_light(pass, light);

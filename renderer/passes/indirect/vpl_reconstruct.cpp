@@ -1,6 +1,7 @@
 #include "renderer/passes/indirect/vpl_reconstruct.hpp"
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/loop_parts.hpp"
 
@@ -32,6 +33,7 @@ void reconstruct(const Gpu& gpu, const gl::Program& program, const Pixels& pixel
 
 TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle gathered) {
     return graph.add("vpl-reconstruct-rows", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
         pass.read(gathered, {Usage::sampled, UNIT_INDIRECT});
         const gl::Program& program = gpu.program({"indirect/vpl_reconstruct.comp"});
@@ -55,6 +57,7 @@ std::uint32_t row_words(glm::uvec2 size) {
 
 Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle rows) {
     return graph.add("vpl-reconstruct", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
         pass.read(rows, {Usage::sampled, UNIT_INDIRECT});
         const gl::Program& program = gpu.program({"indirect/vpl_reconstruct.comp"}, {"COLUMNS"});
@@ -71,6 +74,7 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHa
 
 BufferHandle<std::uint32_t> add_list(FrameGraph& graph, Gpu& gpu, const Columns& columns, glm::uvec2 size) {
     return graph.add("vpl-fill-list", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         pass.read(columns.fill_mask, {Usage::storage, BINDING_FILL_MASK});
         const gl::Program& program = gpu.program({"indirect/vpl_fill_list.comp"});
         const auto list =
@@ -97,6 +101,7 @@ void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, s
 TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
                        BufferHandle<std::uint32_t> order, const VplLight& light) {
     return graph.add("vpl-fill", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
         pass.read(order, {Usage::storage, BINDING_VPL_ORDER});
         pass.read(found.fill_list, {Usage::storage, BINDING_FILL_LIST});

@@ -1,8 +1,8 @@
 #include "renderer/passes/inspect/inspected.hpp"
 
 #include <algorithm>
+#include <any>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include "shaders/bindings.glsl"
 
@@ -10,65 +10,6 @@ namespace candela {
 namespace {
 
 constexpr int channels_luminance = 5;  // as in shaders/inspect/inspected.glsl, like the values of Channels
-
-DepthMeaning meaning_of(const FrameGraph& graph, const ViewFrame& frame, std::string_view name,
-                        TextureHandle texture) {
-    if (frame.depth == texture) {
-        return frame.view;
-    }
-    if (name == "vpl maps") {
-        if (const auto atlas = graph.find_value<VplAtlas>("vpl atlas")) {
-            return *atlas;
-        }
-    }
-    const bool cubes = name == "shadow cubes";
-    if (cubes || name == "shadow maps") {
-        if (const auto plan = graph.find_value<ShadowPlan>("shadow plan")) {
-            return ShadowDepths{*plan, cubes};
-        }
-    }
-    return {};
-}
-
-/// Terms of a projection with the depth near / metres.
-glm::vec4 perspective_terms(float near_plane) {
-    return {0.0F, near_plane, -1.0F, 0.0F};
-}
-
-/// Of one with the depth 1 - metres / reach.
-glm::vec4 linear_terms(float reach) {
-    return {1.0F / reach, 1.0F, 0.0F, 1.0F};
-}
-
-std::optional<glm::vec4> shadow_terms(const ShadowPlan& plan, bool cubes, std::uint32_t layer) {
-    constexpr std::uint32_t faces = 6;
-    const std::uint32_t map = cubes ? layer / faces : layer;
-    const auto found = std::ranges::find_if(plan.shadows, [&](const gpu::Shadow& shadow) {
-        return shadow.kind != SHADOW_NONE && shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
-    });
-    if (found == plan.shadows.end()) {
-        return std::nullopt;
-    }
-    if (found->kind != SHADOW_ORTHOGRAPHIC) {
-        return perspective_terms(found->near_plane);
-    }
-    const glm::mat4& clip = found->from_world;
-    return linear_terms(1.0F / glm::length(glm::vec3(clip[0][2], clip[1][2], clip[2][2])));
-}
-
-std::optional<glm::vec4> depth_terms(const Execution& run, const DepthMeaning& depth, std::uint32_t layer) {
-    if (const auto* const camera = std::get_if<ValueHandle<CameraView>>(&depth)) {
-        const glm::mat4& clip = run.value(*camera).clip_from_view;
-        return glm::vec4(clip[2][2], clip[3][2], clip[2][3], clip[3][3]);
-    }
-    if (const auto* const shadows = std::get_if<ShadowDepths>(&depth)) {
-        return shadow_terms(run.value(shadows->plan), shadows->cubes, layer);
-    }
-    if (const auto* const atlas = std::get_if<ValueHandle<VplAtlas>>(&depth)) {
-        return perspective_terms(run.value(*atlas).near);
-    }
-    return std::nullopt;
-}
 
 Shown shown_texture(const TextureDesc& desc, const Inspection& wanted) {
     Shown shown{.desc = desc,
@@ -125,21 +66,16 @@ bool is_integer(const Inspected& inspected) {
 
 }  // namespace
 
-std::optional<Inspected> find_inspected(const FrameGraph& graph, const ViewFrame& frame,
-                                        std::string_view name) {
+std::optional<Inspected> find_inspected(const FrameGraph& graph, std::string_view name) {
     if (const auto texture = graph.find_texture(name)) {
-        return Inspected{.texture = texture, .depth = meaning_of(graph, frame, name, texture->handle)};
+        const auto* const depth = std::any_cast<DepthNote>(texture->note);
+        return Inspected{.texture = texture, .depth = depth ? *depth : DepthNote{}};
     }
-    const auto buffer = graph.find_buffer(name);
-    if (!buffer) {
-        return std::nullopt;
+    if (const auto buffer = graph.find_buffer(name)) {
+        const auto* const lengths = std::any_cast<ListLengths>(buffer->note);
+        return Inspected{.buffer = buffer, .grid = lengths ? std::optional(lengths->grid) : std::nullopt};
     }
-    Inspected inspected{.buffer = buffer};
-    const std::string ending = view_ending(frame.index);
-    if (name.ends_with(" count" + ending)) {
-        inspected.grid = graph.find_value<CellGrid>("light grid" + ending);
-    }
-    return inspected;
+    return std::nullopt;
 }
 
 void read_inspected(Pass& pass, const Inspected& inspected) {
@@ -152,14 +88,8 @@ void read_inspected(Pass& pass, const Inspected& inspected) {
     if (inspected.grid) {
         pass.read(*inspected.grid);
     }
-    if (const auto* const camera = std::get_if<ValueHandle<CameraView>>(&inspected.depth)) {
-        pass.read(*camera);
-    }
-    if (const auto* const shadows = std::get_if<ShadowDepths>(&inspected.depth)) {
-        pass.read(shadows->plan);
-    }
-    if (const auto* const atlas = std::get_if<ValueHandle<VplAtlas>>(&inspected.depth)) {
-        pass.read(*atlas);
+    if (inspected.depth.read) {
+        inspected.depth.read(pass);
     }
 }
 
@@ -170,8 +100,8 @@ Shown shown_of(const Execution& run, const Inspected& inspected, const Inspectio
     shown.mapping = mapping_of(inspected, wanted.mapping);
     shown.channels = channels_of(inspected, wanted.channels, shown.mapping);
     shown.range = wanted.range;
-    if (shown.mapping != Mapping::colour) {
-        shown.depth_terms = depth_terms(run, inspected.depth, shown.layer);
+    if (inspected.depth.terms && shown.mapping != Mapping::colour) {
+        shown.depth_terms = inspected.depth.terms(run, shown.layer);
     }
     return shown;
 }

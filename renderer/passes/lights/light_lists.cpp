@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/loop_parts.hpp"
@@ -101,6 +102,7 @@ struct Candidates {
 LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, LightList kind,
                        const ListInputs& inputs, const Candidates& candidates) {
     return graph.add(name, [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         const auto& [bins, depths] = candidates;
         pass.read(bins.bins);
         read_view(pass, inputs.view);
@@ -120,6 +122,7 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
             .count = pass.write(growing_buffer<std::uint32_t>(graph, fmt::format("{} count", name)),
                                 {Usage::storage, BINDING_LIST_COUNT}),
             .entries = pass.write(bins.entries, {Usage::storage, BINDING_LIST_ENTRIES})};
+        graph.note(out.count, ListLengths{inputs.grid.cells});
         pass.run([=, &gpu, &program, bounded = depths.has_value()](Execution& run) {
             const LightBins& binned = run.value(out.bins);
             run.reserve(out.count, binned.grid.cells());
@@ -133,6 +136,7 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
 BufferHandle<gpu::TileDepth> add_tile_depths(FrameGraph& graph, Gpu& gpu, TextureHandle depth,
                                              const ViewData& view, const LightGrid& grid) {
     return graph.add("tile-depths", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         pass.read(depth, {Usage::sampled, UNIT_DEPTH});
         pass.read(grid.cells);
         read_view(pass, view);

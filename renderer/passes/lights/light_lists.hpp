@@ -31,6 +31,11 @@ struct ListInputs {
     LightGrid grid;
 };
 
+/// Note on a buffer (FrameGraph::note): it holds the lengths of light lists, by cell of this grid.
+struct ListLengths {
+    ValueHandle<CellGrid> grid;
+};
+
 /// Light lists by cell.
 struct LightLists {
     LightList kind = LightList::tile;

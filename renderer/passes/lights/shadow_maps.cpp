@@ -8,11 +8,13 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/layer_target.hpp"
+#include "renderer/passes/inspect/depth_note.hpp"
 #include "renderer/passes/lights/light_kind.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
@@ -240,6 +242,22 @@ PlannedShadows add_shadow_plan(FrameGraph& graph, const Gpu& gpu, ValueHandle<Li
     });
 }
 
+/// Of the map in this layer; none if no light uses it.
+std::optional<DepthTerms> depth_terms(const ShadowPlan& plan, bool cubes, std::uint32_t layer) {
+    const std::uint32_t map = cubes ? layer / cube_faces : layer;
+    const auto found = std::ranges::find_if(plan.shadows, [&](const gpu::Shadow& shadow) {
+        return shadow.kind != SHADOW_NONE && shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
+    });
+    if (found == plan.shadows.end()) {
+        return std::nullopt;
+    }
+    if (found->kind != SHADOW_ORTHOGRAPHIC) {
+        return perspective_terms(found->near_plane);
+    }
+    const glm::mat4& clip = found->from_world;
+    return linear_terms(1.0F / glm::length(glm::vec3(clip[0][2], clip[1][2], clip[2][2])));
+}
+
 }  // namespace
 
 ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
@@ -293,6 +311,12 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
             .maps = pass.update(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
                                 Usage::layer_target),
             .drawn = pass.update(graph.value<DrawnShadows>("drawn shadows"))};
+        for (const bool cubes : {true, false}) {
+            graph.note(cubes ? out.cubes : out.maps,
+                       depth_note(plan, [=](const ShadowPlan& drawn, std::uint32_t layer) {
+                           return depth_terms(drawn, cubes, layer);
+                       }));
+        }
         pass.run([=, &gpu](Execution& run) {
             const auto due = due_views(run, run.changed(surfaces), out, settings);
             draw_views(gpu, run, {scene, out, settings, programs}, due);

@@ -1,6 +1,7 @@
 #include "renderer/passes/shading/deferred.hpp"
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/gpu/compute_steps.hpp"
 #include "shaders/bindings.glsl"
 
@@ -9,6 +10,7 @@ namespace candela {
 TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const Lighting& lighting,
                            const ViewData& view) {
     return graph.add("deferred", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_geometry_and_material(pass, surfaces);
         read_lighting(pass, lighting);
         read_view(pass, view);

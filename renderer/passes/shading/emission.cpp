@@ -1,6 +1,7 @@
 #include "renderer/passes/shading/emission.hpp"
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
@@ -8,6 +9,7 @@ namespace candela {
 TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
                            const Surfaces& surfaces, TextureHandle radiance) {
     return graph.add("emission", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_meshes(pass, scene);
         read_view(pass, view);
         test_depth(pass, surfaces);

@@ -1,6 +1,7 @@
 #include "renderer/passes/shading/forward.hpp"
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
@@ -8,6 +9,7 @@ namespace candela {
 ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
                            const ViewData& view, const Surfaces& surfaces) {
     return graph.add("forward", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_meshes(pass, scene);
         read_lighting(pass, lighting);
         read_view(pass, view);
@@ -19,8 +21,7 @@ ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         if (surfaces.depth) {
             test_depth(pass, surfaces);
         } else {
-            out.surfaces.depth =
-                pass.write(graph.texture("depth", {view.size, Format::depth32f}), Usage::depth_target);
+            out.surfaces.depth = write_depth(graph, pass, view);
         }
         pass.run([=, &gpu, after_prepass = surfaces.depth.has_value()](Execution& run) {
             if (after_prepass) {

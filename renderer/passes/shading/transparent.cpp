@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/gpu/loop_parts.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
@@ -62,6 +63,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
                               const ViewData& view, const Surfaces& surfaces, TextureHandle radiance,
                               bool emission) {
     return graph.add("transparent", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_meshes(pass, scene);
         read_lighting(pass, lighting);
         pass.read(scene.placement);

@@ -6,6 +6,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "shaders/bindings.glsl"
 
 namespace candela {
@@ -56,6 +57,7 @@ TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const 
                              const Surfaces& surfaces, TextureHandle radiance) {
     const TextureHandle picture = add_sky_picture(graph, gpu, sky);
     return graph.add("background", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         pass.read(sky.environment);
         pass.read(picture, {Usage::sampled, UNIT_SKY});
         read_view(pass, view);

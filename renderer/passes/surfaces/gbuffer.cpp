@@ -1,16 +1,18 @@
 #include "renderer/passes/surfaces/gbuffer.hpp"
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
 
 Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view) {
     return graph.add("gbuffer", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs = surface_programs(gpu, "surfaces/gbuffer.frag");
-        const Surfaces out = write_geometry_and_material(graph, pass, view.size);
+        const Surfaces out = write_geometry_and_material(graph, pass, view);
         pass.run([=, &gpu](Execution& run) {
             gpu.clear_colour_and_depth();
             draw_surfaces(gpu, run, scene, programs, nearest_surfaces);

@@ -4,6 +4,7 @@
 #include <glm/matrix.hpp>
 
 #include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
 #include "renderer/passes/surfaces/draw_scene.hpp"
 #include "shaders/bindings.glsl"
 
@@ -20,13 +21,14 @@ HostSurfaceInputs import_host_surfaces(FrameGraph& graph) {
 Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
                            const ViewData& view) {
     return graph.add("host-surfaces", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
         pass.read(inputs.albedo, {Usage::sampled, UNIT_ALBEDO});
         pass.read(inputs.normal, {Usage::sampled, UNIT_NORMAL});
         pass.read(inputs.depth, {Usage::sampled, UNIT_DEPTH});
         pass.read(inputs.description);
         read_view(pass, view);
         const gl::Program& program = gpu.program({"output/fullscreen.vert", "surfaces/host_surfaces.frag"});
-        const Surfaces out = write_geometry_and_material(graph, pass, view.size);
+        const Surfaces out = write_geometry_and_material(graph, pass, view);
         pass.run([=, &gpu, &program, description = inputs.description](Execution& run) {
             const HostSurfaces& host = run.value(description);
             for (const GLuint unit : std::array<GLuint, 3>{UNIT_ALBEDO, UNIT_NORMAL, UNIT_DEPTH}) {

@@ -1,17 +1,28 @@
 #include "renderer/passes/surfaces/surfaces.hpp"
 
+#include "renderer/passes/inspect/depth_note.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
 
-Surfaces write_geometry(FrameGraph& graph, Pass& pass, glm::uvec2 size) {
-    return {.depth = pass.write(graph.texture("depth", {size, Format::depth32f}), Usage::depth_target),
-            .normal = pass.write(graph.texture("normal", {size, Format::rg32f}), Usage::colour_target)};
+TextureHandle write_depth(FrameGraph& graph, Pass& pass, const ViewData& view) {
+    const TextureHandle depth =
+        pass.write(graph.texture("depth", {view.size, Format::depth32f}), Usage::depth_target);
+    graph.note(depth, depth_note(view.camera, [](const CameraView& camera, std::uint32_t) {
+                   const glm::mat4& clip = camera.clip_from_view;
+                   return DepthTerms(clip[2][2], clip[3][2], clip[2][3], clip[3][3]);
+               }));
+    return depth;
 }
 
-Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, glm::uvec2 size) {
-    Surfaces out = write_geometry(graph, pass, size);
-    out.albedo = pass.write(graph.texture("albedo", {size, Format::rgba16f}), Usage::colour_target);
+Surfaces write_geometry(FrameGraph& graph, Pass& pass, const ViewData& view) {
+    return {.depth = write_depth(graph, pass, view),
+            .normal = pass.write(graph.texture("normal", {view.size, Format::rg32f}), Usage::colour_target)};
+}
+
+Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view) {
+    Surfaces out = write_geometry(graph, pass, view);
+    out.albedo = pass.write(graph.texture("albedo", {view.size, Format::rgba16f}), Usage::colour_target);
     return out;
 }
 

@@ -2,9 +2,8 @@
 
 #include <optional>
 
-#include <glm/vec2.hpp>
-
 #include <candela/graph/frame_graph.hpp>
+#include "renderer/passes/view/view.hpp"
 
 namespace candela {
 
@@ -18,11 +17,12 @@ struct Surfaces {
     std::optional<TextureHandle> albedo{};  ///< the material: rgba16f, linear
 };
 
-/// Declares depth and normal of `size` pixels as attachments that `pass` writes. Shaders write the normal to
-/// location 0.
-[[nodiscard]] Surfaces write_geometry(FrameGraph& graph, Pass& pass, glm::uvec2 size);
+/// Declares the depth of the view as an attachment that `pass` writes.
+[[nodiscard]] TextureHandle write_depth(FrameGraph& graph, Pass& pass, const ViewData& view);
+/// Depth and normal. Shaders write the normal to location 0.
+[[nodiscard]] Surfaces write_geometry(FrameGraph& graph, Pass& pass, const ViewData& view);
 /// The same with the albedo, location 1.
-[[nodiscard]] Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, glm::uvec2 size);
+[[nodiscard]] Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view);
 
 /// For a pass whose shader includes visible_surface.glsl: reads depth and normal.
 void read_geometry(Pass& pass, const Surfaces& surfaces);

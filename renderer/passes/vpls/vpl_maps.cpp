@@ -5,6 +5,7 @@
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/layer_target.hpp"
+#include "renderer/passes/inspect/depth_note.hpp"
 #include "renderer/passes/scene/traced_content.hpp"
 
 namespace candela {
@@ -80,6 +81,9 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
                                  Usage::layer_target),
             .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
             .program = &gpu.program({"vpls/vpl_maps.vert", "vpls/vpl_maps.geom", "vpls/vpl_maps.frag"})};
+        graph.note(node.depth, depth_note(common.atlas, [](const VplAtlas& atlas, std::uint32_t) {
+                       return perspective_terms(atlas.near);
+                   }));
         pass.run([=, &gpu](Execution& run) { update_maps(gpu, run, node); });
         return node.depth;
     });

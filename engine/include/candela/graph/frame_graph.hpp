@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <concepts>
 #include <cstdint>
 #include <optional>
@@ -108,6 +109,12 @@ class Pass {
     /// again.
     void remembers() { declared_.passes.back().remembers = true; }
 
+    /// A value of the host's about the pass, such as what its time depends on, for PassRecord::tag. The graph
+    /// does not use it.
+    template <class Tag>
+    requires std::is_enum_v<Tag>
+    void tag(Tag value) { declared_.passes.back().tag = static_cast<std::uint32_t>(value); }
+
     /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
     /// replaces the function; a pass without one only has its barriers issued and its attachments bound.
     template <std::invocable<Execution&> F>
@@ -124,16 +131,19 @@ class Pass {
     detail::Declaration& declared_;
 };
 
-/// What FrameGraph::find_texture returns. `desc` is as declared; a pass may reserve another one.
+/// What FrameGraph::find_texture returns. `desc` is as declared; a pass may reserve another one. `note` is
+/// null without one, and valid until resources or notes are added.
 struct FoundTexture {
     TextureHandle handle;
     TextureDesc desc;
+    const std::any* note = nullptr;  ///< see FrameGraph::note
 };
 
 /// What FrameGraph::find_buffer returns. Only the size of the elements is known, not their type.
 struct FoundBuffer {
     BufferHandle<void> handle;
-    std::uint32_t stride = 1;  ///< bytes from one element to the next
+    std::uint32_t stride = 1;        ///< bytes from one element to the next
+    const std::any* note = nullptr;  ///< as in FoundTexture
 };
 
 /// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
@@ -211,7 +221,8 @@ class FrameGraph {
         if (found == ResourceHandle{}) {
             return std::nullopt;
         }
-        return FoundTexture{{found}, declared_.texture(declared_.resources[found.resource])};
+        return FoundTexture{
+            {found}, declared_.texture(declared_.resources[found.resource]), declared_.note(found)};
     }
     /// The same for a buffer.
     [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const {
@@ -219,17 +230,13 @@ class FrameGraph {
         if (found == ResourceHandle{}) {
             return std::nullopt;
         }
-        return FoundBuffer{{found}, declared_.buffer(declared_.resources[found.resource]).stride};
+        return FoundBuffer{
+            {found}, declared_.buffer(declared_.resources[found.resource]).stride, declared_.note(found)};
     }
-    /// The same for a value, if it is a T.
-    template <class T>
-    [[nodiscard]] std::optional<ValueHandle<T>> find_value(std::string_view name) const {
-        const ResourceHandle found = declared_.find(name, ResourceKind::value);
-        if (found == ResourceHandle{} || declared_.value_type(found) != typeid(T)) {
-            return std::nullopt;
-        }
-        return ValueHandle<T>{found};
-    }
+
+    /// Says what the content of a texture or buffer means, for passes that find it by name: any value that
+    /// the host chooses, such as a struct with handles of other resources. Replaces an earlier note.
+    void note(ResourceHandle on, std::any what) { declared_.add_note(on, std::move(what)); }
 
     /// Adds a pass. Calls `declare(Pass&)` immediately and returns its result, usually the handles that the
     /// pass writes. Pass names must be unique in the graph. `declare` may add resources, but no other pass.

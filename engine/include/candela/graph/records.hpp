@@ -10,6 +10,7 @@ struct PassRecord {
     std::string_view name;  ///< valid until the next call of GraphRuntime::switch_to
     bool ran = false;
     bool verified = false;  ///< GraphRuntime::verify ran it again, with the same result
+    std::uint32_t tag = 0;  ///< see Pass::tag; 0 without
     double cpu_ms = 0.0;    ///< elapsed milliseconds on the CPU side; 0 without timing
 };
 

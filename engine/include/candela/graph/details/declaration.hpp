@@ -1,5 +1,6 @@
 #pragma once
 
+#include <any>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -47,6 +48,7 @@ struct Resource {
     TexturePart part;                 // and which part of it
     std::uint32_t first_part = none;  // the parts of a texture are a linked list
     std::uint32_t next_part = none;
+    std::uint32_t note = none;  // see FrameGraph::note
 };
 
 struct Access {
@@ -79,6 +81,7 @@ struct PassNode {
     std::uint32_t first_parameter = 0;
     bool side_effect = false;
     bool remembers = false;
+    std::uint32_t tag = 0;  // see Pass::tag
 };
 
 /// Owns objects of any type, and text, until it is destroyed. Their addresses do not change.
@@ -130,6 +133,12 @@ class CANDELA_API Declaration {
     ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
     ResourceHandle add_history(ResourceHandle of, ResourceKind kind);
     ResourceHandle add_part(ResourceHandle of, TexturePart part);
+    void add_note(ResourceHandle on, std::any note);
+    /// Null without one.
+    [[nodiscard]] const std::any* note(ResourceHandle on) const {
+        const std::uint32_t index = resources[on.resource].note;
+        return index == none ? nullptr : &notes[index];
+    }
     /// See FrameGraph::find_texture. A null handle if there is none.
     [[nodiscard]] ResourceHandle find(std::string_view name, ResourceKind kind) const;
 
@@ -160,9 +169,6 @@ class CANDELA_API Declaration {
         return textures[resource.desc];
     }
     [[nodiscard]] const BufferDesc& buffer(const Resource& resource) const { return buffers[resource.desc]; }
-    [[nodiscard]] std::type_index value_type(ResourceHandle value) const {
-        return value_types[resources[value.resource].desc];
-    }
 
     std::uint32_t id = 0;
     std::vector<PassNode> passes;
@@ -173,6 +179,7 @@ class CANDELA_API Declaration {
     std::vector<TextureDesc> textures;
     std::vector<BufferDesc> buffers;
     std::vector<std::type_index> value_types;
+    std::vector<std::any> notes;
     std::vector<CompileError> errors;  // those found while declaring
 
  private:
