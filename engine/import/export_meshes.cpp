@@ -10,6 +10,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
 #include "engine/readable.hpp"
 #include "engine/scene/check.hpp"
@@ -100,9 +101,7 @@ std::optional<std::size_t> MeshWriter::index_of(const std::shared_ptr<const Mesh
 }
 
 std::optional<std::size_t> MeshWriter::add(const Mesh& mesh) {
-    if (const Fault fault = fault_of(mesh, Strictness::usual)) {
-        throw SceneError(*fault);
-    }
+    check(fault_of(mesh, Strictness::usual));
     if (!has_unit_normals(mesh)) {
         draft_.warnings.push_back(fmt::format(
             "mesh \"{}\": normals that are not of unit length will be normalised", readable(mesh.name)));

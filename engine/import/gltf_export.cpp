@@ -30,6 +30,7 @@ namespace candela {
 
 namespace {
 
+using gltf::check;
 using gltf::Draft;
 using gltf::to_json;
 
@@ -104,12 +105,6 @@ Nodes choose_nodes(const World& world, std::span<const Entity> without) {
     }
     std::ranges::sort(nodes);
     return nodes;
-}
-
-void check(const Fault& fault) {
-    if (fault) {
-        throw SceneError(*fault);
-    }
 }
 
 Json describe_camera(const Camera& camera) {

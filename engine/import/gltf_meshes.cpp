@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,13 +24,8 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Kinds of content that were left out of the meshes. Each is reported once.
-struct Omissions {
-    bool points_or_lines = false;
-    bool no_positions = false;
-    bool morph_targets = false;
-    bool second_colours = false;
-};
+/// Warnings about kinds of content that were left out, each once.
+using Omissions = std::set<std::string_view>;
 
 std::optional<int> find_attribute(const Json& source, std::string_view name) {
     const Json* const found = source.at("attributes").find(name);
@@ -45,51 +41,46 @@ int indices_of(const Json& source) {
     return index_in(source, "indices");
 }
 
-/// The accessor of an attribute, which must have one element for each position.
-int checked_attribute(const Document& document, int accessor, std::string_view attribute,
-                      std::size_t positions) {
-    const std::size_t count = element_count(document, accessor);
-    if (count != positions) {
-        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, attribute));
+/// Sets an attribute, if the primitive has it, of the selected vertices. It must have one element for each
+/// position.
+template <class Read, class Set>
+void read_attribute(const Document& document, const Json& source, const char* name, std::string_view plural,
+                    const Selection& selection, std::vector<Vertex>& vertices, Read read, Set set) {
+    const auto accessor = find_attribute(source, name);
+    if (!accessor) {
+        return;
     }
-    return accessor;
+    const std::size_t positions = element_count(document, *find_attribute(source, "POSITION"));
+    const std::size_t count = element_count(document, *accessor);
+    if (count != positions) {
+        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, plural));
+    }
+    const auto elements = read(document, *accessor, selection);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        set(vertices[i], elements[i]);
+    }
+}
+
+void set_normal(Vertex& vertex, const glm::vec3& normal) {
+    // In double precision, the square of a float neither underflows nor overflows.
+    const double length = glm::length(glm::dvec3(normal));
+    if (length > 0.0) {
+        vertex.normal = is_unit_length(length) ? normal : glm::vec3(glm::dvec3(normal) / length);
+    }
 }
 
 /// The selected vertices. A missing normal is zero until the faces provide one.
-std::vector<Vertex> read_vertices(const Document& document, const Json& source, int positions,
-                                  const Selection& selection) {
-    const std::size_t all = element_count(document, positions);
+std::vector<Vertex> read_vertices(const Document& document, const Json& source, const Selection& selection) {
     std::vector<Vertex> vertices;
     vertices.reserve(selection.count());
-    for (const glm::vec3& position : read_vectors(document, positions, selection)) {
+    for (const glm::vec3& position : read_vectors(document, *find_attribute(source, "POSITION"), selection)) {
         vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
     }
-    if (const auto found = find_attribute(source, "NORMAL")) {
-        const int accessor = checked_attribute(document, *found, "normals", all);
-        const std::vector<glm::vec3> normals = read_vectors(document, accessor, selection);
-        for (std::size_t i = 0; i < normals.size(); ++i) {
-            // In double precision, the square of a float neither underflows nor overflows.
-            const glm::dvec3 normal(normals[i]);
-            const double length = glm::length(normal);
-            if (length > 0.0) {
-                vertices[i].normal = is_unit_length(length) ? normals[i] : glm::vec3(normal / length);
-            }
-        }
-    }
-    if (const auto found = find_attribute(source, "TEXCOORD_0")) {
-        const int accessor = checked_attribute(document, *found, "texture coordinates", all);
-        const std::vector<glm::vec2> coordinates = read_texture_coordinates(document, accessor, selection);
-        for (std::size_t i = 0; i < coordinates.size(); ++i) {
-            vertices[i].uv = coordinates[i];
-        }
-    }
-    if (const auto found = find_attribute(source, "COLOR_0")) {
-        const int accessor = checked_attribute(document, *found, "colours", all);
-        const std::vector<glm::u16vec4> colours = read_colours(document, accessor, selection);
-        for (std::size_t i = 0; i < colours.size(); ++i) {
-            vertices[i].colour = colours[i];
-        }
-    }
+    read_attribute(document, source, "NORMAL", "normals", selection, vertices, read_vectors, set_normal);
+    read_attribute(document, source, "TEXCOORD_0", "texture coordinates", selection, vertices,
+                   read_texture_coordinates, [](Vertex& vertex, glm::vec2 uv) { vertex.uv = uv; });
+    read_attribute(document, source, "COLOR_0", "colours", selection, vertices, read_colours,
+                   [](Vertex& vertex, glm::u16vec4 colour) { vertex.colour = colour; });
     return vertices;
 }
 
@@ -172,13 +163,21 @@ void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& tri
 }
 
 bool is_drawn(const Json& source, Omissions& omissions) {
-    const bool triangles = mode_of(source) >= mode_triangles;
-    const bool positions = find_attribute(source, "POSITION").has_value();
-    omissions.points_or_lines |= !triangles;
-    omissions.no_positions |= triangles && !positions;
-    omissions.morph_targets |= !list_in(source, "targets").empty();
-    omissions.second_colours |= find_attribute(source, "COLOR_1").has_value();
-    return triangles && positions;
+    if (!list_in(source, "targets").empty()) {
+        omissions.insert("morph targets are ignored");
+    }
+    if (find_attribute(source, "COLOR_1")) {
+        omissions.insert("vertex colours beyond the first set are ignored");
+    }
+    if (mode_of(source) < mode_triangles) {
+        omissions.insert("points and lines are skipped");
+        return false;
+    }
+    if (!find_attribute(source, "POSITION")) {
+        omissions.insert("primitives without positions are skipped");
+        return false;
+    }
+    return true;
 }
 
 /// The triangles of so many indices or vertices.
@@ -205,8 +204,7 @@ void count_triangles(const Document& document, const Json& source, ImportBudget&
 
 /// Without indices if no triangle has an area.
 Primitive read_primitive(const Document& document, const Json& source, ImportBudget& budget) {
-    const int positions = *find_attribute(source, "POSITION");
-    const std::size_t vertex_count = element_count(document, positions);
+    const std::size_t vertex_count = element_count(document, *find_attribute(source, "POSITION"));
     count_triangles(document, source, budget);
     std::vector<std::uint32_t> order = read_order(document, source, vertex_count);
     // Many primitives may share the vertices of one accessor, of which each uses a few.
@@ -216,7 +214,7 @@ Primitive read_primitive(const Document& document, const Json& source, ImportBud
     budget.add_memory(selection.count() * sizeof(Vertex));
 
     Primitive primitive;
-    primitive.vertices = read_vertices(document, source, positions, selection);
+    primitive.vertices = read_vertices(document, source, selection);
     std::vector<Corners> triangles = assemble(order, mode_of(source));
     std::erase_if(triangles, [&](const Corners& corners) {
         return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
@@ -256,21 +254,6 @@ Mesh read_mesh(const Document& document, const Json& source, const std::vector<R
     return mesh;
 }
 
-void report(const Omissions& omissions, std::vector<std::string>& warnings) {
-    if (omissions.points_or_lines) {
-        warnings.emplace_back("points and lines are skipped");
-    }
-    if (omissions.no_positions) {
-        warnings.emplace_back("primitives without positions are skipped");
-    }
-    if (omissions.morph_targets) {
-        warnings.emplace_back("morph targets are ignored");
-    }
-    if (omissions.second_colours) {
-        warnings.emplace_back("vertex colours beyond the first set are ignored");
-    }
-}
-
 }  // namespace
 
 std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const std::vector<bool>& used,
@@ -288,7 +271,7 @@ std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const s
         });
         meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
     }
-    report(omissions, document.warnings);
+    document.warnings.insert(document.warnings.end(), omissions.begin(), omissions.end());
     return meshes;
 }
 

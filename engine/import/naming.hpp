@@ -10,11 +10,19 @@
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/scene_error.hpp>
 #include "engine/readable.hpp"
+#include "engine/scene/check.hpp"
 
 namespace candela::gltf {
 
 /// Longest message, without the name of the file. It may quote several names.
 inline constexpr std::size_t longest_message = 300;
+
+/// Throws what is wrong, if anything is.
+inline void check(const Fault& fault) {
+    if (fault) {
+        throw SceneError(*fault);
+    }
+}
 
 /// Runs a part of an import or export. A SceneError then names what it concerns.
 template <class Action>

@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,6 +12,7 @@
 #include <tinyexr.h>
 
 #include "engine/import/import_files.hpp"
+#include "engine/import/naming.hpp"
 #include "engine/import/sky_picture_size.hpp"
 #include "engine/scene/check.hpp"
 
@@ -103,13 +103,6 @@ SkyPicture read_exr(gltf::Bytes bytes) {
     return to_picture(width, height, texels, 4);
 }
 
-std::shared_ptr<const SkyPicture> checked(SkyPicture picture) {
-    if (const Fault fault = fault_of(picture)) {
-        throw SceneError(*fault);
-    }
-    return std::make_shared<const SkyPicture>(std::move(picture));
-}
-
 }  // namespace
 
 void check_sky_size(std::int64_t width, std::int64_t height) {
@@ -133,18 +126,16 @@ PictureSize sky_picture_size(gltf::Bytes bytes) {
 
 std::shared_ptr<const SkyPicture> decode_sky_picture(gltf::Bytes bytes) {
     static_cast<void>(sky_picture_size(bytes));  // checks it
-    return checked(is_exr(bytes) ? read_exr(bytes) : read_hdr(bytes));
+    SkyPicture picture = is_exr(bytes) ? read_exr(bytes) : read_hdr(bytes);
+    gltf::check(fault_of(picture));
+    return std::make_shared<const SkyPicture>(std::move(picture));
 }
 
 std::shared_ptr<const SkyPicture> load_sky_picture(const std::filesystem::path& path) {
-    try {
+    return gltf::naming_file(path.string(), [&] {
         gltf::ImportBudget budget({});
         return decode_sky_picture(gltf::read_file(path, "the file", budget));
-    } catch (const std::bad_alloc&) {
-        throw SceneError(fmt::format("{}: it does not fit into memory", path.string()));
-    } catch (const std::exception& error) {
-        throw SceneError(fmt::format("{}: {}", path.string(), error.what()));
-    }
+    });
 }
 
 }  // namespace candela
