@@ -10,7 +10,6 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
-#include "engine/import/gltf_extensions.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/readable.hpp"
 

@@ -18,7 +18,7 @@
 #include "engine/import/export_draft.hpp"
 #include "engine/import/export_meshes.hpp"
 #include "engine/import/exr.hpp"
-#include "engine/import/gltf_extensions.hpp"
+#include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_lights.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/output_files.hpp"

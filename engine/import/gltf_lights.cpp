@@ -13,7 +13,7 @@
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/export_draft.hpp"
-#include "engine/import/gltf_extensions.hpp"
+#include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_values.hpp"
 #include "engine/readable.hpp"
 
