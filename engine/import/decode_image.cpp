@@ -33,8 +33,7 @@ Image image_of(std::uint32_t width, std::uint32_t height, std::size_t encoded_by
     return image;
 }
 
-// libpng asks for errors to leave its functions with a jump or an exception: these are exceptions.
-
+/// libpng's functions do not go on after an error: the exception leaves them.
 [[noreturn]] void fail(png_structp /*png*/, png_const_charp message) {
     throw SceneError(fmt::format("it cannot be decoded: {}", message));
 }
@@ -62,7 +61,7 @@ void read_bytes(png_structp png, png_bytep to, std::size_t size) {
     rest = rest.subspan(size);
 }
 
-/// Has memory for the pixels and a few rows: data decompress into them row by row.
+/// Rows are decompressed one by one: beside the pixels, only a few rows need memory, whatever the data hold.
 Image decode_png(Bytes encoded, ImportBudget& budget) {
     PngReader reader(encoded);
     if (!reader.info) {
