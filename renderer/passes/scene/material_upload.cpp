@@ -134,8 +134,8 @@ std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& mat
         by_index_[taken].material = material;
         return taken;
     })];
-    by_index_[index].images = {.base_colour = number_of(material->base_colour_texture),
-                               .emissive = number_of(material->emissive_texture)};
+    std::ranges::transform(material_image_slots, by_index_[index].images.begin(),
+                           [&](const MaterialImageSlot& slot) { return number_of((*material).*slot.image); });
     return index;
 }
 
@@ -156,11 +156,20 @@ std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image
 glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
     const auto& [listed, images] = by_index_[material];
     const glm::vec3 factor(listed->base_colour);
-    return images.base_colour == 0 ? factor : factor * images_[images.base_colour - 1].mean;
+    const std::uint32_t image = images[base_colour_slot];
+    return image == 0 ? factor : factor * images_[image - 1].mean;
 }
 
-std::shared_ptr<const MaterialTexture> MaterialTable::texture(std::uint32_t image) const {
-    return image == 0 ? nullptr : images_[image - 1].texture;
+MaterialBinding MaterialTable::binding_of(std::uint32_t material) const {
+    const auto& [listed, images] = by_index_[material];
+    MaterialBinding binding{.alpha = listed->alpha_mode,
+                            .double_sided = listed->double_sided,
+                            .emits = emits(*listed),
+                            .textures = {}};
+    std::ranges::transform(images, binding.textures.begin(), [&](std::uint32_t image) {
+        return image == 0 ? nullptr : images_[image - 1].texture;
+    });
+    return binding;
 }
 
 std::vector<std::shared_ptr<const Material>> MaterialTable::materials() const {
@@ -180,8 +189,8 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
         return number == 0 ? none : images_[number - 1];
     };
     const Material& material = *listed.material;
-    const UploadedImage& colour = image(listed.images.base_colour);
-    const UploadedImage& emissive = image(listed.images.emissive);
+    const UploadedImage& colour = image(listed.images[base_colour_slot]);
+    const UploadedImage& emissive = image(listed.images[emissive_slot]);
     return {.base_colour = material.base_colour,
             .first_texel = colour.range.first,
             .texel_width = colour.width,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -11,11 +12,9 @@
 
 namespace candela {
 
-/// Numbers of images in the current scene of a MaterialTable, in the order of their first use; 0: no image.
-struct MaterialImages {
-    std::uint32_t base_colour = 0;
-    std::uint32_t emissive = 0;
-};
+/// By slot: the number of a material's image in the current scene of a MaterialTable, in the order of first
+/// use; 0: no image.
+using MaterialImages = std::array<std::uint32_t, material_image_slots.size()>;
 
 /// An image on the GPU: as a texture for rasterisation, and reduced in the buffer of texels for tracing.
 struct UploadedImage {
@@ -47,8 +46,7 @@ class MaterialTable {
     }
     /// Base colour of a material times the mean of its image; linear RGB.
     [[nodiscard]] glm::vec3 mean_albedo(std::uint32_t material) const;
-    /// An image on the GPU, by its number; null for 0.
-    [[nodiscard]] std::shared_ptr<const MaterialTexture> texture(std::uint32_t image) const;
+    [[nodiscard]] MaterialBinding binding_of(std::uint32_t material) const;
 
     /// By index; null where an index is not in use.
     [[nodiscard]] std::vector<std::shared_ptr<const Material>> materials() const;
@@ -56,7 +54,7 @@ class MaterialTable {
  private:
     struct Listed {
         std::shared_ptr<const Material> material;  // null: the index is free
-        MaterialImages images;
+        MaterialImages images{};
     };
     [[nodiscard]] std::uint32_t take_index();
     [[nodiscard]] std::uint32_t number_of(const std::shared_ptr<const Image>& image);

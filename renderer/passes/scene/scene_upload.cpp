@@ -111,8 +111,8 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
         const SceneLayout::Drawable& drawable = drawables[i];
         const Material& material = *drawable.primitive->material;
         const MaterialImages& images = store.materials.images_of(drawable.material);
-        return std::tuple(material.alpha_mode, images.base_colour, material.double_sided,
-                          geometry.items[drawable.item].mirrored, emits(material), images.emissive);
+        return std::tuple(material.alpha_mode, images[base_colour_slot], material.double_sided,
+                          geometry.items[drawable.item].mirrored, emits(material), images);
     };
     std::vector<SceneLayout::Drawable> ordered;
     for (const std::uint32_t i : stable_order(drawables.size(), key)) {
@@ -122,9 +122,7 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
 }
 
 bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
-    return a.alpha != AlphaMode::blend && a.alpha == b.alpha && a.texture == b.texture &&
-           a.emission == b.emission && a.double_sided == b.double_sided && a.mirrored == b.mirrored &&
-           a.emits == b.emits;
+    return a.material.alpha != AlphaMode::blend && a.material == b.material && a.mirrored == b.mirrored;
 }
 
 /// Number of drawables whose alpha mode is at most `last`, in the order of the enum.
@@ -139,16 +137,10 @@ std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
     std::vector<SceneLayout::Group> groups;
     for (std::uint32_t draw = 0; draw < drawables.size(); ++draw) {
         const SceneLayout::Drawable& drawable = drawables[draw];
-        const Material& material = *drawable.primitive->material;
-        const MaterialImages& images = materials.images_of(drawable.material);
         SceneLayout::Group group{.first_draw = draw,
                                  .draw_count = 1,
-                                 .alpha = material.alpha_mode,
-                                 .texture = materials.texture(images.base_colour),
-                                 .emission = materials.texture(images.emissive),
-                                 .double_sided = material.double_sided,
-                                 .mirrored = geometry.items[drawable.item].mirrored,
-                                 .emits = emits(material)};
+                                 .material = materials.binding_of(drawable.material),
+                                 .mirrored = geometry.items[drawable.item].mirrored};
         if (!groups.empty() && can_share(groups.back(), group)) {
             ++groups.back().draw_count;
         } else {
@@ -219,8 +211,8 @@ const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& 
 }
 
 std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {
-    const auto first = std::ranges::lower_bound(groups, alpha, {}, &Group::alpha);
-    const auto last = std::ranges::upper_bound(groups, alpha, {}, &Group::alpha);
+    const auto [first, last] =
+        std::ranges::equal_range(groups, alpha, {}, [](const Group& group) { return group.material.alpha; });
     return {first, last};
 }
 

@@ -12,6 +12,7 @@
 #include "engine/bvh/box.hpp"
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/scene/material_binding.hpp"
 
 namespace candela {
 
@@ -45,12 +46,6 @@ struct ScenePlacement {
     bool operator==(const ScenePlacement&) const = default;
 };
 
-/// An image of a material on the GPU, with mip levels; the sampler has its wrap modes.
-struct MaterialTexture {
-    gl::Texture texture;
-    gl::Sampler sampler;
-};
-
 /// What the GPU buffers of the scene contain.
 struct SceneLayout {
     /// One primitive of one item. It has one draw command and one record in the instance buffer.
@@ -62,17 +57,13 @@ struct SceneLayout {
         float albedo = 0.0F;              ///< strongest channel of its mean albedo
         std::uint32_t index_in_mesh = 0;  ///< of the primitive
     };
-    /// Consecutive draws that share all render state. Each blended draw has its own group, so that they can
-    /// be sorted.
+    /// Consecutive draws of materials with the same binding. Each blended draw has its own group, so that
+    /// they can be sorted.
     struct Group {
         std::uint32_t first_draw;
         std::uint32_t draw_count;
-        AlphaMode alpha;
-        std::shared_ptr<const MaterialTexture> texture;   ///< base colour; null: none
-        std::shared_ptr<const MaterialTexture> emission;  ///< emissive texture; null: none
-        bool double_sided;
+        MaterialBinding material;
         bool mirrored;
-        bool emits;
     };
     SceneGeometry geometry;
     std::vector<Drawable> drawables;      ///< in drawing order: opaque, then masked, then blended

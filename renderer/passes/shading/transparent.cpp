@@ -49,7 +49,7 @@ void check_lights(std::size_t lights) {
 }
 
 void draw_blended(Gpu& gpu, const SceneLayout::Group& group) {
-    if (group.double_sided) {
+    if (group.material.double_sided) {
         gl::RasterState backs = covering;
         backs.culling = gl::Culling::front;
         draw_group(gpu, group, backs);

@@ -12,17 +12,6 @@ void multi_draw(const gl::Functions& gl, std::size_t first, std::size_t count) {
     gl.MultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, offset, static_cast<GLsizei>(count), 0);
 }
 
-/// Binds an image of a material, or white if there is none.
-void bind_image(const Gpu& gpu, GLuint unit, const MaterialTexture* image) {
-    if (image != nullptr) {
-        image->texture.bind(unit);
-        image->sampler.bind(unit);
-    } else {
-        gpu.white().bind(unit);
-        gpu.gl().BindSampler(unit, 0);
-    }
-}
-
 }  // namespace
 
 std::vector<ResourceHandle> read_meshes(Pass& pass, const SceneData& scene) {
@@ -51,10 +40,7 @@ void draw_depth(Gpu& gpu, Execution& run, const SceneData& scene, const gl::Rast
 }
 
 void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state) {
-    bind_image(gpu, UNIT_BASE_COLOUR, group.texture.get());
-    if (group.emits) {
-        bind_image(gpu, UNIT_EMISSION, group.emission.get());
-    }
+    group.material.bind(gpu);
     state.clockwise_front = group.mirrored;
     gpu.device().set_raster_state(state);
     multi_draw(gpu.gl(), group.first_draw, group.draw_count);
@@ -80,14 +66,15 @@ void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const Surfa
     bind_meshes(gpu, run, scene);
     const gl::Program* used = nullptr;
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
-        if (group.alpha == AlphaMode::blend || !is_drawn(group)) {
+        if (group.material.alpha == AlphaMode::blend || !is_drawn(group)) {
             continue;
         }
-        const gl::Program* const program = group.alpha == AlphaMode::mask ? programs.masked : programs.opaque;
+        const gl::Program* const program =
+            group.material.alpha == AlphaMode::mask ? programs.masked : programs.opaque;
         if (std::exchange(used, program) != program) {
             program->use(uniforms);
         }
-        state.culling = group.double_sided ? gl::Culling::off : gl::Culling::back;
+        state.culling = group.material.double_sided ? gl::Culling::off : gl::Culling::back;
         draw_group(gpu, group, state);
     }
 }

@@ -46,8 +46,8 @@ struct SurfacePrograms {
 [[nodiscard]] SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
                                                std::vector<std::string> defined = {});
 
-/// Draws the opaque and masked surfaces, grouped by image: those of groups for which `is_drawn` holds. Culls
-/// the back faces of single-sided surfaces. Binds meshes and images.
+/// Draws the opaque and masked surfaces, of groups for which `is_drawn` holds. Culls the back faces of
+/// single-sided surfaces. Binds meshes and images.
 void draw_surfaces(
     Gpu& gpu, Execution& run, const SceneData& scene, const SurfacePrograms& programs, gl::RasterState state,
     const gl::Uniforms& uniforms = {},
