@@ -1,8 +1,6 @@
 #include "engine/import/export_materials.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include <fmt/format.h>

@@ -8,7 +8,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"

@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <fmt/format.h>
-
 #include <candela/scene/sky_picture.hpp>
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_nodes.hpp"

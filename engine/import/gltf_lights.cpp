@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
-#include <utility>
 #include <variant>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "engine/import/gltf_materials.hpp"
 
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <string_view>
 #include <tuple>

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include <fmt/format.h>
 #include <stb/stb_image_write.h>
 #include <tiny_gltf.h>
 
