@@ -1,5 +1,6 @@
 #include "engine/import/gltf_materials.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -153,13 +154,9 @@ ReadMaterial read_material(const Json& source, const std::string& label, ImageRe
     Material material;
     material.name = text_in(source, "name");
     material.base_colour = vector_in(source, "pbrMetallicRoughness/baseColorFactor", glm::vec4(1.0F));
-    const Json& factors = list_in(source, "emissiveFactor");
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-        float& channel = material.emissive[static_cast<glm::length_t>(i)];
-        channel = static_cast<float>(factors[i].number() * strength);
-        if (!std::isfinite(channel)) {
-            throw SceneError(fmt::format("{}: its emission is too large", label));
-        }
+    material.emissive = glm::vec3(vector_in(source, "emissiveFactor", glm::dvec3(0.0)) * strength);
+    if (!std::isfinite(std::max({material.emissive.r, material.emissive.g, material.emissive.b}))) {
+        throw SceneError(fmt::format("{}: its emission is too large", label));
     }
     material.base_colour_texture = images.read(base, label + ": its texture");
     if (unlit) {

@@ -110,12 +110,8 @@ Transform read_translation_rotation_scale(const Json& node) {
     Transform transform;
     transform.translation = vector_in(node, "translation", transform.translation);
     transform.scale = vector_in(node, "scale", transform.scale);
-    const Json& numbers = list_in(node, "rotation");
-    if (numbers.empty()) {
-        return transform;
-    }
-    const auto part = [&](std::size_t i) { return numbers[i].number(); };
-    const glm::dquat rotation(part(3), part(0), part(1), part(2));
+    const auto parts = vector_in(node, "rotation", glm::dvec4(0.0, 0.0, 0.0, 1.0));
+    const glm::dquat rotation(parts.w, parts.x, parts.y, parts.z);
     const double length = glm::length(rotation);
     if (length == 0.0) {
         throw SceneError("its rotation is zero");

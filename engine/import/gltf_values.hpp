@@ -54,7 +54,8 @@ template <class Vector>
 [[nodiscard]] Vector vector_in(const Json& object, std::string_view path, Vector otherwise) {
     const Json& numbers = list_in(object, path);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        otherwise[static_cast<typename Vector::length_type>(i)] = static_cast<float>(numbers[i].number());
+        otherwise[static_cast<typename Vector::length_type>(i)] =
+            static_cast<typename Vector::value_type>(numbers[i].number());
     }
     return otherwise;
 }
