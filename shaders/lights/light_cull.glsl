@@ -8,7 +8,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_LIST_FIRST) readonly restrict buffer ListFirst { uint list_first[]; };
 layout(std430, binding = BINDING_LIST_COUNT) restrict buffer ListCount { uint list_count[]; };
 layout(std430, binding = BINDING_LIST_ENTRIES) restrict buffer ListEntries { uint list_entries[]; };

@@ -1,7 +1,10 @@
-// The kinds of lights, for shading, for the tracing of VPLs, for surfels and for culling.
+// The lights and their kinds, for shading, for the tracing of VPLs, for surfels and for culling.
+#include "bindings.glsl"
 #include "lights/directional_light.glsl"
 #include "lights/point_light.glsl"
 #include "lights/spot_light.glsl"
+
+layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 
 // Light that a light sends to a point.
 Incident incident_light(Light light, vec3 position) {

@@ -14,8 +14,6 @@
 #define SURFACES 1
 #endif
 
-layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
-
 // What a surface reflects towards the viewer: a sum over the lights for each lobe of its material, without the factors
 // that all lights share, which radiance_of applies.
 struct Reflected {

@@ -7,7 +7,6 @@
 
 layout(local_size_x = 32) in;
 
-layout(std430, binding = BINDING_LIGHTS) readonly restrict buffer Lights { Light lights[]; };
 layout(std430, binding = BINDING_PATHS) readonly restrict buffer Paths { Path paths[]; };
 layout(std430, binding = BINDING_VPL_RECORDS) restrict buffer Records { VplRecord records[]; };
 
