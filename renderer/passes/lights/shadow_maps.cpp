@@ -294,18 +294,18 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
 ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                            ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                            const ShadowSettings& settings) {
-    const auto [plan, shadows] = add_shadow_plan(graph, gpu, lights, metrics, settings);
+    const PlannedShadows planned = add_shadow_plan(graph, gpu, lights, metrics, settings);
     return graph.add("shadow-maps", [&](Pass& pass) {
         const std::vector<ResourceHandle> surfaces = read_meshes(pass, scene);
-        pass.read(plan);
+        pass.read(planned.plan);
         pass.parameter(settings);
         const ShadowPrograms programs{
             .opaque = gpu.program({"lights/shadow_maps.vert"}),
             .masked = gpu.program({"surfaces/mesh_surface.vert", "surfaces/depth_prepass.frag"},
                                   {"MASKED", "SHADOW_MAP"})};
         const ShadowMaps out{
-            .plan = plan,
-            .shadows = shadows,
+            .plan = planned.plan,
+            .shadows = planned.shadows,
             .cubes = pass.update(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
                                  Usage::layer_target),
             .maps = pass.update(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
@@ -313,7 +313,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
             .drawn = pass.update(graph.value<DrawnShadows>("drawn shadows"))};
         for (const bool cubes : {true, false}) {
             graph.note(cubes ? out.cubes : out.maps,
-                       depth_note(plan, [=](const ShadowPlan& drawn, std::uint32_t layer) {
+                       depth_note(planned.plan, [=](const ShadowPlan& drawn, std::uint32_t layer) {
                            return depth_terms(drawn, cubes, layer);
                        }));
         }
