@@ -128,16 +128,14 @@ bool Execution::changed(ResourceHandle read) const {
                                  step.name, to_string(resource.kind), resource.name));
 }
 
-bool Execution::valid(ResourceHandle history) const {
+bool Execution::history_valid(TextureHandle history) const {
     const detail::Slot& previous = slot(history, false);
     const std::uint32_t present_of = runtime_.resource(history).history_of;
     if (present_of == none) {
-        throw GraphError(fmt::format("{} '{}' is not a history", to_string(previous.kind),
-                                     runtime_.resource(history).name));
+        throw GraphError(fmt::format("texture '{}' is not a history", runtime_.resource(history).name));
     }
     const detail::Slot& present = *runtime_.slot_of(present_of);
-    return !runtime_.cut_ && previous.filled && previous.texture == present.texture &&
-           previous.buffer == present.buffer;
+    return previous.filled && previous.texture == present.texture;
 }
 
 detail::Slot& Execution::reservable(ResourceHandle handle) const {

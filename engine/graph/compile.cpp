@@ -9,7 +9,6 @@
 #include "engine/graph/details/barriers.hpp"
 #include "engine/graph/details/index_table.hpp"
 #include "engine/graph/details/objects.hpp"
-#include "engine/graph/details/order.hpp"
 
 namespace candela {
 namespace detail {
@@ -86,8 +85,9 @@ bool is_root(const Declaration& declared, std::uint32_t pass) {
     });
 }
 
-/// Per pass: whether it is kept, because it is a root (see is_root) or a kept pass uses its results.
-std::vector<std::uint8_t> needed_passes(const Declaration& declared, const Plan& plan) {
+/// The passes that are kept, because they are roots (see is_root) or a kept pass uses their results. In the
+/// order of declaration, in which handles lead only from earlier to later passes.
+std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan& plan) {
     std::vector<std::uint8_t> needed(declared.pass_count(), 0);
     std::vector<std::uint32_t> open;
     open.reserve(declared.pass_count());
@@ -114,7 +114,13 @@ std::vector<std::uint8_t> needed_passes(const Declaration& declared, const Plan&
             need(plan.writer[version]);
         }
     }
-    return needed;
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
+        if (needed[pass]) {
+            order.push_back(pass);
+        }
+    }
+    return order;
 }
 
 }  // namespace
@@ -146,7 +152,7 @@ CompiledGraph CompileResult::take() && {
     throw GraphError(message);
 }
 
-CompileResult compile(FrameGraph&& graph, CompileOptions options) {
+CompileResult compile(FrameGraph&& graph) {
     detail::Declaration declared = std::move(graph.declared_);
     std::vector<CompileError> errors = std::move(declared.errors);
     detail::Plan plan;
@@ -157,10 +163,7 @@ CompileResult compile(FrameGraph&& graph, CompileOptions options) {
     if (!errors.empty()) {
         return {std::nullopt, std::move(errors)};
     }
-    plan.order = detail::order_passes(declared, plan, options.shuffle_seed);
-
-    const std::vector<std::uint8_t> needed = detail::needed_passes(declared, plan);
-    std::erase_if(plan.order, [&](std::uint32_t pass) { return !needed[pass]; });
+    plan.order = detail::needed_passes(declared, plan);
     detail::plan_lifetimes(declared, plan);
     detail::plan_objects(declared, plan);
     plan.barrier = detail::plan_barriers(declared, plan);

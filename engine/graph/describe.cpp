@@ -1,8 +1,9 @@
 #include <candela/graph/describe.hpp>
 
 #include <algorithm>
-#include <iterator>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,205 +17,227 @@ using detail::Access;
 using detail::none;
 using detail::Resource;
 
-std::string storage_text(const CompiledGraph& graph, const Resource& resource) {
-    if (resource.kind == ResourceKind::value) {
-        return "value";
+/// Makes the description of a graph.
+class Describer {
+ public:
+    explicit Describer(const CompiledGraph& graph) : declared_(graph.declared()), plan_(graph.plan()) {}
+
+    GraphDescription describe() {
+        add_resources();
+        position_.assign(declared_.pass_count(), none);
+        for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
+            position_[plan_.order[position]] = position;
+            add_pass(position);
+        }
+        for (std::uint32_t pass = 0; pass < declared_.pass_count(); ++pass) {
+            if (position_[pass] == none) {
+                made_.culled.emplace_back(declared_.passes[pass].name);
+            }
+        }
+        for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
+            for (const Access& access : declared_.accesses_of(plan_.order[position])) {
+                add_edge(access, position);
+            }
+        }
+        return std::move(made_);
     }
-    if (resource.kind == ResourceKind::buffer) {
-        const BufferDesc& desc = graph.declared().buffer(resource);
-        return fmt::format("buffer of {} x {} bytes", desc.count, desc.stride);
+
+ private:
+    void add_resources() {
+        const std::vector<std::uint32_t> numbers = object_numbers();
+        index_.assign(declared_.resources.size(), none);
+        for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
+            const Resource& resource = declared_.resources[index];
+            if (resource.history_of == none && plan_.object[index] != none) {
+                index_[index] = detail::size_of(made_.resources);
+                made_.resources.push_back(describe(resource, index, numbers[plan_.object[index]]));
+            }
+        }
     }
-    const TextureDesc& desc = graph.declared().texture(resource);
-    std::string text = fmt::format("texture {}x{} {}", desc.size.x, desc.size.y, to_string(desc.format));
-    if (desc.shape != TextureShape::flat) {
-        text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
+
+    /// Per object: its number among the textures and buffers; none for values.
+    [[nodiscard]] std::vector<std::uint32_t> object_numbers() const {
+        std::vector<std::uint32_t> numbers;
+        std::uint32_t next = 0;
+        for (const std::uint32_t owner : plan_.owner) {
+            const bool value = declared_.resources[owner].kind == ResourceKind::value;
+            numbers.push_back(value ? none : next++);
+        }
+        return numbers;
     }
-    if (desc.mips != 1) {
-        text += fmt::format(", {} mips", desc.mips);
+
+    [[nodiscard]] DescribedResource describe(const Resource& resource, std::uint32_t index,
+                                             std::uint32_t object) const {
+        DescribedResource made{.name = std::string(resource.name),
+                               .kind = resource.kind,
+                               .lifetime = resource.lifetime,
+                               .first = plan_.lifetime[index].first,
+                               .last = plan_.lifetime[index].last};
+        if (resource.kind == ResourceKind::texture) {
+            made.texture = declared_.texture(resource);
+        }
+        if (resource.kind == ResourceKind::buffer) {
+            made.buffer = declared_.buffer(resource);
+        }
+        if (resource.part_of != none) {
+            made.part_of = declared_.resources[resource.part_of].name;
+        }
+        if (object != none) {
+            made.object = object;
+        }
+        if (resource.history != none) {
+            made.history_object = object + 1;
+        }
+        return made;
     }
-    if (resource.part_of != none) {
-        text += fmt::format(", part of {}", graph.declared().resources[resource.part_of].name);
+
+    /// In GraphDescription::resources; of a history that of its texture.
+    [[nodiscard]] std::size_t index_of(const Access& access) const {
+        const std::uint32_t base = declared_.resources[access.resource].history_of;
+        return index_[base == none ? access.resource : base];
     }
-    return text;
+
+    void add_pass(std::uint32_t position) {
+        const std::uint32_t pass = plan_.order[position];
+        const detail::PassNode& node = declared_.passes[pass];
+        DescribedPass made{.name = std::string(node.name),
+                           .side_effect = node.side_effect,
+                           .barrier = plan_.barrier[position]};
+        for (const detail::ComponentRead& read : declared_.components_of(pass)) {
+            made.components.emplace_back(read.name);
+        }
+        for (const Access& access : declared_.accesses_of(pass)) {
+            const Resource& resource = declared_.resources[access.resource];
+            DescribedAccess use{.resource = index_of(access),
+                                .version = access.version,
+                                .history = resource.history_of != none,
+                                .write = access.write,
+                                .update = access.update};
+            if (resource.kind != ResourceKind::value) {
+                made.gpu = true;
+                use.usage = access.usage;
+            }
+            made.accesses.push_back(use);
+        }
+        made_.passes.push_back(std::move(made));
+    }
+
+    /// From the pass whose result is accessed.
+    void add_edge(const Access& access, std::uint32_t position) {
+        const std::uint32_t base = declared_.resources[access.resource].history_of;
+        const std::uint32_t version =
+            base == none ? plan_.version(access.resource, access.version - (access.write ? 1 : 0))
+                         : plan_.version(base, declared_.resources[base].versions);
+        const std::uint32_t writer = plan_.writer[version];
+        if (writer == none || (writer == plan_.order[position] && base == none)) {
+            return;
+        }
+        DescribedEdge edge{position_[writer], position, base != none, {index_of(access)}};
+        const auto same = std::find_if(first_edge(position), made_.edges.end(), [&](const auto& other) {
+            return other.from == edge.from && other.history == edge.history;
+        });
+        if (same == made_.edges.end()) {
+            made_.edges.push_back(std::move(edge));
+        } else if (std::ranges::count(same->resources, edge.resources.front()) == 0) {
+            same->resources.push_back(edge.resources.front());
+        }
+    }
+
+    /// The edges to the pass at `position` are the last ones.
+    [[nodiscard]] std::vector<DescribedEdge>::iterator first_edge(std::size_t position) {
+        return std::ranges::lower_bound(made_.edges, position, {}, &DescribedEdge::to);
+    }
+
+    const detail::Declaration& declared_;
+    const detail::Plan& plan_;
+    GraphDescription made_;
+    std::vector<std::uint32_t> position_;  // per declared pass: its position, or none
+    std::vector<std::uint32_t> index_;     // per declared resource: its index in the description, or none
+};
+
+std::string name_of(const GraphDescription& graph, std::size_t resource, bool history) {
+    return (history ? "history of " : "") + graph.resources[resource].name;
 }
 
-std::string name_of(const CompiledGraph& graph, std::uint32_t resource) {
-    const Resource& named = graph.declared().resources[resource];
-    return fmt::format("{}{}", named.history_of == none ? "" : "history of ", named.name);
-}
-
-std::string access_text(const CompiledGraph& graph, const Access& access) {
-    const Resource& resource = graph.declared().resources[access.resource];
-    std::string text = name_of(graph, access.resource);
-    if (resource.history_of == none) {
+std::string access_text(const GraphDescription& graph, const DescribedAccess& access) {
+    std::string text = name_of(graph, access.resource, access.history);
+    if (!access.history) {
         text += fmt::format(" v{}", access.version);
     }
-    if (resource.kind != ResourceKind::value) {
-        text += fmt::format(" ({})", to_string(access.usage));
+    if (access.usage) {
+        text += fmt::format(" ({})", to_string(*access.usage));
     }
     return text;
 }
 
-/// Culled passes, in the order of declaration.
-std::vector<std::uint32_t> culled_passes(const CompiledGraph& graph) {
-    std::vector<bool> kept(graph.declared().pass_count(), false);
-    for (const std::uint32_t pass : graph.plan().order) {
-        kept[pass] = true;
-    }
-    std::vector<std::uint32_t> culled;
-    for (std::uint32_t pass = 0; pass < kept.size(); ++pass) {
-        if (!kept[pass]) {
-            culled.push_back(pass);
-        }
-    }
-    return culled;
-}
-
-/// Resources that kept passes use, without histories.
-std::vector<std::uint32_t> used_resources(const CompiledGraph& graph) {
-    std::vector<std::uint32_t> used;
-    for (std::uint32_t index = 0; index < graph.declared().resources.size(); ++index) {
-        const bool previous = graph.declared().resources[index].history_of != none;
-        if (!previous && graph.plan().object[index] != none) {
-            used.push_back(index);
-        }
-    }
-    return used;
-}
-
-/// Per object: its number among the textures and buffers; none for values.
-std::vector<std::uint32_t> object_numbers(const CompiledGraph& graph) {
-    std::vector<std::uint32_t> numbers;
-    std::uint32_t next = 0;
-    for (const std::uint32_t owner : graph.plan().owner) {
-        const bool value = graph.declared().resources[owner].kind == ResourceKind::value;
-        numbers.push_back(value ? none : next++);
-    }
-    return numbers;
-}
-
-std::string pass_text(const CompiledGraph& graph, std::uint32_t position) {
-    const std::uint32_t pass = graph.plan().order[position];
-    const detail::PassNode& node = graph.declared().passes[pass];
+std::string pass_text(const GraphDescription& graph, std::size_t position) {
+    const DescribedPass& pass = graph.passes[position];
     std::string text =
-        fmt::format("  {} {}{}\n", position, node.name, node.side_effect ? " (side effect)" : "");
+        fmt::format("  {} {}{}\n", position, pass.name, pass.side_effect ? " (side effect)" : "");
     const auto line = [&](std::string_view verb, std::string_view what) {
         text += fmt::format("      {} {}\n", verb, what);
     };
-    const Barrier barrier = graph.plan().barrier[position];
-    if (barrier != Barrier::none) {
-        line("barrier", to_string(barrier));
+    if (pass.barrier != Barrier::none) {
+        line("barrier", to_string(pass.barrier));
     }
-    for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
-        line("world", read.name);
+    for (const std::string& component : pass.components) {
+        line("world", component);
     }
-    for (const Access& access : graph.declared().accesses_of(pass)) {
+    for (const DescribedAccess& access : pass.accesses) {
         line(access.update ? "update" : access.write ? "write" : "read", access_text(graph, access));
     }
     return text;
 }
 
-std::string resource_text(const CompiledGraph& graph, std::uint32_t index,
-                          const std::vector<std::uint32_t>& numbers) {
-    const Resource& resource = graph.declared().resources[index];
-    const detail::Span span = graph.plan().lifetime[index];
-    const std::uint32_t object = numbers[graph.plan().object[index]];
-    std::string text = fmt::format("  {}: {}, {} [{}..{}]", resource.name, storage_text(graph, resource),
-                                   to_string(resource.lifetime), span.first, span.last);
-    if (object != none) {
-        text += fmt::format(", object {}", object);
+std::string resource_text(const DescribedResource& resource) {
+    std::string text = fmt::format("  {}: {}, {} [{}..{}]", resource.name, storage_text(resource),
+                                   to_string(resource.lifetime), resource.first, resource.last);
+    if (resource.object) {
+        text += fmt::format(", object {}", *resource.object);
     }
-    if (resource.history != none) {
-        text += fmt::format(", history in {}", object + 1);
+    if (resource.history_object) {
+        text += fmt::format(", history in {}", *resource.history_object);
     }
     return text + "\n";
 }
 
-std::string dot_name(std::string_view text) {
-    std::string escaped = "\"";
+/// For the inside of quotation marks.
+std::string dot_escaped(std::string_view text) {
+    std::string escaped;
     for (const char character : text) {
         if (character == '"' || character == '\\') {
             escaped += '\\';
         }
         escaped += character;
     }
-    return escaped + "\"";
+    return escaped;
 }
 
-/// The names, one per line.
-std::string dot_label(const std::vector<std::string>& names) {
+std::string dot_edge(const GraphDescription& graph, const DescribedEdge& edge) {
     std::string label;
-    for (const std::string& name : names) {
-        const std::string quoted = dot_name(name);
-        label += (label.empty() ? "" : "\\n") + quoted.substr(1, quoted.size() - 2);
+    for (const std::size_t resource : edge.resources) {
+        label += (label.empty() ? "" : "\\n") + dot_escaped(name_of(graph, resource, edge.history));
     }
-    return '"' + label + '"';
+    return fmt::format("    \"{}\" -> \"{}\" [label=\"{}\"{}];\n", dot_escaped(graph.passes[edge.from].name),
+                       dot_escaped(graph.passes[edge.to].name), label, edge.history ? ", style=dashed" : "");
 }
 
-/// All that one pass needs of another, of this frame or of the last one.
-struct DotEdge {
-    std::uint32_t from = 0;
-    std::uint32_t to = 0;
-    bool of_history = false;
-    std::vector<std::string> resources;
-};
-
-void add_dot_edge(std::vector<DotEdge>& edges, DotEdge edge) {
-    const auto same = std::ranges::find_if(edges, [&](const DotEdge& other) {
-        return other.from == edge.from && other.to == edge.to && other.of_history == edge.of_history;
-    });
-    if (same == edges.end()) {
-        edges.push_back(std::move(edge));
-    } else if (std::ranges::count(same->resources, edge.resources.front()) == 0) {
-        same->resources.push_back(std::move(edge.resources.front()));
-    }
-}
-
-std::vector<DotEdge> dot_edges(const CompiledGraph& graph) {
-    const detail::Declaration& declared = graph.declared();
-    const detail::Plan& plan = graph.plan();
-    std::vector<DotEdge> edges;
-    for (const std::uint32_t pass : plan.order) {
-        for (const Access& access : declared.accesses_of(pass)) {
-            const std::uint32_t base = declared.resources[access.resource].history_of;
-            const std::uint32_t version =
-                base == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
-                             : plan.version(base, declared.resources[base].versions);
-            const std::uint32_t writer = plan.writer[version];
-            if (writer == none || (writer == pass && base == none)) {
-                continue;
-            }
-            add_dot_edge(edges, {writer, pass, base != none, {name_of(graph, access.resource)}});
-        }
-    }
-    return edges;
-}
-
-/// Whether the pass reads or writes textures or buffers; others only use values and components.
-bool uses_gpu(const CompiledGraph& graph, std::uint32_t pass) {
-    return std::ranges::any_of(graph.declared().accesses_of(pass), [&](const Access& access) {
-        return graph.declared().resources[access.resource].kind != ResourceKind::value;
-    });
-}
-
-Json pass_json(const CompiledGraph& graph, std::uint32_t position) {
-    const std::uint32_t pass = graph.plan().order[position];
-    const detail::PassNode& node = graph.declared().passes[pass];
-    Json json{{"name", node.name},
-              {"kind", uses_gpu(graph, pass) ? "gpu" : "cpu"},
-              {"side_effect", node.side_effect},
-              {"barrier", to_string(graph.plan().barrier[position])},
+Json pass_json(const GraphDescription& graph, const DescribedPass& pass) {
+    Json json{{"name", pass.name},
+              {"kind", pass.gpu ? "gpu" : "cpu"},
+              {"side_effect", pass.side_effect},
+              {"barrier", to_string(pass.barrier)},
               {"world", Json::array()},
               {"reads", Json::array()},
               {"writes", Json::array()}};
-    for (const detail::ComponentRead& read : graph.declared().components_of(pass)) {
-        json["world"].push_back(read.name);
+    for (const std::string& component : pass.components) {
+        json["world"].push_back(component);
     }
-    for (const Access& access : graph.declared().accesses_of(pass)) {
-        Json entry{{"resource", name_of(graph, access.resource)}, {"version", access.version}};
-        const bool value = graph.declared().resources[access.resource].kind == ResourceKind::value;
-        if (!value) {
-            entry["usage"] = to_string(access.usage);
+    for (const DescribedAccess& access : pass.accesses) {
+        Json entry{{"resource", name_of(graph, access.resource, access.history)},
+                   {"version", access.version}};
+        if (access.usage) {
+            entry["usage"] = to_string(*access.usage);
         }
         if (access.update) {
             entry["update"] = true;
@@ -224,89 +247,103 @@ Json pass_json(const CompiledGraph& graph, std::uint32_t position) {
     return json;
 }
 
-/// The parts of storage_text on their own, as declared.
-void add_storage(const CompiledGraph& graph, const Resource& resource, Json& json) {
+Json resource_json(const DescribedResource& resource) {
+    Json json{{"name", resource.name},
+              {"storage", storage_text(resource)},
+              {"lifetime", to_string(resource.lifetime)},
+              {"first", resource.first},
+              {"last", resource.last}};
+    if (resource.object) {
+        json["object"] = *resource.object;
+    }
+    if (resource.history_object) {
+        json["history_object"] = *resource.history_object;
+    }
     json["kind"] = to_string(resource.kind);
     if (resource.kind == ResourceKind::buffer) {
-        const BufferDesc& desc = graph.declared().buffer(resource);
-        json["count"] = desc.count;
-        json["stride"] = desc.stride;
+        json["count"] = resource.buffer.count;
+        json["stride"] = resource.buffer.stride;
     }
     if (resource.kind == ResourceKind::texture) {
-        const TextureDesc& desc = graph.declared().texture(resource);
+        const TextureDesc& desc = resource.texture;
         json["format"] = to_string(desc.format);
         json["shape"] = to_string(desc.shape);
         json["size"] = {desc.size.x, desc.size.y};
         json["layers"] = desc.layers;
         json["mips"] = desc.mips;
     }
+    return json;
 }
 
 }  // namespace
 
-std::string describe_text(const CompiledGraph& graph) {
-    std::string text = "passes\n";
-    for (std::uint32_t position = 0; position < graph.pass_count(); ++position) {
-        text += pass_text(graph, position);
+GraphDescription describe(const CompiledGraph& graph) {
+    return Describer(graph).describe();
+}
+
+std::string storage_text(const DescribedResource& resource) {
+    if (resource.kind == ResourceKind::value) {
+        return "value";
     }
-    const std::vector<std::uint32_t> culled = culled_passes(graph);
-    if (!culled.empty()) {
-        text += "culled\n";
+    if (resource.kind == ResourceKind::buffer) {
+        return fmt::format("buffer of {} x {} bytes", resource.buffer.count, resource.buffer.stride);
     }
-    for (const std::uint32_t pass : culled) {
-        text += fmt::format("  {}\n", graph.declared().passes[pass].name);
+    const TextureDesc& desc = resource.texture;
+    std::string text = fmt::format("texture {}x{} {}", desc.size.x, desc.size.y, to_string(desc.format));
+    if (desc.shape != TextureShape::flat) {
+        text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
     }
-    text += "resources\n";
-    const std::vector<std::uint32_t> numbers = object_numbers(graph);
-    for (const std::uint32_t index : used_resources(graph)) {
-        text += resource_text(graph, index, numbers);
+    if (desc.mips != 1) {
+        text += fmt::format(", {} mips", desc.mips);
+    }
+    if (!resource.part_of.empty()) {
+        text += fmt::format(", part of {}", resource.part_of);
     }
     return text;
 }
 
-std::string describe_dot(const CompiledGraph& graph) {
-    const detail::Declaration& declared = graph.declared();
+std::string describe_text(const GraphDescription& graph) {
+    std::string text = "passes\n";
+    for (std::size_t position = 0; position < graph.passes.size(); ++position) {
+        text += pass_text(graph, position);
+    }
+    if (!graph.culled.empty()) {
+        text += "culled\n";
+    }
+    for (const std::string& pass : graph.culled) {
+        text += fmt::format("  {}\n", pass);
+    }
+    text += "resources\n";
+    for (const DescribedResource& resource : graph.resources) {
+        text += resource_text(resource);
+    }
+    return text;
+}
+
+std::string describe_dot(const GraphDescription& graph) {
     std::string text =
         "digraph frame {\n    rankdir=LR;\n    label=\"boxes: on the GPU; rounded: on the CPU; dashed: last "
         "frame's\";\n    node [shape=box, style=filled, fillcolor=\"#cfe2f3\"];\n";
-    for (const std::uint32_t pass : graph.plan().order) {
-        const char* look = uses_gpu(graph, pass) ? "" : " [style=\"rounded,filled\", fillcolor=\"#fff2cc\"]";
-        text += fmt::format("    {}{};\n", dot_name(declared.passes[pass].name), look);
+    for (const DescribedPass& pass : graph.passes) {
+        const char* look = pass.gpu ? "" : " [style=\"rounded,filled\", fillcolor=\"#fff2cc\"]";
+        text += fmt::format("    \"{}\"{};\n", dot_escaped(pass.name), look);
     }
-    for (const DotEdge& edge : dot_edges(graph)) {
-        text += fmt::format("    {} -> {} [label={}{}];\n", dot_name(declared.passes[edge.from].name),
-                            dot_name(declared.passes[edge.to].name), dot_label(edge.resources),
-                            edge.of_history ? ", style=dashed" : "");
+    for (const DescribedEdge& edge : graph.edges) {
+        text += dot_edge(graph, edge);
     }
     return text + "}\n";
 }
 
-std::string describe_json(const CompiledGraph& graph) {
+std::string describe_json(const GraphDescription& graph) {
     Json json{{"passes", Json::array()}, {"culled", Json::array()}, {"resources", Json::array()}};
-    for (std::uint32_t position = 0; position < graph.pass_count(); ++position) {
-        json["passes"].push_back(pass_json(graph, position));
+    for (const DescribedPass& pass : graph.passes) {
+        json["passes"].push_back(pass_json(graph, pass));
     }
-    for (const std::uint32_t pass : culled_passes(graph)) {
-        json["culled"].push_back(graph.declared().passes[pass].name);
+    for (const std::string& pass : graph.culled) {
+        json["culled"].push_back(pass);
     }
-    const std::vector<std::uint32_t> numbers = object_numbers(graph);
-    for (const std::uint32_t index : used_resources(graph)) {
-        const Resource& resource = graph.declared().resources[index];
-        const detail::Span span = graph.plan().lifetime[index];
-        Json entry{{"name", resource.name},
-                   {"storage", storage_text(graph, resource)},
-                   {"lifetime", to_string(resource.lifetime)},
-                   {"first", span.first},
-                   {"last", span.last}};
-        const std::uint32_t object = numbers[graph.plan().object[index]];
-        if (object != none) {
-            entry["object"] = object;
-        }
-        if (resource.history != none) {
-            entry["history_object"] = object + 1;
-        }
-        add_storage(graph, resource, entry);
-        json["resources"].push_back(std::move(entry));
+    for (const DescribedResource& resource : graph.resources) {
+        json["resources"].push_back(resource_json(resource));
     }
     return json.dump(2) + "\n";
 }

@@ -84,7 +84,6 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
             last = now;
         }
     }
-    cut_ = false;
     ++frame_;
     return record_;
 }

@@ -70,6 +70,10 @@ Report Renderer::report(std::size_t view) {
     return state_->report(view);
 }
 
+GraphDescription Renderer::description() const {
+    return state_->description();
+}
+
 std::string Renderer::describe(GraphFormat format) const {
     return state_->describe(format);
 }

@@ -393,8 +393,12 @@ void Renderer::State::tone_map(GLuint texture, const Target& target) {
     draw_tone_mapped(gpu_, tone_map_program(gpu_), target, display_of(configuration_));
 }
 
+GraphDescription Renderer::State::description() const {
+    return candela::describe(*runtime_.graph());
+}
+
 std::string Renderer::State::describe(GraphFormat format) const {
-    const CompiledGraph& graph = *runtime_.graph();
+    const GraphDescription graph = description();
     switch (format) {
         case GraphFormat::dot:
             return describe_dot(graph);

@@ -34,6 +34,7 @@ class CANDELA_PRIVATE Renderer::State {
     void tone_map(GLuint texture, const Target& target);
     [[nodiscard]] std::vector<FrameReport> take_frames(bool wait);
     [[nodiscard]] Report report(std::size_t view);
+    [[nodiscard]] GraphDescription description() const;
     [[nodiscard]] std::string describe(GraphFormat format) const;
     [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
     [[nodiscard]] bool settled() const { return completed_ && !refine_ && shape_.quality == Quality{}; }

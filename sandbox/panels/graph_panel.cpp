@@ -39,40 +39,44 @@ const PassCost* cost_of(const PassCosts& costs, const std::string& pass) {
     return found == costs.passes().end() ? nullptr : &*found;
 }
 
-void list_resources(const GraphPicture& graph, const std::vector<std::size_t>& resources,
-                    std::string_view verb, std::optional<std::string>& chosen) {
-    for (const std::size_t index : resources) {
-        const GraphResource& resource = graph.resources[index];
-        const bool can_be_shown = resource.kind != GraphResource::Kind::value;
-        const std::string label = fmt::format("{} {}", verb, resource.name);
-        if (!can_be_shown) {
-            ImGui::TextDisabled("%s", label.c_str());
-        } else if (ImGui::Selectable(label.c_str(), chosen == resource.name)) {
-            if (chosen == resource.name) {
-                chosen.reset();
-            } else {
-                chosen = resource.name;
-            }
+void list_resource(const DescribedResource& resource, std::string_view verb,
+                   std::optional<std::string>& chosen) {
+    if (is_of_inspection(resource.name)) return;
+    const std::string label = fmt::format("{} {}", verb, resource.name);
+    if (resource.kind == ResourceKind::value) {
+        ImGui::TextDisabled("%s", label.c_str());
+    } else if (ImGui::Selectable(label.c_str(), chosen == resource.name)) {
+        if (chosen == resource.name) {
+            chosen.reset();
+        } else {
+            chosen = resource.name;
         }
-        note_control(resource.name, fmt::format("{}, {}", resource.storage, resource.lifetime).c_str());
+    }
+    note_control(resource.name,
+                 fmt::format("{}, {}", storage_text(resource), to_string(resource.lifetime)).c_str());
+}
+
+/// The resources of the chosen pass: those that it reads, then those that it writes.
+void list_resources_of(GraphSelection& selection, const GraphDescription& graph) {
+    if (!selection.pass) return;
+    const auto pass = std::ranges::find(graph.passes, *selection.pass, &DescribedPass::name);
+    if (pass == graph.passes.end()) return;
+    for (const bool write : {false, true}) {
+        for (const DescribedAccess& access : pass->accesses) {
+            if (access.write == write && !access.history)
+                list_resource(graph.resources[access.resource], write ? "writes" : "reads",
+                              selection.resource);
+        }
     }
 }
 
-/// The resources of the chosen pass.
-void list_resources_of(GraphSelection& selection, const GraphPicture& graph) {
-    if (!selection.pass) return;
-    const auto pass = std::ranges::find(graph.passes, *selection.pass, &GraphPass::name);
-    if (pass == graph.passes.end()) return;
-    list_resources(graph, pass->reads, "reads", selection.resource);
-    list_resources(graph, pass->writes, "writes", selection.resource);
-}
+/// A point at the left edge of the line of each pass that is drawn, in screen coordinates.
+using Anchors = std::vector<std::optional<ImVec2>>;
 
-/// A point at the left edge of each pass's line, in screen coordinates.
-using Anchors = std::vector<ImVec2>;
-
-void draw_arc(const Anchors& anchors, const GraphEdge& edge, float space, ImU32 colour, float thickness) {
-    const ImVec2 from = anchors[edge.from];
-    const ImVec2 to = anchors[edge.to];
+void draw_arc(const Anchors& anchors, const DescribedEdge& edge, float space, ImU32 colour, float thickness) {
+    if (edge.history || !anchors[edge.from] || !anchors[edge.to]) return;
+    const ImVec2 from = *anchors[edge.from];
+    const ImVec2 to = *anchors[edge.to];
     // The further apart, the further out, up to the space at the left.
     const float reach = space * (1.0F - 1.0F / (1.0F + 0.02F * std::abs(to.y - from.y)));
     const float out = 4.0F / 3.0F * reach;  // a cubic curve reaches three quarters of its control points
@@ -80,16 +84,16 @@ void draw_arc(const Anchors& anchors, const GraphEdge& edge, float space, ImU32 
                                                thickness);
 }
 
-void draw_arcs(const GraphPicture& graph, const Anchors& anchors, float space, std::size_t focus) {
-    for (const GraphEdge& edge : graph.edges) draw_arc(anchors, edge, space, arc_colour, 1.0F);
-    for (const GraphEdge& edge : graph.edges) {
+void draw_arcs(const GraphDescription& graph, const Anchors& anchors, float space, std::size_t focus) {
+    for (const DescribedEdge& edge : graph.edges) draw_arc(anchors, edge, space, arc_colour, 1.0F);
+    for (const DescribedEdge& edge : graph.edges) {
         if (edge.to == focus) draw_arc(anchors, edge, space, input_colour, 2.0F);
         if (edge.from == focus) draw_arc(anchors, edge, space, output_colour, 2.0F);
     }
 }
 
 /// Returns whether the line is under the pointer.
-bool draw_pass(const GraphPass& pass, const PassCost* cost, double frame_ms,
+bool draw_pass(const DescribedPass& pass, const PassCost* cost, double frame_ms,
                std::optional<std::string>& chosen) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
@@ -125,7 +129,11 @@ bool draw_pass(const GraphPass& pass, const PassCost* cost, double frame_ms,
 
 }  // namespace
 
-void draw_graph_panel(GraphSelection& selection, const GraphPicture& graph, const PassCosts& costs) {
+bool is_of_inspection(std::string_view name) {
+    return name.starts_with("inspect");
+}
+
+void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, const PassCosts& costs) {
     const PassCost* plotted = selection.pass ? cost_of(costs, *selection.pass) : nullptr;
     draw_plot(plotted != nullptr ? *plotted : costs.frame());
     list_resources_of(selection, graph);
@@ -134,13 +142,14 @@ void draw_graph_panel(GraphSelection& selection, const GraphPicture& graph, cons
     ImGui::PopTextWrapPos();
 
     const float space = 4.0F * ImGui::GetFontSize();
-    Anchors anchors;
+    Anchors anchors(graph.passes.size());
     std::size_t focus = graph.passes.size();
     ImGui::Indent(space);
     for (std::size_t i = 0; i < graph.passes.size(); ++i) {
-        const GraphPass& pass = graph.passes[i];
+        const DescribedPass& pass = graph.passes[i];
+        if (is_of_inspection(pass.name)) continue;
         const ImVec2 corner = ImGui::GetCursorScreenPos();
-        anchors.emplace_back(corner.x, corner.y + 0.5F * ImGui::GetTextLineHeight());
+        anchors[i] = ImVec2(corner.x, corner.y + 0.5F * ImGui::GetTextLineHeight());
         const bool chosen = selection.pass == pass.name;
         if (draw_pass(pass, cost_of(costs, pass.name), costs.frame().last_ms(), selection.pass) ||
             (chosen && focus == graph.passes.size()))
@@ -150,9 +159,7 @@ void draw_graph_panel(GraphSelection& selection, const GraphPicture& graph, cons
     draw_arcs(graph, anchors, space, focus);
 
     if (!header("all resources", false)) return;
-    std::vector<std::size_t> all(graph.resources.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    list_resources(graph, all, "", selection.resource);
+    for (const DescribedResource& resource : graph.resources) list_resource(resource, "", selection.resource);
 }
 
 }  // namespace candela::sandbox

@@ -2,9 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include <candela/graph/describe.hpp>
 #include <candela/inspection.hpp>
-#include "sandbox/panels/graph_picture.hpp"
 #include "sandbox/panels/pass_costs.hpp"
 
 namespace candela::sandbox {
@@ -16,9 +17,12 @@ struct GraphSelection {
     Inspection inspection;                ///< how it is shown; its resource is not used
 };
 
+/// Whether a pass or a resource with this name serves the view of resources itself, which is not drawn.
+[[nodiscard]] bool is_of_inspection(std::string_view name);
+
 /// Draws the frame graph: the passes in the order in which they run, one per line, coloured by what they
 /// cost, with arcs from the passes whose results they need. A click on a pass lists its resources; a click on
 /// a resource shows it.
-void draw_graph_panel(GraphSelection& selection, const GraphPicture& graph, const PassCosts& costs);
+void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, const PassCosts& costs);
 
 }  // namespace candela::sandbox

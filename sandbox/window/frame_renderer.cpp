@@ -197,13 +197,13 @@ void FrameRenderer::draw_reference(Canvas& canvas) {
 }
 
 /// The description changes with the graph, which also depends on the scene.
-std::shared_ptr<const std::string> FrameRenderer::graph() {
+std::shared_ptr<const GraphDescription> FrameRenderer::graph() {
     const auto& passes = renderer_->last_passes();
     std::vector<std::string> names;
     names.reserve(passes.size());
     for (const PassRecord& pass : passes) names.emplace_back(pass.name);
     if (!graph_ || names != graph_passes_)
-        graph_ = std::make_shared<const std::string>(renderer_->describe(GraphFormat::json));
+        graph_ = std::make_shared<const GraphDescription>(renderer_->description());
     graph_passes_ = std::move(names);
     return graph_;
 }

@@ -59,7 +59,7 @@ class FrameRenderer {
     FinishedTexture draw_difference_of(Slot& slot);
     void inspect(RenderedFrame& frame, Canvas& canvas);
     std::shared_ptr<const Report> report();
-    std::shared_ptr<const std::string> graph();
+    std::shared_ptr<const GraphDescription> graph();
 
     gl::GetProc functions_;
     RendererOptions options_;
@@ -76,7 +76,7 @@ class FrameRenderer {
     bool has_rendered_ = false;
     std::shared_ptr<const Report> report_;
     Clock::time_point report_time_;
-    std::shared_ptr<const std::string> graph_;
+    std::shared_ptr<const GraphDescription> graph_;
     std::vector<std::string> graph_passes_;
 };
 

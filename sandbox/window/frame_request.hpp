@@ -68,7 +68,7 @@ struct RenderedFrame {
     Quality quality;
     std::shared_ptr<const Report> report;  ///< of this frame or of one shortly before; null after an error
     std::vector<FrameReport> times;        ///< of frames whose GPU times have arrived since the last frame
-    std::shared_ptr<const std::string> graph;  ///< Renderer::describe as JSON
+    std::shared_ptr<const GraphDescription> graph;
     std::vector<VplDot> vpls;
     std::shared_ptr<const Picture> radiance;
 };

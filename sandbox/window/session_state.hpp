@@ -5,7 +5,6 @@
 #include <string>
 
 #include "sandbox/panels/graph_panel.hpp"
-#include "sandbox/panels/graph_picture.hpp"
 #include "sandbox/panels/pass_costs.hpp"
 #include "sandbox/panels/status_line.hpp"
 #include "sandbox/window/app_state.hpp"
@@ -25,7 +24,7 @@ struct SessionState {
     std::uint64_t submitted = 0;         ///< number of the newest request
     std::optional<RenderedFrame> shown;  ///< the newest frame
     PassCosts costs;
-    GraphPicture graph;        ///< of the renderer
+    GraphDescription graph;    ///< of the renderer
     GraphSelection selection;  ///< in the graph
     Layout layout;
     bool loading = false;  ///< a scene

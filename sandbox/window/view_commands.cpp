@@ -33,10 +33,11 @@ void change_comparison(AppState& state) {
 }
 
 /// The next texture or buffer of the graph; after the last one, the picture.
-void change_resource(const GraphPicture& graph, GraphSelection& selection, int step) {
+void change_resource(const GraphDescription& graph, GraphSelection& selection, int step) {
     std::vector<std::optional<std::string>> all{std::nullopt};
-    for (const GraphResource& resource : graph.resources) {
-        if (resource.kind != GraphResource::Kind::value) all.emplace_back(resource.name);
+    for (const DescribedResource& resource : graph.resources) {
+        if (resource.kind != ResourceKind::value && !is_of_inspection(resource.name))
+            all.emplace_back(resource.name);
     }
     const auto at = std::ranges::find(all, selection.resource);
     const auto index = at == all.end() ? 0 : at - all.begin();
@@ -46,7 +47,7 @@ void change_resource(const GraphPicture& graph, GraphSelection& selection, int s
 
 }  // namespace
 
-bool change_view(const Command& command, const GraphPicture& graph, AppState& state,
+bool change_view(const Command& command, const GraphDescription& graph, AppState& state,
                  GraphSelection& selection) {
     switch (command.action) {
         case Action::panel:

@@ -9,7 +9,7 @@ namespace candela::sandbox {
 /// Carries out a command that changes only what is shown, and how: panel and help, presets and paths, the
 /// comparison, and which resource of `graph` is selected. Returns whether it is such a command; others change
 /// nothing.
-bool change_view(const Command& command, const GraphPicture& graph, AppState& state,
+bool change_view(const Command& command, const GraphDescription& graph, AppState& state,
                  GraphSelection& selection);
 
 }  // namespace candela::sandbox

@@ -131,9 +131,9 @@ void WindowSession::show(RenderedFrame frame) {
     for (const FrameReport& times : frame.times) state_.costs.add(times);
     if (options_.report) std::ranges::move(frame.times, std::back_inserter(reports_));
     show_errors(frame);
-    if (frame.graph && frame.graph != graph_text_) {
-        graph_text_ = frame.graph;
-        state_.graph = read_graph(*graph_text_);
+    if (frame.graph && frame.graph != graph_) {
+        graph_ = frame.graph;
+        state_.graph = *graph_;
     }
     if (frame.input) answered_input_ = frame.input;
     if (!frame.report && state_.shown) frame.report = state_.shown->report;

@@ -129,7 +129,7 @@ class WindowSession {
     std::optional<Clock::time_point> answered_input_;  ///< by the picture that is shown for the first time
 
     std::vector<FrameReport> reports_;
-    std::shared_ptr<const std::string> graph_text_;
+    std::shared_ptr<const GraphDescription> graph_;  // that state_ has
     OpenPanel open_panel_;
     float pixel_ratio_ = 0.0F;  ///< pixels of a window coordinate
     bool hidden_ = false;       ///< minimised, or without a single pixel

@@ -103,7 +103,8 @@ int main() {
     world.set(entity, Number{0});
     runtime.run(world);
     good &= check(runtime.value(doubled) == 2, "a change was missed");
-    good &= check(describe_text(*runtime.graph()).find("double") != std::string::npos, "no description");
+    good &= check(describe_text(describe(*runtime.graph())).find("double") != std::string::npos,
+                  "no description");
     good &= check(std::string(CANDELA_VERSION).starts_with("0."), "no version");
     return good ? 0 : 1;
 }

@@ -82,11 +82,7 @@ TEST_CASE("graph: exactly those barriers are planned that some pair of accesses 
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({});
-        const bool shuffled = *rc::gen::arbitrary<bool>();
-        const CompiledGraph compiled =
-            random_graph::compile(graph,
-                                  {.shuffle_seed = shuffled ? std::optional(std::uint64_t{7}) : std::nullopt})
-                .take();
+        const CompiledGraph compiled = random_graph::compile(graph).take();
         const auto& barriers = compiled.plan().barrier;
         // A hazard spans at most two frames (with histories), so five frames show each hazard together with
         // the others.

@@ -43,8 +43,8 @@ TextureHandle add_filter(FrameGraph& graph, std::string_view pass_name, TextureH
     });
 }
 
-std::string text_of(FrameGraph& graph, CompileOptions options = {}) {
-    return "\n" + describe_text(compile(std::move(graph), options).take());
+std::string text_of(FrameGraph& graph) {
+    return "\n" + describe_text(describe(compile(std::move(graph)).take()));
 }
 
 TEST_CASE("graph description: in a chain, transients with disjoint lifetimes share objects") {
@@ -229,7 +229,7 @@ bool has_line(const std::string& text, const std::string& line) {
 }
 
 TEST_CASE("graph description: DOT escapes names and draws histories as dashed arrows") {
-    const std::string dot = describe_dot(compile(remembering()).take());
+    const std::string dot = describe_dot(describe(compile(remembering()).take()));
     CHECK(dot.starts_with("digraph frame {\n"));
     CHECK(dot.ends_with("}\n"));
     CHECK(has_line(dot, R"("draw \"it\"";)"));
@@ -250,19 +250,62 @@ TEST_CASE("graph description: DOT merges parallel edges, and passes on the CPU l
         pass.read(drawn.second, Usage::sampled);
         pass.side_effect();
     });
-    const CompiledGraph compiled = compile(std::move(graph)).take();
-    const std::string dot = describe_dot(compiled);
+    const GraphDescription description = describe(compile(std::move(graph)).take());
+    const std::string dot = describe_dot(description);
     CHECK(has_line(dot, R"("draw" -> "show" [label="colour\ndepth"];)"));
     CHECK(std::count(dot.begin(), dot.end(), '>') == 2);
     CHECK(has_line(dot, R"("draw";)"));
     CHECK(has_line(dot, R"("count" [style="rounded,filled", fillcolor="#fff2cc"];)"));
-    const auto json = nlohmann::json::parse(describe_json(compiled));
+    const auto json = nlohmann::json::parse(describe_json(description));
     CHECK(json["passes"][0]["kind"] == "cpu");
     CHECK(json["passes"][1]["kind"] == "gpu");
 }
 
+TEST_CASE("graph description: passes, resources and edges, two passes having one edge of each kind at most") {
+    FrameGraph graph;
+    const auto number =
+        graph.add("count", [&](Pass& pass) { return pass.write(graph.value<int>("number")); });
+    const auto drawn = graph.add("draw", [&](Pass& pass) {
+        pass.read(number);
+        const auto image = pass.write(graph.texture("colour", colour), Usage::colour_target);
+        const auto counts = pass.write(graph.buffer<int>("counts", 3), Usage::storage);
+        return std::pair(image, counts);
+    });
+    graph.add("unseen", [&](Pass& pass) { (void)pass.write(graph.value<int>("other")); });
+    graph.add("mix", [&](Pass& pass) {
+        const TextureHandle mixed = graph.texture("mixed", colour);
+        pass.read(drawn.first, Usage::sampled);
+        pass.read(drawn.second, Usage::uniform);
+        pass.read(graph.history(mixed), Usage::sampled);
+        (void)pass.write(mixed, Usage::colour_target);
+        pass.side_effect();
+    });
+    const GraphDescription description = describe(compile(std::move(graph)).take());
+
+    REQUIRE(description.passes.size() == 3);
+    CHECK_FALSE(description.passes[0].gpu);
+    CHECK(description.passes[1].gpu);
+    CHECK(description.culled == std::vector<std::string>{"unseen"});
+    REQUIRE(description.resources.size() == 4);
+    CHECK(description.resources[1].texture == colour);
+    CHECK(description.resources[2].buffer == BufferDesc{3, sizeof(int)});
+    CHECK(description.edges ==
+          std::vector<DescribedEdge>{{0, 1, false, {0}}, {1, 2, false, {1, 2}}, {2, 2, true, {3}}});
+
+    const DescribedPass& mix = description.passes[2];
+    CHECK(mix.name == "mix");
+    CHECK(mix.side_effect);
+    CHECK(mix.barrier == Barrier::uniform);
+    REQUIRE(mix.accesses.size() == 4);
+    CHECK(mix.accesses[1].usage == Usage::uniform);
+    CHECK_FALSE(mix.accesses[1].write);
+    CHECK(mix.accesses[2].history);
+    CHECK(mix.accesses[3].resource == mix.accesses[2].resource);
+    CHECK(mix.accesses[3].write);
+}
+
 TEST_CASE("graph description: JSON has the same content as the text") {
-    const auto json = nlohmann::json::parse(describe_json(compile(remembering()).take()));
+    const auto json = nlohmann::json::parse(describe_json(describe(compile(remembering()).take())));
     CHECK(json["passes"].size() == 2);
     CHECK(json["passes"][0]["name"] == "draw \"it\"");
     CHECK(json["passes"][1]["side_effect"] == true);

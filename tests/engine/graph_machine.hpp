@@ -82,7 +82,7 @@ inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& ord
 /// A runtime with its own backend, which runs the graph's passes as computations.
 class Machine {
  public:
-    Machine(const Graph& graph, CompileOptions options) : runtime_(backend_) {
+    explicit Machine(const Graph& graph) : runtime_(backend_) {
         for (std::size_t index = 0; index < graph.resources.size(); ++index) {
             const Resource& resource = graph.resources[index];
             if (resource.kind != ResourceKind::value && resource.lifetime == Lifetime::imported) {
@@ -91,19 +91,16 @@ class Machine {
                                        : backend_.create_buffer("import", {});
             }
         }
-        switch_to(graph, options);
+        switch_to(graph);
     }
 
     /// Goes on with another graph, whose resources are the same. It must outlive the machine.
-    void switch_to(const Graph& graph, CompileOptions options) {
+    void switch_to(const Graph& graph) {
         graph_ = &graph;
         handles_ = {};
-        auto compiled =
-            compile(declare(graph, handles_,
-                            [this](std::size_t pass, const auto& handles) {
-                                return [this, pass, handles](Execution& run) { compute(run, pass, handles); };
-                            }),
-                    options);
+        auto compiled = compile(declare(graph, handles_, [this](std::size_t pass, const auto& handles) {
+            return [this, pass, handles](Execution& run) { compute(run, pass, handles); };
+        }));
         runtime_.switch_to(std::move(compiled).take());
         bound_ = false;
         seen_.clear();
@@ -189,11 +186,8 @@ class Machine {
     }
 
     Content previous(Execution& run, const Access& access, const Handles& handles) const {
-        const ResourceHandle handle = handles.previous.at(access.resource);
-        const bool valid = graph_->resources[access.resource].kind == ResourceKind::texture
-                               ? run.history_valid(TextureHandle{handle})
-                               : run.history_valid(BufferHandle<float>{handle});
-        return valid ? backend_.objects.at(object(run, access.resource, handle)).content : 0;
+        const TextureHandle handle{handles.previous.at(access.resource)};
+        return run.history_valid(handle) ? backend_.objects.at(run.object(handle)).content : 0;
     }
 
     Content read(Execution& run, std::size_t resource, ResourceHandle handle) const {

@@ -165,32 +165,6 @@ TEST_CASE("graph: culling, order and shared objects of random graphs agree with 
     }));
 }
 
-TEST_CASE("graph: shuffled orders are valid, and the default is the order of declaration" *
-          doctest::test_suite("random")) {
-    CHECK(rc::check([] {
-        const Graph graph = random_graph::make({});
-        const Precedence precedes = precedence(graph);
-        const CompiledGraph straight = random_graph::compile(graph).take();
-        RC_ASSERT(std::is_sorted(straight.plan().order.begin(), straight.plan().order.end()));
-        const CompiledGraph shuffled =
-            random_graph::compile(graph, {.shuffle_seed = *rc::gen::arbitrary<std::uint64_t>()}).take();
-        check_order(graph, precedes, shuffled);
-        check_objects(graph, shuffled);
-    }));
-}
-
-TEST_CASE("graph: seeds give different orders") {
-    Graph graph;
-    random_graph::Pass pass;
-    pass.side_effect = true;
-    graph.passes.assign(20, pass);
-    const auto order = [&](std::uint64_t seed) {
-        return random_graph::compile(graph, {.shuffle_seed = seed}).take().plan().order;
-    };
-    CHECK(order(1) == order(1));
-    CHECK(order(1) != order(2));
-}
-
 /// Declares and compiles `count` passes, each of which reads the results of the `reads` passes before it.
 /// Returns the time in seconds.
 double seconds_to_compile(std::size_t count, std::size_t reads) {
@@ -208,7 +182,7 @@ double seconds_to_compile(std::size_t count, std::size_t reads) {
             return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::storage);
         }));
     }
-    const CompiledGraph compiled = compile(std::move(graph), {.shuffle_seed = 1}).take();
+    const CompiledGraph compiled = compile(std::move(graph)).take();
     CHECK(compiled.pass_count() == count);
     CHECK(compiled.plan().owner.size() <= reads + 2);  // only a window of results is alive at any time
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -112,7 +112,8 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
         access.version = ++resource.versions;
         access.usage = gpu ? write_usage(resource.kind) : Usage{};
     } else {
-        access.previous = options.histories && gpu && !imported && resource.versions > 0 && one_in(3);
+        const bool texture = resource.kind == ResourceKind::texture;
+        access.previous = options.histories && texture && !imported && resource.versions > 0 && one_in(3);
         if (resource.versions == 0 && !imported) {
             return;
         }
@@ -209,9 +210,7 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
         if (!resource.remembered) {
             continue;
         }
-        const bool texture = resource.kind == ResourceKind::texture;
-        handles.previous[index] = texture ? ResourceHandle(frame.history(TextureHandle{handle}))
-                                          : ResourceHandle(frame.history(BufferHandle<float>{handle}));
+        handles.previous[index] = frame.history(TextureHandle{handle});
     }
     for (std::size_t index = 0; index < graph.passes.size(); ++index) {
         const Pass& pass = graph.passes[index];
@@ -231,10 +230,10 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
     return frame;
 }
 
-inline CompileResult compile(const Graph& graph, CompileOptions options = {}) {
+inline CompileResult compile(const Graph& graph) {
     Handles handles;
     return candela::compile(
-        declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }), options);
+        declare(graph, handles, [](std::size_t, const Handles&) { return [](Execution&) {}; }));
 }
 
 }  // namespace candela::random_graph

@@ -241,7 +241,6 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: switching back and forth creates nothi
 
 TEST_CASE_FIXTURE(Fixture, "graph switch: after 200 target sizes there are as many objects as after one") {
     start();
-    runtime.trim();
     const std::size_t objects = backend.objects.size();
     for (unsigned size = 1; size <= 200; ++size) {
         switch_to({.target_size = {size, 200 - size / 2}});
@@ -249,7 +248,7 @@ TEST_CASE_FIXTURE(Fixture, "graph switch: after 200 target sizes there are as ma
         CHECK(backend.objects.size() <= 2 * objects);
     }
     switch_to({});
-    runtime.trim();
+    switch_to({});  // destroys what the first did not take from the free pool
     CHECK(backend.objects.size() == objects);
     CHECK(backend.misuse.empty());
 }
@@ -319,7 +318,7 @@ TEST_CASE("graph memory: bytes saved by sharing and bytes in the free pool are r
     runtime.switch_to(chain(1));
     CHECK(runtime.memory().texture_bytes == 2 * bytes);
     CHECK(runtime.memory().free_pool_bytes == bytes);
-    runtime.trim();
+    runtime.switch_to(chain(1));
     CHECK(runtime.memory().texture_bytes == bytes);
 }
 

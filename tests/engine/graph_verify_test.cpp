@@ -359,7 +359,7 @@ TEST_CASE("graph verify: correct random graphs pass, and verifying does not chan
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false});
         Host host{0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
-        Machine machine(graph, {.shuffle_seed = *rc::gen::arbitrary<std::uint64_t>()});
+        Machine machine(graph);
         machine.runtime().set_verification(true);
         for (int frame = 0; frame < 6; ++frame) {
             const auto expected = meaning(graph, machine.runtime().graph()->plan().order, host, nullptr);
@@ -377,7 +377,7 @@ TEST_CASE("graph verify: correct random graphs with histories pass" * doctest::t
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20});
         Host host{0, std::vector<random_graph::Content>(graph.resources.size(), 1)};
-        Machine machine(graph, {});
+        Machine machine(graph);
         machine.runtime().set_verification(true);
         for (int frame = 0; frame < 8; ++frame) {
             machine.provide(host);
@@ -408,7 +408,7 @@ const FrameRecord& second_frame(Machine& machine, const Graph& graph) {
 /// one that runs again and writes something. Passes that read imports are excluded: another pass may have
 /// written to the import, and then it is unknown whether the import still has the same contents.
 bool can_be_found(const Graph& graph, std::size_t pass) {
-    Machine machine(graph, {});
+    Machine machine(graph);
     const FrameRecord& record = second_frame(machine, graph);
     machine.runtime().verify(machine.world());
     const auto is_verified = [&](const PassRecord& run) {
@@ -425,7 +425,7 @@ bool can_be_found(const Graph& graph, std::size_t pass) {
 
 /// What verifying the second frame reports if pass `culprit` starts to write something else.
 std::string message_about(const Graph& graph, std::size_t culprit) {
-    Machine machine(graph, {});
+    Machine machine(graph);
     (void)second_frame(machine, graph);
     machine.sabotage(culprit);
     try {
@@ -455,7 +455,7 @@ TEST_CASE("graph verify: in random graphs the error names the pass with the unde
           doctest::test_suite("random")) {
     CHECK(rc::check([] {
         const Graph graph = random_graph::make({.passes = 20, .histories = false});
-        const auto order = Machine(graph, {}).runtime().graph()->plan().order;
+        const auto order = Machine(graph).runtime().graph()->plan().order;
         if (order.empty()) return;
         const std::size_t culprit = order[random_graph::choose(order.size())];
         const std::string message = message_about(graph, culprit);

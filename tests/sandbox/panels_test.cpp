@@ -126,17 +126,20 @@ TEST_SUITE("panels") {
     }
 
     TEST_CASE("a click on a pass lists its resources, and a click on one of these shows it, or no more") {
-        GraphPicture graph;
-        using Resource = GraphResource::Kind;
-        graph.resources = {{"albedo", "", "", Resource::texture},
-                           {"plan", "", "", Resource::value},
-                           {"lights", "", "", Resource::buffer}};
-        graph.passes = {{.name = "gbuffer", .gpu = true, .reads = {1}, .writes = {0}},
-                        {.name = "deferred", .gpu = true, .reads = {0, 2}, .writes = {}}};
+        GraphDescription graph;
+        graph.resources = {{.name = "albedo", .kind = ResourceKind::texture},
+                           {.name = "plan", .kind = ResourceKind::value},
+                           {.name = "lights", .kind = ResourceKind::buffer}};
+        graph.passes = {
+            {.name = "gbuffer", .gpu = true, .accesses = {{.resource = 1}, {.resource = 0, .write = true}}},
+            {.name = "deferred", .gpu = true, .accesses = {{.resource = 0}, {.resource = 2}}},
+            {.name = "inspect", .gpu = true}};
+        graph.edges = {{0, 1, false, {0}}, {1, 2, false, {0}}};
         GraphSelection selection;
         const PassCosts costs;
         Screen screen(in_panel([&] { draw_graph_panel(selection, graph, costs); }));
         CHECK_FALSE(screen.has("albedo"));
+        CHECK_FALSE(screen.has("inspect"));
         screen.click("gbuffer");
         CHECK(selection.pass == "gbuffer");
         CHECK_FALSE(screen.has("lights"));

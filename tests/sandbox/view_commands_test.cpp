@@ -11,7 +11,7 @@ namespace {
 struct View {
     AppState state;
     GraphSelection selection;
-    GraphPicture graph;
+    GraphDescription graph;
 
     bool carry_out(Action action, int number = 0) {
         return change_view({action, number}, graph, state, selection);
@@ -36,10 +36,10 @@ TEST_SUITE("view commands") {
 
     TEST_CASE("resources go round, values left out, with the picture between the last and the first") {
         View view;
-        using Kind = GraphResource::Kind;
-        view.graph.resources = {{"depth", "", "", Kind::texture},
-                                {"plan", "", "", Kind::value},
-                                {"lights", "", "", Kind::buffer}};
+        view.graph.resources = {{.name = "depth", .kind = ResourceKind::texture},
+                                {.name = "plan", .kind = ResourceKind::value},
+                                {.name = "inspected picture", .kind = ResourceKind::texture},
+                                {.name = "lights", .kind = ResourceKind::buffer}};
         for (const char* const name : {"depth", "lights"}) {
             CHECK(view.carry_out(Action::next_resource));
             CHECK(view.selection.resource == name);

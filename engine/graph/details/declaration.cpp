@@ -93,15 +93,14 @@ ResourceHandle Declaration::add_value(std::string_view name, std::type_index typ
     return add_resource(name, ResourceKind::value, lifetime, value_types.size() - 1);
 }
 
-ResourceHandle Declaration::add_history(ResourceHandle of, ResourceKind kind) {
-    if (!owns(of, kind)) {
-        error(ErrorCode::foreign_handle, fmt::format("history of a {} of another graph", to_string(kind)));
+ResourceHandle Declaration::add_history(ResourceHandle of) {
+    if (!owns(of, ResourceKind::texture)) {
+        error(ErrorCode::foreign_handle, "history of a texture of another graph");
         return {};
     }
     const Resource base = resources[of.resource];
     if (const std::string_view why = why_no_history(base); !why.empty()) {
-        error(ErrorCode::wrong_usage,
-              fmt::format("{} '{}' has no history: it {}", to_string(kind), base.name, why));
+        error(ErrorCode::wrong_usage, fmt::format("texture '{}' has no history: it {}", base.name, why));
         return {id, of.resource, of.version};
     }
     if (base.history != none) {
@@ -136,8 +135,7 @@ std::string_view Declaration::why_no_history(const Resource& base) const {
 
 ResourceHandle Declaration::add_part(ResourceHandle of, TexturePart part) {
     if (!owns(of, ResourceKind::texture)) {
-        error(ErrorCode::foreign_handle,
-              fmt::format("part of a {} of another graph", to_string(ResourceKind::texture)));
+        error(ErrorCode::foreign_handle, "part of a texture of another graph");
         return {};
     }
     const std::string_view whole = resources[of.resource].name;
@@ -302,8 +300,8 @@ ResourceHandle Declaration::write(ResourceHandle handle, ResourceKind kind, Bind
     Resource& resource = resources[handle.resource];
     if (resource.history_of != none) {
         error(ErrorCode::wrong_usage,
-              fmt::format("pass '{}' writes the history of {} '{}', which is read only", name,
-                          to_string(kind), resource.name));
+              fmt::format("pass '{}' writes the history of texture '{}', which is read only", name,
+                          resource.name));
         return handle;
     }
     if (kind == ResourceKind::value && resource.lifetime == Lifetime::imported) {

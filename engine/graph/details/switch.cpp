@@ -64,7 +64,9 @@ GraphRuntime::~GraphRuntime() {
     for (const detail::Slot& slot : state_.slots) {
         destroy(slot);
     }
-    trim();
+    for (const detail::Slot& slot : free_pool_) {
+        destroy(slot);
+    }
 }
 
 void GraphRuntime::switch_to(CompiledGraph graph) {
@@ -153,13 +155,6 @@ void GraphRuntime::destroy(const detail::Slot& slot) {
     } else {
         backend_.destroy_buffer(slot.object);
     }
-}
-
-void GraphRuntime::trim() {
-    for (const detail::Slot& slot : free_pool_) {
-        destroy(slot);
-    }
-    free_pool_.clear();
 }
 
 MemoryUse GraphRuntime::memory() const {

@@ -17,6 +17,7 @@
 #include <candela/extension.hpp>
 #include <candela/gl_error.hpp>
 #include <candela/gl_loader.hpp>
+#include <candela/graph/describe.hpp>
 #include <candela/renderer_options.hpp>
 #include <candela/report.hpp>
 #include <candela/view.hpp>
@@ -121,6 +122,8 @@ class CANDELA_API Renderer {
     [[nodiscard]] Report report(std::size_t view = 0);
 
     /// The frame graph of the current configuration: passes, resources and barriers.
+    [[nodiscard]] GraphDescription description() const;
+    /// The same as text for readers, for Graphviz or as JSON.
     [[nodiscard]] std::string describe(GraphFormat format) const;
 
     /// Quality of the last frame, the same for all views. `scale` is below 1 only to keep the frame within

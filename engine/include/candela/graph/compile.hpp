@@ -66,12 +66,6 @@ class CompiledGraph {
     detail::Plan plan_;
 };
 
-struct CompileOptions {
-    /// With a seed, the passes run in a random valid order, the same for the same seed (for tests). Without
-    /// one they run in the order of declaration.
-    std::optional<std::uint64_t> shuffle_seed = std::nullopt;
-};
-
 /// Either a graph, or the errors that prevented compilation.
 struct CANDELA_API CompileResult {
     std::optional<CompiledGraph> graph;
@@ -82,12 +76,12 @@ struct CANDELA_API CompileResult {
     [[nodiscard]] CompiledGraph take() &&;
 };
 
-/// Validates, orders and culls the passes, then plans lifetimes, shared objects and barriers. Consumes the
-/// graph. Reports misuse in the result and does not throw for it; makes no GPU calls. Takes time linear in
-/// passes and accesses.
+/// Validates and culls the passes, which run in the order of declaration, then plans lifetimes, shared
+/// objects and barriers. Consumes the graph. Reports misuse in the result and does not throw for it; makes no
+/// GPU calls. Takes time linear in passes and accesses.
 ///
 /// A pass is kept if it has side effects, if it writes an imported resource, or if a kept pass reads its
 /// result, modifies it in place or reads its history. All other passes are culled.
-[[nodiscard]] CANDELA_API CompileResult compile(FrameGraph&& graph, CompileOptions options = {});
+[[nodiscard]] CANDELA_API CompileResult compile(FrameGraph&& graph);
 
 }  // namespace candela

@@ -96,14 +96,9 @@ class CANDELA_API Execution {
     /// current one replaces the object, and its content is lost.
     void reserve(TextureHandle texture, const TextureDesc& desc);
 
-    /// Whether a history has usable content: it was written, the resource has the same description now, and
-    /// GraphRuntime::invalidate_history was not called since the previous frame. GraphError if the handle is
-    /// not a history.
-    [[nodiscard]] bool history_valid(TextureHandle history) const { return valid(history); }
-    template <class T>
-    [[nodiscard]] bool history_valid(BufferHandle<T> history) const {
-        return valid(history);
-    }
+    /// Whether a history has usable content: it was written, and the texture has the same description now.
+    /// GraphError if the handle is not a history.
+    [[nodiscard]] bool history_valid(TextureHandle history) const;
 
  private:
     friend GraphRuntime;
@@ -112,7 +107,6 @@ class CANDELA_API Execution {
     [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
     [[nodiscard]] const void* content(ResourceHandle value) const;
     [[nodiscard]] const void* previous_content(ResourceHandle value) const;
-    [[nodiscard]] bool valid(ResourceHandle history) const;
     void reserve_buffer(ResourceHandle buffer, std::uint64_t count);
     [[nodiscard]] detail::Slot& reservable(ResourceHandle handle) const;
 
@@ -150,8 +144,8 @@ class CANDELA_API GraphRuntime {
     /// overwritten. Imported textures and buffers must be bound again; imported values stay set.
     ///
     /// Objects that the new graph does not use go to a free pool. The next call of `switch_to` reuses what it
-    /// can from there and destroys the rest; `trim` destroys them at once. If the back end throws, the
-    /// exception passes through and the runtime keeps the old graph, unchanged.
+    /// can from there and destroys the rest. If the back end throws, the exception passes through and the
+    /// runtime keeps the old graph, unchanged.
     void switch_to(CompiledGraph graph);
 
     /// The current graph, or null before the first `switch_to`. Valid until the next `switch_to`.
@@ -215,10 +209,6 @@ class CANDELA_API GraphRuntime {
 
     /// Makes all passes run in the next frame.
     void invalidate();
-    /// Makes all histories invalid in the next frame, for example after a camera cut.
-    void invalidate_history() { cut_ = true; }
-    /// Destroys the objects in the free pool (see `switch_to`).
-    void trim();
 
     /// A value of the current graph; the reference is valid until the value is set again or `switch_to` is
     /// called. GraphError if it was never set.
@@ -273,7 +263,6 @@ class CANDELA_API GraphRuntime {
     std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
     detail::Stamp clock_ = 0;
     Barrier pending_barriers_ = Barrier::none;  // pending: planned for passes that were skipped
-    bool cut_ = false;
     bool verifying_ = false;
     bool repeating_ = false;  // during verify
 };

@@ -18,7 +18,6 @@ namespace candela {
 class CompiledGraph;
 class Execution;  // the interface of a running pass: execute.hpp
 class FrameGraph;
-struct CompileOptions;
 struct CompileResult;
 
 /// Declares one pass: what it reads, what it writes and the function that it runs. The object exists only
@@ -200,17 +199,11 @@ class FrameGraph {
         return {declared_.add_value(name, typeid(T), Lifetime::imported)};
     }
 
-    /// A read-only handle for the content that the resource had at the end of the previous frame. Makes the
-    /// resource persistent; imported resources cannot have a history. The history is invalid in the first
-    /// frame, after a camera cut and after a resize: ask `Execution::history_valid`. A change of the history
-    /// does not make its readers run again.
-    [[nodiscard]] TextureHandle history(TextureHandle texture) {
-        return {declared_.add_history(texture, ResourceKind::texture)};
-    }
-    template <class T>
-    [[nodiscard]] BufferHandle<T> history(BufferHandle<T> buffer) {
-        return {declared_.add_history(buffer, ResourceKind::buffer)};
-    }
+    /// A read-only handle for the content that the texture had at the end of the previous frame. Makes the
+    /// texture persistent; imported textures cannot have a history. The history is invalid in the first frame
+    /// and after a resize: ask `Execution::history_valid`. A change of the history does not make its readers
+    /// run again.
+    [[nodiscard]] TextureHandle history(TextureHandle texture) { return {declared_.add_history(texture)}; }
 
     /// The newest version of the texture with this name, for a pass declared next to read. Only what passes
     /// have written so far is found, not what they are yet to write, nor histories and what only the host
@@ -252,7 +245,7 @@ class FrameGraph {
     }
 
  private:
-    friend CompileResult compile(FrameGraph&& graph, CompileOptions options);
+    friend CompileResult compile(FrameGraph&& graph);
 
     detail::Declaration declared_;
 };

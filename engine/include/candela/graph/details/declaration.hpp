@@ -131,7 +131,7 @@ class CANDELA_API Declaration {
     ResourceHandle add_texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime);
     ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime);
     ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
-    ResourceHandle add_history(ResourceHandle of, ResourceKind kind);
+    ResourceHandle add_history(ResourceHandle of);
     ResourceHandle add_part(ResourceHandle of, TexturePart part);
     void add_note(ResourceHandle on, std::any note);
     /// Null without one.
