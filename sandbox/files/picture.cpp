@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,19 @@ void require_size(const fs::path& path, glm::ivec2 size, std::size_t pixels) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> rgb_of_texels(glm::uvec2 size, std::span<const glm::vec4> texels) {
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(3 * texels.size());
+    for (std::uint32_t y = size.y; y-- > 0;) {
+        for (const glm::vec4& texel : texels.subspan(static_cast<std::size_t>(y) * size.x, size.x)) {
+            for (const float channel : {texel.r, texel.g, texel.b})
+                rgb.push_back(
+                    static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(channel, 0.0F, 1.0F))));
+        }
+    }
+    return rgb;
+}
 
 Picture flipped(Picture picture) {
     const auto row = [&](int y) {

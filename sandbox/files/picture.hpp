@@ -7,6 +7,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 namespace candela::sandbox {
 
@@ -18,6 +19,9 @@ struct Picture {
 
 /// The same upside down: from the rows of OpenGL, which begin at the bottom, or to them.
 [[nodiscard]] Picture flipped(Picture picture);
+
+/// Texels of a tone-mapped texture, the bottom row first, channels from 0 to 1, as write_png takes them.
+[[nodiscard]] std::vector<std::uint8_t> rgb_of_texels(glm::uvec2 size, std::span<const glm::vec4> texels);
 
 // Writers keep every bit of a float: negative numbers, denormals, infinities and NaN are preserved. They
 // write a whole file or none. All of them throw std::runtime_error that names the file and the error.

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include <candela/view.hpp>
 #include "sandbox/candela_private/gl.hpp"
@@ -17,6 +20,10 @@ struct Canvas {
     Canvas(gl::Device& device, glm::uvec2 size, Format format);
 
     [[nodiscard]] glm::uvec2 size() const { return colour.desc().size; }
+    /// Reads the picture back, the bottom row first; waits for the GPU.
+    [[nodiscard]] std::vector<glm::vec4> texels(const gl::Device& device) const {
+        return gl::read_texels(device.gl(), colour.name(), size());
+    }
     [[nodiscard]] Target target() const { return {framebuffer.name(), size()}; }
 };
 

@@ -1,6 +1,5 @@
 #include "sandbox/headless/capture.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <stdexcept>
 
@@ -66,9 +65,8 @@ Capture::Capture(Renderer& renderer, glm::ivec2 size)
       encoded_(device_of(renderer), size_, Format::rgba8) {}
 
 void Capture::add_pixels(std::vector<glm::vec3>& sum) const {
-    const std::vector<float> rgba = linear_.colour.read_floats();
-    for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += glm::vec3(rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]);
+    const std::vector<glm::vec4> texels = linear_.texels(device_of(*renderer_));
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += glm::vec3(texels[i]);
 }
 
 Picture Capture::render(const World& world, Entity camera, int samples, CaptureReport& report) {
@@ -91,17 +89,7 @@ Picture Capture::render(const World& world, Entity camera, int samples, CaptureR
 
 std::vector<std::uint8_t> Capture::tone_mapped(const Picture& picture) {
     renderer_->tone_map(flipped(picture).pixels, encoded_.target());
-    const std::vector<std::byte> rgba = encoded_.colour.read();
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(3 * picture.pixels.size());
-    for (std::uint32_t y = size_.y; y-- > 0;) {
-        const std::size_t row = static_cast<std::size_t>(y) * size_.x;
-        for (std::size_t texel = 4 * row; texel < 4 * (row + size_.x); texel += 4) {
-            for (std::size_t channel = 0; channel < 3; ++channel)
-                rgb.push_back(std::to_integer<std::uint8_t>(rgba[texel + channel]));
-        }
-    }
-    return rgb;
+    return rgb_of_texels(size_, encoded_.texels(device_of(*renderer_)));
 }
 
 void Capture::write(const std::filesystem::path& path, const Picture& picture) {

@@ -1,7 +1,5 @@
 #include "sandbox/window/picture_writer.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -12,21 +10,6 @@ namespace candela::sandbox {
 namespace {
 
 constexpr std::size_t most_jobs = 16;
-
-/// 8 bits per channel, the top row first.
-std::vector<std::uint8_t> to_rgb(glm::uvec2 size, const std::vector<glm::vec4>& texels) {
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(3 * texels.size());
-    for (std::uint32_t y = size.y; y-- > 0;) {
-        for (std::uint32_t x = 0; x < size.x; ++x) {
-            const glm::vec4& texel = texels[static_cast<std::size_t>(y) * size.x + x];
-            for (const float channel : {texel.r, texel.g, texel.b})
-                rgb.push_back(
-                    static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(channel, 0.0F, 1.0F))));
-        }
-    }
-    return rgb;
-}
 
 }  // namespace
 
@@ -72,7 +55,7 @@ void PictureWriter::work() {
         lock.unlock();
         Result result{job.path, ""};
         try {
-            write_png(job.path, job.size, to_rgb(job.size, job.texels));
+            write_png(job.path, job.size, rgb_of_texels(job.size, job.texels));
         } catch (const std::exception& error) {
             result.error = error.what();
         }
