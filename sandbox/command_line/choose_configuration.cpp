@@ -21,11 +21,6 @@ Configuration read_over(const Configuration& base, const std::filesystem::path& 
     throw std::runtime_error(fmt::format("{}: {}", path.string(), fmt::join(result.errors, "; ")));
 }
 
-template <class T>
-void override_by(const std::optional<T>& flag, T& value) {
-    if (flag) value = *flag;
-}
-
 bool is_one_picture_of_many_frames(const Options& options) {
     const bool one_picture = options.out && numbered(*options.out, 0) == *options.out;
     return one_picture && options.frames.value_or(1) > 1 && !options.animate;
@@ -38,15 +33,7 @@ Configuration choose_configuration(const Options& options, bool in_window) {
     configuration.refinement.enabled = in_window || is_one_picture_of_many_frames(options);
     if (in_window) configuration.frame_budget_ms.reset();
     if (options.config) configuration = read_over(configuration, *options.config);
-    override_by(options.show, configuration.show);
-    override_by(options.path, configuration.path);
-    override_by(options.indirect, configuration.indirect);
-    override_by(options.vpl_placement, configuration.vpls.placement);
-    override_by(options.vpls, configuration.vpls.count);
-    override_by(options.bounces, configuration.vpls.bounces);
-    override_by(options.seed, configuration.vpls.seed);
-    override_by(options.vpl_visibility, configuration.visibility.method);
-    override_by(options.interleave, configuration.interleave);
+    apply_settings(options, configuration);
     const std::vector<std::string> errors = validate(configuration);
     if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
     return configuration;

@@ -7,12 +7,13 @@
 #include <limits>
 #include <string_view>
 #include <system_error>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <candela/settings.hpp>
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/command_line/exit_status.hpp"
 #include "sandbox/files/output_file.hpp"
@@ -43,20 +44,14 @@ bool is_file(const fs::path& path) {
     return fs::exists(path, ignored) && !is_folder(path);
 }
 
-/// A flag with a fixed set of values.
-template <typename Target, typename Value>
-void add_choice(CommandLine& line, const std::string& flag, Target& target,
-                std::vector<std::pair<std::string, Value>> choices, const std::string& help) {
-    std::vector<std::string> words;
-    words.reserve(choices.size());
-    for (const auto& choice : choices) words.push_back(choice.first);
-    const std::string type = fmt::format("{}", fmt::join(words, "|"));
-    line.add_value(flag, type, help, [=, &target, choices = std::move(choices)](const std::string& word) {
-        const auto is_word = [&](const auto& choice) { return choice.first == word; };
-        const auto found = std::ranges::find_if(choices, is_word);
-        if (found == choices.end()) fail(flag, word, fmt::format("is not one of {}", fmt::join(words, ", ")));
-        target = found->second;
-    });
+/// The words for the values of an option, in their order.
+using Words = std::vector<std::string_view>;
+
+/// Which of the words it is.
+std::size_t index_of(std::string_view flag, std::string_view word, const Words& words) {
+    const auto found = std::ranges::find(words, word);
+    if (found == words.end()) fail(flag, word, fmt::format("is not one of {}", fmt::join(words, ", ")));
+    return static_cast<std::size_t>(found - words.begin());
 }
 
 /// Parses all of `text` as a number >= `least`.
@@ -68,17 +63,20 @@ std::optional<Number> parse_number(std::string_view text, Number least) {
     return whole && number >= least ? std::optional(number) : std::nullopt;
 }
 
-template <typename Number, typename Target>
-void add_number(CommandLine& line, const std::string& flag, Target& target, Number least,
-                const std::string& help) {
-    line.add_value(flag, "N", help, [flag, &target, least](const std::string& text) {
-        const std::optional<Number> number = parse_number(text, least);
-        if (!number) {
-            fail(flag, text,
-                 fmt::format("is no whole number from {} to {}", least, std::numeric_limits<Number>::max()));
-        }
-        target = *number;
-    });
+/// The same, with an error for other texts and for numbers above `most`.
+template <typename Number>
+Number number_of(std::string_view flag, std::string_view text, Number least,
+                 Number most = std::numeric_limits<Number>::max()) {
+    const std::optional<Number> number = parse_number(text, least);
+    if (number && *number <= most) return *number;
+    const std::string_view kind = std::is_integral_v<Number> ? "whole number" : "number";
+    fail(flag, text, fmt::format("is no {} from {} to {}", kind, least, most));
+}
+
+template <typename Target>
+void add_count(CommandLine& line, const std::string& flag, Target& target, const std::string& help) {
+    line.add_value(flag, "N", help,
+                   [flag, &target](const std::string& text) { target = number_of(flag, text, 1); });
 }
 
 glm::ivec2 parse_size(const std::string& text) {
@@ -169,13 +167,47 @@ void add_text(CommandLine& line, const std::string& flag, Target& target, const 
     line.add_value(flag, type, help, [&target](const std::string& text) { target = text; });
 }
 
-/// The values with their names.
-template <typename Enum, std::size_t N>
-std::vector<std::pair<std::string, Enum>> named(const std::array<Enum, N>& values) {
-    std::vector<std::pair<std::string, Enum>> names;
-    names.reserve(N);
-    for (const Enum value : values) names.emplace_back(to_string(value), value);
-    return names;
+template <class T>
+constexpr bool has_words = std::is_enum_v<T> || std::is_same_v<T, bool>;
+
+/// The words for the values of a setting; none if it is a number.
+template <class T>
+Words words_of(const T& value) {
+    Words words;
+    if constexpr (std::is_same_v<T, bool>) {
+        words = {"off", "on"};
+    } else if constexpr (std::is_enum_v<T>) {
+        for (const Choice& choice : choices_of(value)) words.push_back(choice.name);
+    }
+    return words;
+}
+
+/// A setting's value as on the command line.
+template <class T>
+std::string text_of(const T& value) {
+    if constexpr (has_words<T>) {
+        return std::string(words_of(value)[static_cast<std::size_t>(value)]);
+    } else {
+        return fmt::format("{}", value);
+    }
+}
+std::string text_of(const std::optional<float>& value) {
+    return value ? text_of(*value) : "auto";
+}
+
+/// Sets a setting to the value of its flag.
+template <class T>
+void set_value(const Setting& setting, T& value, const std::string& text) {
+    if constexpr (has_words<T>) {
+        value = static_cast<T>(index_of(setting.flag, text, words_of(value)));
+    } else {
+        value = number_of(setting.flag, text, static_cast<T>(setting.range.least),
+                          static_cast<T>(setting.range.most));
+    }
+}
+void set_value(const Setting& setting, std::optional<float>& value, const std::string& text) {
+    if (text == "auto") return value.reset();
+    set_value(setting, value.emplace(), text);
 }
 
 void declare_scene(CommandLine& line, Options& options) {
@@ -187,18 +219,17 @@ void declare_scene(CommandLine& line, Options& options) {
                     "an upper limit of scenes, see ImportLimits; default: " + default_limits(),
                     [&options](const std::string& each) { set_limit(options.limits, each); });
     line.add_switch("--headless", "no window: render, write, exit", options.headless);
-    add_choice<ContextChoice, ContextChoice>(line, "--context", options.context,
-                                             {{"auto", ContextChoice::automatic},
-                                              {"window", ContextChoice::window},
-                                              {"egl", ContextChoice::egl},
-                                              {"osmesa", ContextChoice::osmesa}},
-                                             "auto: a window if there is a display, else EGL, else OSMesa");
+    line.add_value("--context", "auto|window|egl|osmesa",
+                   "auto: a window if there is a display, else EGL, else OSMesa",
+                   [&options](const std::string& text) {
+                       const Words words{"auto", "window", "egl", "osmesa"};
+                       options.context = static_cast<ContextChoice>(index_of("--context", text, words));
+                   });
     line.add_value("--size", "WxH", "pixels; default: 1280x720 in a window, 512x512 headless",
                    [&options](const std::string& text) { options.size = parse_size(text); });
-    add_number(line, "--frames", options.frames, 1,
-               "default: headless 1, or as many as the script has; no end in a window");
-    add_number(line, "--samples", options.samples, 1,
-               "average N frames jittered within the pixel; default: 1");
+    add_count(line, "--frames", options.frames,
+              "default: headless 1, or as many as the script has; no end in a window");
+    add_count(line, "--samples", options.samples, "average N frames jittered within the pixel; default: 1");
     line.add_value(
         "--environment", "R,G,B|FILE.hdr|.exr",
         "the sky: radiance from everywhere, or an equirectangular picture; default: that of the scene",
@@ -207,32 +238,22 @@ void declare_scene(CommandLine& line, Options& options) {
              "default: the scene's first, else one that sees all of it");
 }
 
-void declare_lighting(CommandLine& line, Options& options) {
-    add_choice<std::optional<Show>, Show>(line, "--show", options.show, named(all_shows),
-                                          "what goes into the picture");
-    add_choice<std::optional<ShadingPath>, ShadingPath>(
-        line, "--path", options.path, named(all_shading_paths), "how visible surfaces meet their lights");
-    add_choice<std::optional<bool>, bool>(line, "--indirect", options.indirect,
-                                          {{"on", true}, {"off", false}}, "light by way of surfaces");
-    add_choice<std::optional<VplPlacement>, VplPlacement>(
-        line, "--vpl-placement", options.vpl_placement,
-        {{"paths", VplPlacement::paths}, {"surfels", VplPlacement::surfels}},
-        "virtual lights where paths from the lights meet surfaces, or evenly on all surfaces");
-    add_number(line, "--vpls", options.vpls, 0U, "virtual point lights");
-    add_number(line, "--bounces", options.bounces, 0U, "indirect bounces: 0 is direct light only");
-    add_number(line, "--seed", options.seed, 0U, "of the places of virtual lights");
-    add_choice<std::optional<VplVisibility>, VplVisibility>(
-        line, "--vpl-visibility", options.vpl_visibility,
-        {{"none", VplVisibility::none}, {"maps", VplVisibility::maps}, {"rays", VplVisibility::rays}},
-        "whether walls stop the light of virtual lights: by depth maps, or exactly by rays");
-    add_choice<std::optional<Interleave>, Interleave>(
-        line, "--interleave", options.interleave,
-        {{"auto", Interleave::automatic},
-         {"1", Interleave::one},
-         {"2", Interleave::two},
-         {"4", Interleave::four},
-         {"8", Interleave::eight}},
-        "with N, a pixel asks one in N² VPLs, and takes the rest from its neighbours");
+void declare_settings(CommandLine& line, Options& options) {
+    const Configuration defaults;
+    for_each_setting(defaults, [&](const Setting& setting, const auto& by_default) {
+        if (setting.flag.empty()) return;
+        const std::string flag(setting.flag);
+        const Words words = words_of(by_default);
+        const std::string type = words.empty() ? "N" : fmt::format("{}", fmt::join(words, "|"));
+        const std::string range =
+            words.empty() ? fmt::format("{} to {}, ", setting.range.least, setting.range.most) : "";
+        const std::string help = fmt::format("{}; {}default: {}", setting.help, range, text_of(by_default));
+        line.add_value(flag, type, help, [=, &options](const std::string& text) {
+            auto value = by_default;
+            set_value(setting, value, text);  // throws if the text is wrong
+            options.settings[flag] = text;
+        });
+    });
 }
 
 void declare_files(CommandLine& line, Options& options) {
@@ -281,11 +302,18 @@ std::variant<Options, EarlyExit> parse_options(int count, const char* const* arg
     CommandLine line("Real-time global illumination by instant radiosity", exit_statuses);
     Options options;
     declare_scene(line, options);
-    declare_lighting(line, options);
+    declare_settings(line, options);
     declare_files(line, options);
     const std::optional<EarlyExit> exit = line.parse(count, arguments, [&] { check_together(options); });
     if (exit) return *exit;
     return options;
+}
+
+void apply_settings(const Options& options, Configuration& configuration) {
+    for_each_setting(configuration, [&](const Setting& setting, auto& value) {
+        const auto given = options.settings.find(std::string(setting.flag));
+        if (given != options.settings.end()) set_value(setting, value, given->second);
+    });
 }
 
 ImportOptions import_options(const Options& options) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -18,8 +19,7 @@ namespace candela::sandbox {
 /// Where the GL context comes from. `automatic`: a window if there is a display, else EGL, else OSMesa.
 enum class ContextChoice : std::uint8_t { automatic, window, egl, osmesa };
 
-/// The command line. Options that a configuration file can also set are nullopt if not given, so that only
-/// flags that were given override the file.
+/// The command line.
 struct Options {
     ImportLimits limits;   ///< of scenes
     bool confine = false;  ///< scenes may only refer to files in their own folder, or below it
@@ -32,15 +32,7 @@ struct Options {
     std::optional<SkyChoice> environment;  ///< default: that of the scene
     std::optional<std::string> camera;     ///< name or index; default: the scene's first
 
-    std::optional<Show> show;
-    std::optional<ShadingPath> path;
-    std::optional<bool> indirect;
-    std::optional<VplPlacement> vpl_placement;
-    std::optional<std::uint32_t> vpls;
-    std::optional<std::uint32_t> bounces;  ///< indirect bounces; 1: light, surface, visible surface
-    std::optional<std::uint32_t> seed;
-    std::optional<VplVisibility> vpl_visibility;
-    std::optional<Interleave> interleave;
+    std::map<std::string, std::string> settings;   ///< values by the flag that was given: "--vpls", "64"
     std::optional<std::filesystem::path> animate;  ///< a script file, or the name of a shipped script
     std::optional<std::filesystem::path> config;
     std::optional<std::filesystem::path> shaders;  ///< a directory; default: the shaders in the library
@@ -56,6 +48,9 @@ struct Options {
 /// Parses the command line; `arguments[0]` is the program. Of the files it checks only whether the
 /// configuration file and the folders of output files exist. Errors have exit status 2.
 [[nodiscard]] std::variant<Options, EarlyExit> parse_options(int count, const char* const* arguments);
+
+/// Changes the settings whose flags were given. Throws FlagError.
+void apply_settings(const Options& options, Configuration& configuration);
 
 /// How scenes are imported.
 [[nodiscard]] ImportOptions import_options(const Options& options);

@@ -58,8 +58,27 @@ bool choice(const std::string& label, bool chosen, const char* tip) {
     return pressed;
 }
 
-bool drag(const char* label, std::uint32_t& value, float speed, const char* tip) {
-    const bool changed = ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed);
+void same_line_if_it_fits(const std::string& label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(label.c_str()).x + 2.0F * style.FramePadding.x;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width < right) ImGui::SameLine();
+}
+
+std::size_t choose(std::span<const Choice> choices, std::size_t chosen, const char* tip) {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        const std::string name(choices[i].name);
+        const std::string help(choices[i].help);
+        if (i > 0) same_line_if_it_fits(name);
+        if (choice(name, i == chosen, help.empty() ? tip : help.c_str())) chosen = i;
+    }
+    return chosen;
+}
+
+bool drag(const char* label, std::uint32_t& value, float speed, std::uint32_t least, std::uint32_t most,
+          const char* tip) {
+    const bool changed = ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed, &least, &most, nullptr,
+                                           ImGuiSliderFlags_AlwaysClamp);
     note_control(label, tip);
     return changed;
 }

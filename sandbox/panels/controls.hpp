@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <candela/configuration.hpp>
 #include "sandbox/window/layout.hpp"
 
 namespace candela::sandbox {
@@ -28,7 +30,8 @@ bool button(const std::string& label, const char* tip);
 bool checkbox(const char* label, bool& value, const char* tip);
 /// One of several values that exclude each other; the chosen one is highlighted.
 bool choice(const std::string& label, bool chosen, const char* tip);
-bool drag(const char* label, std::uint32_t& value, float speed, const char* tip);
+bool drag(const char* label, std::uint32_t& value, float speed, std::uint32_t least, std::uint32_t most,
+          const char* tip);
 bool drag(const char* label, float& value, float speed, float least, float most, const char* tip);
 bool drag(const char* label, glm::vec3& value, float speed, float least, float most, const char* tip);
 bool slide(const char* label, float& value, float least, float most, const char* tip);
@@ -37,30 +40,14 @@ bool colour(const char* label, glm::vec3& value, const char* tip);
 /// A part of the panel that can be folded.
 bool header(const char* label, bool open);
 
-/// A list of values with names.
-template <class Enum>
-bool combo(const char* label, Enum& value, std::span<const Enum> choices, const char* tip);
+/// Puts a button with this label beside the last control, unless the panel ends there.
+void same_line_if_it_fits(const std::string& label);
+/// A button for each choice; `tip` is shown for those without a help of their own. Returns the index of the
+/// chosen one.
+[[nodiscard]] std::size_t choose(std::span<const Choice> choices, std::size_t chosen, const char* tip);
 
 /// Records the place of the control that was drawn last and shows its tooltip; for controls that are drawn
 /// without the functions above.
 void note_control(std::string_view label, const char* tip);
-
-template <class Enum>
-bool combo(const char* label, Enum& value, std::span<const Enum> choices, const char* tip) {
-    const bool open = ImGui::BeginCombo(label, std::string(to_string(value)).c_str());
-    note_control(label, open ? nullptr : tip);
-    if (!open) return false;
-    bool changed = false;
-    for (const Enum candidate : choices) {
-        const std::string name(to_string(candidate));
-        if (ImGui::Selectable(name.c_str(), candidate == value)) {
-            value = candidate;
-            changed = true;
-        }
-        note_control(name, nullptr);
-    }
-    ImGui::EndCombo();
-    return changed;
-}
 
 }  // namespace candela::sandbox

@@ -1,6 +1,6 @@
 #include "sandbox/panels/view_panel.hpp"
 
-#include <array>
+#include <cstddef>
 #include <string>
 
 #include <fmt/format.h>
@@ -11,21 +11,6 @@
 namespace candela::sandbox {
 
 namespace {
-
-void draw_show(Show& show) {
-    constexpr std::array<const char*, all_shows.size()> tips{
-        "all light",
-        "light that comes straight from lights, the sky and surfaces that emit it",
-        "light that surfaces reflect onto others",
-        "light that arrives, in lux / π: the picture if all surfaces were white",
-        "the part of the light that surfaces reflect, 0 to 1",
-        "0.5 n + 0.5, in world space"};
-    for (std::size_t i = 0; i < all_shows.size(); ++i) {
-        if (i % 3 != 0) ImGui::SameLine();
-        if (choice(std::string(to_string(all_shows.at(i))), all_shows.at(i) == show, tips.at(i)))
-            show = all_shows.at(i);
-    }
-}
 
 void draw_mode(Comparison& comparison, const Configuration& present) {
     const auto offer = [&](const char* label, CompareMode mode, const char* tip) {
@@ -92,7 +77,8 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
 }  // namespace
 
 void draw_view_panel(AppState& state, const ReferenceView& reference, double frame_ms) {
-    draw_show(state.configuration.show);
+    Show& show = state.configuration.show;
+    show = static_cast<Show>(choose(choices_of(show), static_cast<std::size_t>(show), nullptr));
     checkbox("VPLs as dots", state.vpls,
              "each in the colour of its flux, with its normal; point at one to see its values");
     ImGui::Separator();

@@ -1,14 +1,19 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include <candela/settings.hpp>
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;
@@ -38,9 +43,83 @@ Configuration unusual() {
     return c;
 }
 
+/// The values that a setting can have, in words.
+template <class T>
+std::string values_of(const Setting& setting, const T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+        return "true, false";
+    } else if constexpr (std::is_enum_v<T>) {
+        std::string names;
+        for (const Choice& choice : choices_of(value)) {
+            names += (names.empty() ? "" : ", ") + std::string(choice.name);
+        }
+        return names;
+    } else {
+        const auto& [least, most, step] = setting.range;
+        const std::string limit = std::isinf(most) ? "infinity" : fmt::format("{}", most);
+        return fmt::format("{}{} to {}{}", std::is_same_v<T, std::optional<float>> ? "auto, or " : "", least,
+                           limit, step > 1 ? fmt::format(", multiples of {}", step) : "");
+    }
+}
+
+/// The row of a setting in the README.
+template <class T>
+std::string row_of(const Setting& setting, const T& value) {
+    std::string pointer = fmt::format("/{}", setting.path);
+    std::ranges::replace(pointer, '.', '/');
+    const auto defaults = nlohmann::json::parse(write_configuration({}));
+    return fmt::format("| `{}` | {} | {} | {} | {} |\n", setting.path,
+                       setting.flag.empty() ? "" : fmt::format("`{}`", setting.flag),
+                       values_of(setting, value), defaults.at(nlohmann::json::json_pointer(pointer)).dump(),
+                       setting.help);
+}
+
 }  // namespace
 
 TEST_SUITE("configuration") {
+    TEST_CASE("the README lists all settings, with their values, defaults and meanings") {
+        std::stringstream text;
+        text << std::ifstream(CANDELA_README).rdbuf();
+        std::string rows = "| setting | flag | values | default | meaning |\n|---|---|---|---|---|\n";
+        const Configuration defaults;
+        for_each_setting(defaults,
+                         [&](const Setting& setting, const auto& value) { rows += row_of(setting, value); });
+        INFO("this must stand there:\n" << rows);
+        CHECK(text.str().find("\n\n" + rows + "\n") != std::string::npos);
+    }
+
+    TEST_CASE("a setting that depends on others says when it has an effect") {
+        const auto without_effect = [](const Configuration& configuration) {
+            std::vector<std::string_view> paths;
+            for_each_setting(configuration, [&](const Setting& setting, const auto& /*value*/) {
+                if (!setting.has_effect) {
+                    paths.push_back(setting.path);
+                }
+            });
+            return paths;
+        };
+        using Paths = std::vector<std::string_view>;
+        Configuration c;
+        c.path = ShadingPath::tiled_deferred;
+        c.refinement.enabled = true;
+        CHECK(without_effect(c) == Paths{"vpls.geometry_bound", "lists.slices"});
+        c.vpls.placement = VplPlacement::paths;
+        c.visibility.method = VplVisibility::rays;
+        c.path = ShadingPath::clustered_forward;
+        c.shadows.enabled = false;
+        CHECK(without_effect(c) == Paths{"vpls.map_resolution", "shadows.cube_resolution",
+                                         "shadows.map_resolution", "shadows.budget_mib"});
+    }
+
+    TEST_CASE("a member of an object is unknown outside of it, and objects are nested no deeper") {
+        CHECK(errors_of(R"({"vpls.count": 3})") == GraphErrors{"vpls.count: is unknown"});
+        CHECK(errors_of(R"({"count": 3})") == GraphErrors{"count: is unknown"});
+        CHECK(errors_of(R"({"vpls": {"vpls": {}, "": 1}})") ==
+              GraphErrors{"vpls.: is unknown", "vpls.vpls: is unknown"});
+        CHECK(errors_of(R"({"lists": {"tile_size": 40}})") ==
+              GraphErrors{"lists.tile_size: 40 is not a multiple of 16"});
+    }
+
     TEST_CASE("a configuration that is written and read again is unchanged") {
         CHECK(read_configuration(write_configuration({})).configuration == Configuration{});
         CHECK(read_configuration(write_configuration(unusual())).configuration == unusual());

@@ -19,4 +19,5 @@
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <candela/scene/sky_picture.hpp>
+#include <candela/settings.hpp>
 #include <candela/workload.hpp>

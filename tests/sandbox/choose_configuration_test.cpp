@@ -40,8 +40,8 @@ TEST_SUITE("choosing a configuration") {
         options.config = folder / "a.json";
         std::ofstream(*options.config) << R"({"path": "deferred",
             "vpls": {"count": 3, "seed": 4, "visibility": "rays", "placement": "surfels"}})";
-        options.vpl_visibility = VplVisibility::none;
-        options.seed = 9;
+        options.settings["--vpl-visibility"] = "none";
+        options.settings["--seed"] = "9";
         const Configuration configuration = choose_configuration(options, false);
         CHECK(configuration.visibility.method == VplVisibility::none);
         CHECK(configuration.vpls.seed == 9);
@@ -53,7 +53,7 @@ TEST_SUITE("choosing a configuration") {
     TEST_CASE("the written configuration has the requested VPL visibility") {
         for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
             Options options;
-            options.vpl_visibility = method;
+            options.settings["--vpl-visibility"] = to_string(method);
             const std::string text = write_configuration(choose_configuration(options, false));
             CHECK(text.find("\"visibility\": \"" + std::string(to_string(method)) + "\"") !=
                   std::string::npos);

@@ -51,7 +51,7 @@ class Watched {
         write("{}");
         Options options;
         options.config = path_;
-        options.seed = 7;
+        options.settings["--seed"] = "7";
         return options;
     }
 

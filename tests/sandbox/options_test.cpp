@@ -28,6 +28,13 @@ Options accepted(std::initializer_list<const char*> flags) {
     return std::get<Options>(result);
 }
 
+/// The defaults with what these flags change.
+Configuration configured(std::initializer_list<const char*> flags) {
+    Configuration configuration;
+    apply_settings(accepted(flags), configuration);
+    return configuration;
+}
+
 /// Checks for one line that starts with the program's name and contains `flag` and `value`, and for exit
 /// status 2.
 void check_refused(std::initializer_list<const char*> flags, std::string_view flag, std::string_view value) {
@@ -55,8 +62,7 @@ TEST_SUITE("options") {
         CHECK(options.context == ContextChoice::automatic);
         CHECK(options.samples == 1);
         CHECK_FALSE((options.scene || options.size || options.frames || options.camera || options.config));
-        CHECK_FALSE((options.show || options.path || options.indirect));
-        CHECK_FALSE((options.vpls || options.bounces || options.seed || options.vpl_visibility));
+        CHECK(options.settings.empty());
         CHECK_FALSE(options.animate);
         CHECK_FALSE((options.out || options.report || options.describe_graph));
         CHECK_FALSE((options.print_config || options.list_configs));
@@ -78,9 +84,13 @@ TEST_SUITE("options") {
                                           "--show",
                                           "indirect",
                                           "--path",
-                                          "deferred",
+                                          "forward",
                                           "--indirect",
                                           "off",
+                                          "--vpl-placement",
+                                          "paths",
+                                          "--interleave",
+                                          "4",
                                           "--vpls",
                                           "0",
                                           "--bounces",
@@ -108,13 +118,17 @@ TEST_SUITE("options") {
         CHECK(options.frames == 3);
         CHECK(options.samples == 4);
         CHECK(options.camera == "2");
-        CHECK(options.show == Show::indirect);
-        CHECK(options.path == ShadingPath::deferred);
-        CHECK(options.indirect == false);
-        CHECK(options.vpls == 0U);
-        CHECK(options.bounces == 5U);
-        CHECK(options.seed == 4294967295U);
-        CHECK(options.vpl_visibility == VplVisibility::rays);
+        Configuration configuration;
+        apply_settings(options, configuration);
+        CHECK(configuration.show == Show::indirect);
+        CHECK(configuration.path == ShadingPath::forward);
+        CHECK(configuration.indirect == false);
+        CHECK(configuration.vpls.placement == VplPlacement::paths);
+        CHECK(configuration.vpls.count == 0U);
+        CHECK(configuration.vpls.bounces == 5U);
+        CHECK(configuration.vpls.seed == 4294967295U);
+        CHECK(configuration.visibility.method == VplVisibility::rays);
+        CHECK(configuration.interleave == Interleave::four);
         CHECK(options.animate == "orbit-light");
         CHECK(options.config == __FILE__);
         CHECK(options.print_config);
@@ -129,20 +143,20 @@ TEST_SUITE("options") {
         CHECK(accepted({"--context", "window"}).context == ContextChoice::window);
         CHECK(accepted({"--context", "egl"}).context == ContextChoice::egl);
         for (const Show show : all_shows) {
-            CHECK(accepted({"--show", std::string(to_string(show)).c_str()}).show == show);
+            CHECK(configured({"--show", std::string(to_string(show)).c_str()}).show == show);
         }
         for (const candela::ShadingPath path : candela::all_shading_paths) {
-            CHECK(accepted({"--path", std::string(to_string(path)).c_str()}).path == path);
+            CHECK(configured({"--path", std::string(to_string(path)).c_str()}).path == path);
         }
-        CHECK(accepted({"--indirect", "on"}).indirect == true);
+        CHECK(configured({"--indirect", "on"}).indirect);
         for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
             const std::string word(to_string(method));
-            CHECK(accepted({"--vpl-visibility", word.c_str()}).vpl_visibility == method);
+            CHECK(configured({"--vpl-visibility", word.c_str()}).visibility.method == method);
         }
         for (const auto interleave :
              {Interleave::automatic, Interleave::one, Interleave::two, Interleave::four, Interleave::eight}) {
             const std::string word(to_string(interleave));
-            CHECK(accepted({"--interleave", word.c_str()}).interleave == interleave);
+            CHECK(configured({"--interleave", word.c_str()}).interleave == interleave);
         }
     }
 

@@ -20,7 +20,7 @@ Options small_headless() {
     Options options;
     options.headless = true;
     options.size = glm::ivec2(33, 21);
-    options.vpls = 8;
+    options.settings["--vpls"] = "8";
     return options;
 }
 
@@ -84,7 +84,7 @@ TEST_SUITE("session") {
         options = small_headless();
         options.animate = "toggle";
         options.frames = 3;
-        options.indirect = false;
+        options.settings["--indirect"] = "off";
         options.out = folder / "last.pfm";
         REQUIRE(run(options) == 0);
         options.out = folder / "%d.pfm";
@@ -98,8 +98,8 @@ TEST_SUITE("session") {
             const TemporaryFolder folder;
             Options options = small_headless();
             options.size = glm::ivec2(32, 32);
-            options.vpls = 16;
-            options.vpl_visibility = VplVisibility::none;
+            options.settings["--vpls"] = "16";
+            options.settings["--vpl-visibility"] = "none";
             options.animate = script;
             options.frames = 17;  // by then every script has moved something
             options.out = folder / "%d.pfm";
@@ -128,7 +128,7 @@ TEST_SUITE("session") {
             {"node": "ceiling light", "intensity": [[0, 4], [1, 1]]}]})";
         Options options = small_headless();
         options.animate = inputs / "a.json";
-        options.indirect = false;
+        options.settings["--indirect"] = "off";
         options.out = folder / "%d.pfm";
         REQUIRE(run(options) == 0);
         CHECK(folder.file_count() == 2);
@@ -151,9 +151,9 @@ TEST_SUITE("session") {
             {"node": "ceiling light", "translation": [[0, [0, 1.6, 0]], [1, [0.4, 1.6, 0]]]}]})";
         Options options = small_headless();
         options.size = glm::ivec2(96, 72);
-        options.show = Show::indirect;
-        options.vpls = 32;
-        options.bounces = 1;
+        options.settings["--show"] = "indirect";
+        options.settings["--vpls"] = "32";
+        options.settings["--bounces"] = "1";
         options.animate = inputs / "a.json";
         options.out = folder / "%d.pfm";
         REQUIRE(run(options) == 0);
@@ -202,7 +202,7 @@ TEST_SUITE("session") {
             options.config = inputs / "broken.json";
         }
         SUBCASE("a flag out of range") {
-            options.vpls = 1U << 31U;
+            options.settings["--vpls"] = "2147483648";
         }
         SUBCASE("no such script") {
             options.animate = "none";

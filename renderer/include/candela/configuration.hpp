@@ -32,7 +32,7 @@ inline constexpr std::array all_shows{Show::total,      Show::direct, Show::indi
     return show != Show::albedo && show != Show::normals;
 }
 
-/// How VPLs are placed. Names in JSON: paths, surfels.
+/// How VPLs are placed.
 enum class VplPlacement : std::uint8_t {
     /// Where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997). Paths start
     /// neither at surfaces that emit light nor in the sky: a world with one of these always has surfels.
@@ -47,7 +47,7 @@ inline constexpr std::uint32_t most_surfels = 65536;
 struct VplSettings {
     VplPlacement placement = VplPlacement::surfels;
     std::uint32_t count = 512;  ///< with paths: most VPLs, up to 2^20; with surfels: about so many
-    /// Most bounces, up to 64. 1: light → surface → visible surface; 0: no indirect light. Surfels stop when
+    /// Most bounces. 1: light → surface → visible surface; 0: no indirect light. Surfels stop when
     /// less than 0.1 % of the first reflected light is left.
     std::uint32_t bounces = 64;
     std::uint32_t seed = 0;  ///< of the pseudo-random placement
@@ -56,10 +56,10 @@ struct VplSettings {
 
 /// Interleaved sampling with factor n: pixels fall into n × n classes by their coordinates modulo n. Each
 /// class evaluates its share, 1/n², of the VPLs; add_vpl_reconstruct combines the results of neighbouring
-/// pixels. Names in JSON, on the command line and in the panel: auto, 1, 2, 4, 8.
+/// pixels.
 enum class Interleave : std::uint8_t { automatic, one, two, four, eight };
 
-/// How the visibility between a VPL and a surface is determined. Names in JSON: none, maps, rays.
+/// How the visibility between a VPL and a surface is determined.
 enum class VplVisibility : std::uint8_t {
     none,  ///< everything is visible: light of VPLs passes through walls
     maps,  ///< by a depth map of the hemisphere of each VPL
@@ -69,15 +69,15 @@ enum class VplVisibility : std::uint8_t {
 /// Visibility of VPLs.
 struct VplVisibilitySettings {
     VplVisibility method = VplVisibility::maps;
-    std::uint32_t map_resolution = 64;  ///< texels along a side of a VPL's map, from 8 to 1024
+    std::uint32_t map_resolution = 64;  ///< texels along a side of a VPL's map
     bool operator==(const VplVisibilitySettings&) const = default;
 };
 
 /// How the view is divided into cells that have a light list each: tiles of pixels, and for clusters also
 /// depth slices.
 struct ListSettings {
-    std::uint32_t tile_size = 16;  ///< pixels along an edge: a multiple of 16, from 16 to 64
-    std::uint32_t slices = 24;     ///< depth slices of a cluster grid, from 2 to 256
+    std::uint32_t tile_size = 16;  ///< pixels along an edge
+    std::uint32_t slices = 24;     ///< depth slices of a cluster grid
     bool operator==(const ListSettings&) const = default;
 };
 
@@ -94,14 +94,14 @@ struct ShadowSettings {
 /// its own VPLs on paths; surfels change every frames_a_surfel_set frames.
 struct RefinementSettings {
     bool enabled = false;
-    std::uint32_t frames = 1024;  ///< frames to average, at least 1; without VPLs at most 64 are averaged
+    std::uint32_t frames = 1024;  ///< frames to average; without VPLs at most 64 are averaged
     bool operator==(const RefinementSettings&) const = default;
 };
 
 /// How radiance becomes the colours of the target.
 struct ToneMapSettings {
     bool enabled = true;       ///< off: linear radiance times the exposure; alpha 1 where there is a surface
-    float exposure_ev = 0.0F;  ///< in stops, from -32 to 32: radiance is multiplied by 2^exposure_ev
+    float exposure_ev = 0.0F;  ///< in stops: radiance is multiplied by 2^exposure_ev
     bool operator==(const ToneMapSettings&) const = default;
 };
 
@@ -163,9 +163,9 @@ inline constexpr auto all_shading_paths = [] {
     return shading_paths[static_cast<std::size_t>(path)];
 }
 
-/// All settings of a frame. The defaults are those of the app when it renders a single frame without a
-/// window; with a window, the app also turns on refinement and the automatic frame budget. `validate` checks
-/// the ranges of the values.
+/// All settings of a frame; <candela/settings.hpp> lists them with the ranges of their values. The defaults
+/// are those of the app when it renders a single frame without a window; with a window, the app also turns on
+/// refinement and the automatic frame budget.
 struct Configuration {
     ShadingPath path = ShadingPath::deferred;
     Show show = Show::total;
@@ -173,8 +173,8 @@ struct Configuration {
     VplSettings vpls;
     Interleave interleave = Interleave::automatic;
     VplVisibilitySettings visibility;
-    /// Factor on the upper bound of the geometry term of VPLs that are placed by paths, at least 1e-6;
-    /// infinity removes the bound. See vpl_radius2.
+    /// Factor on the upper bound of the geometry term of VPLs that are placed by paths; infinity removes the
+    /// bound. See vpl_radius2.
     float geometry_bound = 1.0F;
     ListSettings lists;
     ShadowSettings shadows;
@@ -222,11 +222,26 @@ struct NamedConfiguration {
 /// Those for purposes come first: draft, balanced, best, report.
 [[nodiscard]] CANDELA_API std::span<const NamedConfiguration> named_configurations();
 
-/// Names as in JSON and on the command line; static storage duration.
-[[nodiscard]] CANDELA_API std::string_view to_string(ShadingPath path);
-[[nodiscard]] CANDELA_API std::string_view to_string(Show show);
-[[nodiscard]] CANDELA_API std::string_view to_string(VplVisibility visibility);
-[[nodiscard]] CANDELA_API std::string_view to_string(VplPlacement placement);
-[[nodiscard]] CANDELA_API std::string_view to_string(Interleave interleave);
+/// A value of a setting that is chosen by its name, in JSON and on the command line. The strings have static
+/// storage duration.
+struct Choice {
+    std::string_view name;
+    std::string_view help;  ///< empty if that of the setting explains it
+};
+/// The values of an enumeration, in its order; which value is given makes no difference.
+[[nodiscard]] CANDELA_API std::span<const Choice> choices_of(ShadingPath type);
+[[nodiscard]] CANDELA_API std::span<const Choice> choices_of(Show type);
+[[nodiscard]] CANDELA_API std::span<const Choice> choices_of(VplPlacement type);
+[[nodiscard]] CANDELA_API std::span<const Choice> choices_of(VplVisibility type);
+[[nodiscard]] CANDELA_API std::span<const Choice> choices_of(Interleave type);
+
+/// The name of a value of such an enumeration.
+template <class Enum>
+requires requires(Enum value) {
+    choices_of(value);
+}
+[[nodiscard]] std::string_view to_string(Enum value) {
+    return choices_of(value)[static_cast<std::size_t>(value)].name;
+}
 
 }  // namespace candela
