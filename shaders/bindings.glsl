@@ -4,7 +4,7 @@
 #define BINDING_MATERIALS 1
 #define BINDING_LIGHTS 2
 #define BINDING_SHADOWS 3
-#define BINDING_VPLS 4
+#define BINDING_TRACED_VPLS 4
 #define BINDING_BVH_NODES 5
 #define BINDING_TRIANGLES 6
 #define BINDING_TEXELS 7
@@ -14,13 +14,15 @@
 #define BINDING_LIST_FIRST 11
 #define BINDING_LIST_COUNT 12
 #define BINDING_LIST_ENTRIES 13
-#define BINDING_DIRECT_POINTS 14
+#define BINDING_LIT_EMITTERS 14
 #define BINDING_LAST 14
 // The names below reuse a number where no pass needs both buffers.
 // Passes that cull light lists draw no meshes.
 #define BINDING_TILE_DEPTHS BINDING_INSTANCES
 // Passes that trace VPLs read no light lists.
 #define BINDING_VPL_RECORDS BINDING_LIST_FIRST
+// A frame has traced VPLs or surfels.
+#define BINDING_LIT_SURFELS BINDING_TRACED_VPLS
 // Passes that light surfels, or shade with them, use no paths and draw no meshes.
 #define BINDING_SURFELS BINDING_INSTANCES
 #define BINDING_SURFEL_ROWS BINDING_LIGHTS
@@ -29,7 +31,7 @@
 #define BINDING_CELL_LIGHT BINDING_FLUX
 #define BINDING_FLUX_ACCOUNT BINDING_BVH_NODES
 #define BINDING_SEEN_POINTS BINDING_LIST_ENTRIES
-#define BINDING_SKY_PATCHES BINDING_SHADOWS
+#define BINDING_DIRECT_POINTS BINDING_LIST_COUNT
 #define BINDING_FORM_FACTORS BINDING_LIST_FIRST
 #define BINDING_COVER BINDING_LIST_COUNT
 #define BINDING_BOUNCE BINDING_LIST_ENTRIES
@@ -40,13 +42,14 @@
 // Passes that inspect resources read light lists, but draw no meshes.
 #define BINDING_INSPECTED_RANGES BINDING_INSTANCES
 
-#define MOST_STORAGE_BLOCKS 12  // of a program: blended surfaces, with light lists, surfels and rays
+#define MOST_STORAGE_BLOCKS 13  // of a program: blended surfaces, with light lists, surfels and rays
 
 #define UNIFORMS_VIEW 0
 #define UNIFORMS_CELLS 1
 #define UNIFORMS_VPLS 2
 #define UNIFORMS_LIGHTS 3
-#define UNIFORMS_LAST 3
+#define UNIFORMS_SKY 4
+#define UNIFORMS_LAST 4
 
 #define UNIT_BASE_COLOUR 0
 #define UNIT_SHADOW_CUBES 1
@@ -90,5 +93,6 @@
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
+#define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl
 #define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from
 #define MOST_CHANGED_BOXES 8  // in the uniforms of changed_boxes.glsl; more are merged into one box

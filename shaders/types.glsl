@@ -111,23 +111,65 @@ struct TileDepth {
     uint pad0 DEFAULT(0u);
 };
 
-#define NO_MAP 0xffffffffu
-#define IN_SKY 0xfffffffeu
+// Virtual point lights (VPLs) are of four kinds: those on paths that were traced from the lights; or surfels, surfels on
+// surfaces that emit light, and patches of the sky. Their indices run through the kinds in this order: VplConstants.
 
-// A VPL or a surfel, or a patch of the sky (shaders/sky/sky_patch.glsl). Members "of surfels" are unused in traced VPLs,
-// and the reverse.
-struct Vpl {
+#define VPL_PLACED 0u
+#define VPL_ESCAPED 1u  // the path has left the scene before this bounce
+
+// A VPL at a bounce of a path. Its depth map is in the slot of its index.
+struct TracedVpl {
+    vec3 position;    // metres, on the surface
+    uint state;       // VPL_*
+    vec3 normal;      // unit; it sends light into this half-space
+    float radius2;    // m², R²: bounds its geometry term to 4/3 of 1/R²
+    vec3 flux;        // reflected
+    float pad0 DEFAULT(0.0);
+    vec3 edges_up;    // 1/m, inverse distances to edges along +x, +y, +z, 0: none near: vpl_edges.comp
+    float pad1 DEFAULT(0.0);
+    vec3 edges_down;  // 1/m, along -x, -y, -z
+    float pad2 DEFAULT(0.0);
+};
+
+// A surfel: a point that gathers and sends light for the part of the surface around it, its cell.
+struct Surfel {
     vec3 position;     // metres, on the surface
-    uint map;          // slot of its depth map in the atlas, or NO_MAP: rays find its visibility; or IN_SKY
-    vec3 normal;       // unit; it emits into this half-space
-    float radius2;     // m², squared radius of the disc that it emits from; of surfels
-    vec3 flux;         // reflected flux; of surfels also emitted; zero: sends nothing, or not in use
-    uint first_point;  // index of its cell's first point; of surfels
-    vec3 edges_up;     // 1/m, inverse distances to edges along +x, +y, +z, 0: none near; of traced VPLs: vpl_edges.comp
-    uint point_count;  // points of its cell; of surfels
-    vec3 edges_down;   // 1/m, along -x, -y, -z; of traced VPLs
-    float area;        // m², of its cell; of surfels
-    vec3 map_origin;   // metres, on the surface; its depth map is seen from ray_offset above it
+    uint first_point;  // index of its cell's first point
+    vec3 normal;       // unit; of deformed triangles without area 0
+    uint point_count;  // points of its cell
+    float area;        // m², of its cell
+    float radius2;     // m², squared radius of the disc of that area
+    float pad0 DEFAULT(0.0);
+    float pad1 DEFAULT(0.0);
+};
+
+// A surfel with the light that its cell reflects, as a VPL. Its depth map is in the slot of its index.
+struct LitSurfel {
+    vec3 position;     // metres, of the surfel; its depth map is seen from ray_offset above it
+    uint first_point;  // index of its cell's first LitPoint
+    vec3 normal;       // unit; it sends light into this half-space
+    uint point_count;  // points of its cell
+    vec3 centre;       // metres: mean position of the flux
+    float radius2;     // m², squared radius of the disc that the flux comes from
+    vec3 flux;
+    float area;        // m², of its cell
+};
+
+// A surfel on a surface that emits light, with that light and what its cell reflects, as a VPL.
+struct LitEmitter {
+    vec3 position;     // metres, of the surfel; rays to it end ray_offset above it
+    uint first_point;  // index of its cell's first LitPoint
+    vec3 normal;       // unit; it sends light into this half-space
+    uint point_count;  // points of its cell
+    vec3 flux;
+    float area;        // m², of its cell
+};
+
+// A part of the sky, far away in one direction, as a VPL.
+struct SkyPatch {
+    vec3 direction;     // towards it, unit
+    float half_width2;  // radians², squared half width
+    vec3 light;         // π times the irradiance on a surface that faces it
     float pad0 DEFAULT(0.0);
 };
 
@@ -184,9 +226,9 @@ struct CellLight {
 
 // Constants that all VPLs share. A uniform block: shaders/vpls/vpl_constants.glsl.
 struct VplConstants {
-    uint count;
-    float radius2;            // m², R²: bounds the geometry term to 4/3 of 1/R²; of traced VPLs
-    float crease_slack;       // metres: a receiver this little behind a VPL's plane still counts as in front of it
+    uint count;               // of all kinds
+    uint first_emitter;       // index of the first surfel on a surface that emits light
+    uint first_sky_patch;     // index of the first patch of the sky
     float ray_offset;         // metres above a surface, where rays and depth maps start
     uint map_resolution;      // texels along a side of a slot of the atlas
     uint map_tiles;           // slots along a side of a layer
@@ -237,9 +279,6 @@ struct VplRecord {
     vec3 throughput;  // product of the albedos so far, this bounce's included
     float pad1 DEFAULT(0.0);
 };
-
-#define VPL_PLACED 0u
-#define VPL_ESCAPED 1u
 
 // Where the flux of a path, or of all surfels, went. emitted = absorbed + escaped + truncated + roulette, up to
 // rounding; of surfels also up to the balance of the form factors, and without roulette.

@@ -65,15 +65,20 @@ glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
     return glm::sqrt(squares * n / (n - 1.0));
 }
 
-/// A path traces one ray per hit, and one more if it leaves the scene. A record with a normal is a hit.
-std::uint32_t count_rays(const std::vector<gpu::Path>& paths, const std::vector<gpu::Vpl>& vpls) {
+/// VPLs that send light.
+template <class Vpl>
+std::uint32_t count_alive(const std::vector<Vpl>& vpls) {
+    const auto sends = [](const Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); };
+    return static_cast<std::uint32_t>(std::ranges::count_if(vpls, sends));
+}
+
+/// A path traces one ray per hit, and one more if it leaves the scene.
+std::uint32_t count_rays(const std::vector<gpu::Path>& paths, const std::vector<gpu::TracedVpl>& vpls) {
     std::uint32_t rays = 0;
     for (const gpu::Path& path : paths) {
         const auto first = vpls.begin() + path.first_vpl;
-        const auto hits =
-            static_cast<std::uint32_t>(std::count_if(first, first + path.vpl_count, [](const gpu::Vpl& vpl) {
-                return vpl.normal != glm::vec3(0.0F);
-            }));
+        const auto hits = static_cast<std::uint32_t>(std::count_if(
+            first, first + path.vpl_count, [](const auto& vpl) { return vpl.state == VPL_PLACED; }));
         rays += std::min(hits + 1, path.vpl_count);
     }
     return rays;
@@ -273,8 +278,14 @@ FrameResults Renderer::State::results(std::size_t view) const {
                          .indirect = texture(keep.indirect, parts.indirect),
                          .radiance = texture(keep.radiance, parts.radiance)};
     if (keep.vpls && frame_.vpls) {
-        results.vpl_buffer = runtime_.object(frame_.vpls->vpls);
-        results.vpl_count = runtime_.value(frame_.vpls->plan).vpl_count;
+        const auto buffer = [&](const auto& handle, std::uint32_t count) {
+            return handle ? ResultBuffer{runtime_.object(*handle), count} : ResultBuffer{};
+        };
+        const VplCounts& counts = runtime_.value(frame_.vpls->counts);
+        results.traced_vpls = buffer(parts.traced_vpls, counts.traced);
+        results.lit_surfels = buffer(parts.lit_surfels, counts.surfels);
+        results.lit_emitters = buffer(parts.lit_emitters, counts.emitters);
+        results.sky_patches = buffer(parts.sky_patches, counts.sky_patches);
     }
     return results;
 }
@@ -411,21 +422,32 @@ std::string Renderer::State::describe(GraphFormat format) const {
 }
 
 VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view) const {
-    const VplPlan& plan = runtime_.value(vpls.plan);
-    auto placed = backend_.buffer(runtime_.object(vpls.vpls)).download<gpu::Vpl>();
-    auto accounts = backend_.buffer(runtime_.object(vpls.flux)).download<gpu::FluxAccount>();
-    const std::uint32_t in_scene = plan.vpl_count - plan.sky_count;
-    placed.resize(in_scene);
-    accounts.resize(vpls.points ? std::min(in_scene, 1U) : plan.paths.size());
-    const auto alive =
-        std::ranges::count_if(placed, [](const gpu::Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); });
-    return {.requested = configuration_.vpls.count,
-            .alive = static_cast<std::uint32_t>(alive),
-            .paths = static_cast<std::uint32_t>(plan.paths.size()),
-            .rays = count_rays(plan.paths, placed),
-            .interleave = view.interleave,
-            .filled_pixels = count_filled(view),
-            .flux = sum_up(accounts)};
+    const auto read = [&]<class T>(BufferHandle<T> buffer, std::size_t count) {
+        std::vector<T> elements = backend_.buffer(runtime_.object(buffer)).template download<T>();
+        elements.resize(count);
+        return elements;
+    };
+    const VplCounts& counts = runtime_.value(vpls.counts);
+    VplReport report{.requested = configuration_.vpls.count,
+                     .interleave = view.interleave,
+                     .filled_pixels = count_filled(view),
+                     .flux = {}};
+    if (const auto* const traced = std::get_if<TracedVpls>(&vpls.records)) {
+        const PathPlan& plan = runtime_.value(traced->plan);
+        const std::vector<gpu::TracedVpl> placed = read(traced->vpls, counts.traced);
+        report.alive = count_alive(placed);
+        report.paths = static_cast<std::uint32_t>(plan.paths.size());
+        report.rays = count_rays(plan.paths, placed);
+        report.flux = sum_up(read(vpls.flux, plan.paths.size()));
+        return report;
+    }
+    const auto& lit = std::get<LitSurfels>(vpls.records);
+    report.alive = count_alive(read(lit.surfels, counts.surfels));
+    if (lit.emitters) {
+        report.alive += count_alive(read(*lit.emitters, counts.emitters));
+    }
+    report.flux = sum_up(read(vpls.flux, std::min(counts.all_surfels(), 1U)));
+    return report;
 }
 
 std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {

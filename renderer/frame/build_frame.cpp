@@ -6,6 +6,7 @@
 #include "renderer/passes/sky/sky_vpls.hpp"
 #include "renderer/passes/surfels/surfel_light.hpp"
 #include "renderer/passes/vpls/vpl_maps.hpp"
+#include "renderer/passes/vpls/vpl_trace.hpp"
 
 namespace candela {
 namespace {
@@ -78,7 +79,9 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
 /// the indirect light add up to the one of the total only if they have all VPLs in common.
 struct WantedVpls {
     VplSettings settings;
+    float bound = 1.0F;  ///< Configuration::geometry_bound
     ShownLight shown;
+    bool emitters = false;    ///< some surfaces emit light
     std::uint32_t count = 0;  ///< about how many there will be
 
     [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
@@ -86,9 +89,11 @@ struct WantedVpls {
 
 WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& contents) {
     const bool has_emission = contents.emitters || contents.sky;
-    WantedVpls wanted{configuration.vpls,
-                      {.emitted = has_emission && shows_direct(configuration.show),
-                       .reflected = configuration.indirect && shows_indirect(configuration.show)}};
+    WantedVpls wanted{.settings = configuration.vpls,
+                      .bound = configuration.geometry_bound,
+                      .shown = {.emitted = has_emission && shows_direct(configuration.show),
+                                .reflected = configuration.indirect && shows_indirect(configuration.show)},
+                      .emitters = contents.emitters};
     if (has_emission) {
         wanted.settings.placement = VplPlacement::surfels;
     }
@@ -106,22 +111,22 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
                       std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     const VplSettings& settings = wanted.settings;
     if (settings.placement == VplPlacement::paths) {
-        const ValueHandle<VplPlan> plan =
+        const ValueHandle<PathPlan> plan =
             add_vpl_paths(graph, frame.metrics, lit.lights.table, refinement, settings);
-        frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer);
-        return {plan, frame.vpls->vpls, {}, {}};
+        frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer, wanted.bound);
+        return {frame.vpls->counts, std::get<TracedVpls>(frame.vpls->records).vpls};
     }
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
     const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, settings);
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
-    SurfelSources sources{.lights = lit.lights, .sky = {}};
+    SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};
     if (lit.sky) {
         sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     }
     frame.vpls =
         add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, wanted.shown);
-    return {surfels.plan, surfels.surfels, motion, surfels.set};
+    return {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, motion}};
 }
 
 /// The light of the wanted VPLs, if any.
@@ -133,20 +138,18 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
         return std::nullopt;
     }
     const MappedVpls mapped = place_vpls(graph, gpu, wanted, lit, refinement, frame);
-    VplLight light{.vpls = *frame.vpls,
-                   .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->plan,
-                                               configuration.visibility, configuration.geometry_bound),
-                   .emitters = contents.emitters,
-                   .sky = contents.sky};
+    VplLight light{
+        .vpls = *frame.vpls,
+        .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->counts, configuration.visibility)};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
-        if (light.emitters || light.sky) {
+        if (contents.emitters || contents.sky) {
             light.rays = lit.tracing;
         }
     } else if (configuration.visibility.method == VplVisibility::rays) {
         light.rays = lit.tracing;
     }
-    return SharedVpls{light, add_vpl_order(graph, gpu, frame.vpls->plan), wanted.count};
+    return SharedVpls{light, add_vpl_order(graph, gpu, *frame.vpls), wanted.count};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include "renderer/passes/surfaces/host_surfaces.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/view/view.hpp"
-#include "renderer/passes/vpls/vpl_trace.hpp"
+#include "renderer/passes/vpls/vpls.hpp"
 
 namespace candela {
 

@@ -118,6 +118,19 @@ void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, 
     }
 }
 
+void set_vpls(ViewFrame& parts, const Vpls& vpls) {
+    if (const auto* const traced = std::get_if<TracedVpls>(&vpls.records)) {
+        parts.traced_vpls = traced->vpls;
+        return;
+    }
+    const auto& lit = std::get<LitSurfels>(vpls.records);
+    parts.lit_surfels = lit.surfels;
+    parts.lit_emitters = lit.emitters;
+    if (lit.sky) {
+        parts.sky_patches = lit.sky->patches;
+    }
+}
+
 ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewData& view,
                       const Surfaces& surfaces) {
     ViewFrame parts{.index = index,
@@ -128,7 +141,7 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
                     .albedo = surfaces.albedo,
                     .lights = shared.lit.lights.buffer};
     if (shared.vpls) {
-        parts.vpls = shared.vpls->light.vpls.vpls;
+        set_vpls(parts, shared.vpls->light.vpls);
     }
     return parts;
 }
@@ -233,14 +246,20 @@ void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewFrame& part
                 pass.read(*texture, Usage::sampled);
             }
         };
+        const auto read_vpls = [&](const auto& buffer) {
+            if (keep.vpls && buffer) {
+                pass.read(*buffer, Usage::storage);
+            }
+        };
         read(keep.depth, parts.depth);
         read(keep.normal, parts.normal);
         read(keep.albedo, parts.albedo);
         read(keep.indirect, parts.indirect);
         read(keep.radiance, parts.radiance);
-        if (keep.vpls && parts.vpls) {
-            pass.read(*parts.vpls, Usage::storage);
-        }
+        read_vpls(parts.traced_vpls);
+        read_vpls(parts.lit_surfels);
+        read_vpls(parts.lit_emitters);
+        read_vpls(parts.sky_patches);
     });
 }
 

@@ -16,15 +16,24 @@ FinishedTexture finished(const Canvas& canvas) {
     return {canvas.colour.name(), canvas.size()};
 }
 
+template <class T>
+std::vector<T> read_structs(gl::Device& device, const ResultBuffer& result) {
+    std::vector<T> structs(result.count);
+    if (structs.empty()) return structs;
+    gl::read_buffer(device.gl(), result.buffer, std::as_writable_bytes(std::span(structs)));
+    return structs;
+}
+
 std::vector<VplDot> read_dots(gl::Device& device, const FrameResults& results) {
-    std::vector<gpu::Vpl> vpls(results.vpl_count);
-    if (vpls.empty()) return {};
-    gl::read_buffer(device.gl(), results.vpl_buffer, std::as_writable_bytes(std::span(vpls)));
     std::vector<VplDot> dots;
-    dots.reserve(vpls.size());
-    for (const gpu::Vpl& vpl : vpls) {
-        if (vpl.map == IN_SKY || vpl.normal == glm::vec3(0.0F)) continue;
-        dots.push_back({vpl.position, vpl.normal, vpl.flux, vpl.area});
+    for (const auto& vpl : read_structs<gpu::TracedVpl>(device, results.traced_vpls)) {
+        if (vpl.state == VPL_PLACED) dots.push_back({vpl.position, vpl.normal, vpl.flux, 0.0F});
+    }
+    for (const auto& surfel : read_structs<gpu::LitSurfel>(device, results.lit_surfels)) {
+        dots.push_back({surfel.centre, surfel.normal, surfel.flux, surfel.area});
+    }
+    for (const auto& emitter : read_structs<gpu::LitEmitter>(device, results.lit_emitters)) {
+        dots.push_back({emitter.position, emitter.normal, emitter.flux, emitter.area});
     }
     return dots;
 }

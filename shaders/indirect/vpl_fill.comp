@@ -27,9 +27,9 @@ void main() {
     for (uint i = 2u * part_first + uint(at.x + at.y) % 2u; i < end; i += 2u) {
 #ifdef SURFELS
         // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
-        irradiance += irradiance_from_vpl(vpls[i], surface);
+        irradiance += irradiance_from_vpl(i, surface);
 #else
-        irradiance += irradiance_from_vpl(vpls[vpl_order[i]], surface);
+        irradiance += irradiance_from_vpl(vpl_order[i], surface);
 #endif
     }
     vec4 found = imageLoad(reconstructed, at);

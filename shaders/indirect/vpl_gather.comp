@@ -30,7 +30,7 @@ void main() {
     uint first = share * vpl_constants.count / classes + part_first;
     uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + part_size) : first;
     for (uint i = first; i < last; ++i) {
-        Vpl vpl = vpls[vpl_order[i]];
+        uint vpl = vpl_order[i];
         for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
     }
     // Multiplied by the number of classes: the estimate for all VPLs. OpenGL discards stores outside the image.

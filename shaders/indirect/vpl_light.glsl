@@ -1,4 +1,4 @@
-// Light that virtual point lights (VPLs) send to a surface.
+// Light that virtual point lights (VPLs) send to a surface. The entry is irradiance_from_vpl.
 #include "bindings.glsl"
 #include "vpls/disc.glsl"
 #include "sky/sky_patch.glsl"
@@ -7,43 +7,44 @@
 #include "vpls/vpl_constants.glsl"
 #include "vpls/vpl_visibility.glsl"
 
-layout(std430, binding = BINDING_VPLS) readonly restrict buffer Vpls { Vpl vpls[]; };
+#ifndef SURFELS
+
+layout(std430, binding = BINDING_TRACED_VPLS) readonly restrict buffer TracedVpls { TracedVpl traced_vpls[]; };
+
+const float CREASE_SLACK = 16.0;  // ray offsets: a receiver this little behind a VPL's plane counts as in front of it
 
 // 1 above the surface that a VPL lies on, 0 beyond its edges. Falls off linearly beyond an edge, over a quarter of the
 // distance to it. `aside`: metres from the VPL, in its plane. `ahead`: distance towards a straight edge over the
 // distance to it. See theory.md, "Edges of a VPL's surface".
-float share_on_surface(Vpl vpl, vec3 aside) {
+float share_on_surface(TracedVpl vpl, vec3 aside) {
     float ahead = dot(max(aside * vpl.edges_up, -aside * vpl.edges_down), vec3(1.0));
     return clamp(5.0 - 4.0 * ahead, 0.0, 1.0);
 }
 
 // Geometry term cos θ cos θ' / r² between the surface and a VPL (Keller, "Instant Radiosity", 1997). It is at most 4/3
-// of 1/R², R² being vpl_constants.radius2, as the VPL is treated as a disc (disc.glsl). Beyond an edge of the VPL's
-// surface there is no crease, and the disc does not sink. Irradiance is flux/π times the term. See theory.md, "Bound of
-// the geometry term".
-float geometry_term(Vpl vpl, Surface surface) {
+// of 1/R², as the VPL is treated as a disc of radius R (disc.glsl). Beyond an edge of the VPL's surface there is no
+// crease, and the disc does not sink. Irradiance is flux/π times the term. See theory.md, "Bound of the geometry term".
+float geometry_term(TracedVpl vpl, Surface surface) {
     vec3 to_vpl = vpl.position - surface.position;
     float height = -dot(vpl.normal, to_vpl);
-    if (height <= -vpl_constants.crease_slack) return 0.0;
+    if (height <= -CREASE_SLACK * vpl_constants.ray_offset) return 0.0;
     height = max(height, 0.0);
     float tilt = tilt_of(vpl.normal, face_normal(surface)) * share_on_surface(vpl, -to_vpl - height * vpl.normal);
-    return sinking_disc_term(to_vpl, height, vpl.normal, vpl_constants.radius2, tilt, shading_normal(surface));
+    return sinking_disc_term(to_vpl, height, vpl.normal, vpl.radius2, tilt, shading_normal(surface));
 }
 
-#ifndef SURFELS
-
-// Geometry term times visibility, which is looked up only where the term is not zero.
-float visible_geometry_term(Vpl vpl, Surface surface) {
+// π times the irradiance from the VPL of that index.
+vec3 irradiance_from_vpl(uint index, Surface surface) {
+    TracedVpl vpl = traced_vpls[index];
+    if (vpl.state == VPL_ESCAPED) return vec3(0.0);
     float geometry = geometry_term(vpl, surface);
-    if (geometry > 0.0) geometry *= vpl_visibility(vpl, surface);
-    return geometry;
+    if (geometry > 0.0) geometry *= visibility_of_vpl(index, vpl.position, vpl.normal, surface);
+    return vpl.flux * geometry;
 }
-
-// π times the irradiance from the VPL.
-vec3 irradiance_from_vpl(Vpl vpl, Surface surface) { return vpl.flux * visible_geometry_term(vpl, surface); }
 
 #else
 
+layout(std430, binding = BINDING_LIT_SURFELS) readonly restrict buffer LitSurfels { LitSurfel lit_surfels[]; };
 layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints { LitPoint lit_points[]; };
 
 // disc_term at a visible surface.
@@ -51,47 +52,71 @@ float disc_term_at(Surface surface, vec3 position, vec3 normal, float radius2) {
     return disc_term(position, normal, radius2, surface.position, face_normal(surface), shading_normal(surface));
 }
 
-// Whether the points of a cell are evaluated one by one: near the cell, and always if it emits light (EMITTERS), as
-// that light is direct.
-bool is_resolved(Vpl vpl, Surface surface) {
-#ifdef EMITTERS
-    if (vpl.map == NO_MAP) return true;
-#endif
-    return is_near(vpl.map_origin - surface.position, vpl.area);
-}
-
-// π times the unoccluded irradiance from the cell of a surfel.
-vec3 unoccluded_from_cell(Vpl vpl, Surface surface) {
-    if (!is_resolved(vpl, surface)) {
-        return vpl.flux * disc_term_at(surface, vpl.position, vpl.normal, vpl.radius2);
-    }
+// π times the unoccluded irradiance from the points of a cell.
+vec3 unoccluded_from_points(uint first, uint count, Surface surface) {
     vec3 sum = vec3(0.0);
-    for (uint i = vpl.first_point; i < vpl.first_point + vpl.point_count; ++i) {
+    for (uint i = first; i < first + count; ++i) {
         LitPoint point = lit_points[i];
         sum += point.flux * disc_term_at(surface, point.position, point.normal, point.area / PI);
     }
     return sum;
 }
 
-#ifdef SKY
+// π times the unoccluded irradiance from the cell of a surfel. Near the cell, its points are evaluated one by one.
+vec3 unoccluded_from_cell(LitSurfel surfel, Surface surface) {
+    if (is_near(surfel.position - surface.position, surfel.area)) {
+        return unoccluded_from_points(surfel.first_point, surfel.point_count, surface);
+    }
+    return surfel.flux * disc_term_at(surface, surfel.centre, surfel.normal, surfel.radius2);
+}
 
-// π times the irradiance from a patch of the sky.
-vec3 irradiance_from_patch(Vpl sky_patch, Surface surface) {
-    PatchLight light = light_of_patch(sky_patch, shading_normal(surface));
-    if (light.cosine <= 0.0) return vec3(0.0);
-    return sky_patch.flux * (light.cosine * visibility_of_sky(light.direction, surface));
+// π times the irradiance from a surfel.
+vec3 irradiance_from_surfel(uint index, Surface surface) {
+    LitSurfel surfel = lit_surfels[index];
+    if (surfel.flux == vec3(0.0)) return vec3(0.0);
+    vec3 unoccluded = unoccluded_from_cell(surfel, surface);
+    if (unoccluded == vec3(0.0)) return vec3(0.0);
+    return unoccluded * visibility_of_vpl(index, surfel.position, surfel.normal, surface);
+}
+
+#ifdef EMITTERS
+
+layout(std430, binding = BINDING_LIT_EMITTERS) readonly restrict buffer LitEmitters { LitEmitter lit_emitters[]; };
+
+// π times the irradiance from a surfel that emits light. That light is direct: its points are evaluated one by one.
+vec3 irradiance_from_emitter(LitEmitter emitter, Surface surface) {
+    if (emitter.flux == vec3(0.0)) return vec3(0.0);
+    vec3 unoccluded = unoccluded_from_points(emitter.first_point, emitter.point_count, surface);
+    if (unoccluded == vec3(0.0)) return vec3(0.0);
+    return unoccluded * visibility_by_ray(emitter.position, emitter.normal, surface);
 }
 
 #endif
 
-// π times the irradiance from the VPL.
-vec3 irradiance_from_vpl(Vpl vpl, Surface surface) {
-    if (vpl.flux == vec3(0.0)) return vec3(0.0);
 #ifdef SKY
-    if (vpl.map == IN_SKY) return irradiance_from_patch(vpl, surface);
+
+// π times the irradiance from a patch of the sky.
+vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
+    PatchLight light = light_of_patch(sky_patch, shading_normal(surface));
+    if (light.cosine <= 0.0) return vec3(0.0);
+    return sky_patch.light * (light.cosine * visibility_of_sky(light.direction, surface));
+}
+
 #endif
-    vec3 unoccluded = unoccluded_from_cell(vpl, surface);
-    return unoccluded == vec3(0.0) ? unoccluded : unoccluded * vpl_visibility(vpl, surface);
+
+// π times the irradiance from the VPL of that index. Kinds whose light is not shown send none.
+vec3 irradiance_from_vpl(uint index, Surface surface) {
+    if (index < vpl_constants.first_emitter) return irradiance_from_surfel(index, surface);
+#ifdef EMITTERS
+    if (index < vpl_constants.first_sky_patch) {
+        return irradiance_from_emitter(lit_emitters[index - vpl_constants.first_emitter], surface);
+    }
+#endif
+#ifdef SKY
+    return irradiance_from_patch(sky_patches[index - vpl_constants.first_sky_patch], surface);
+#else
+    return vec3(0.0);
+#endif
 }
 
 #endif

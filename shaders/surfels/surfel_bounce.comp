@@ -5,7 +5,7 @@
 
 layout(local_size_x = SURFEL_GROUP) in;
 
-layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFactors { uint form_factors[]; };
@@ -19,11 +19,11 @@ layout(std430, binding = BINDING_FLUX_ACCOUNT) readonly restrict buffer Flux { F
 uniform uint bounce;  // 2 or more
 
 // Irradiance from the flux of the lights that a cell reflects, before the scales.
-vec3 from_lit_cell(Vpl from, uint other) {
+vec3 from_lit_cell(Surfel from, uint other) {
     CellLight cell = cells[other];
     vec3 reflected = cell.direct - cell.emitted;
     if (reflected == vec3(0.0)) return vec3(0.0);
-    Vpl to = surfels[other];
+    Surfel to = surfels[other];
     if (!is_near(to.position - from.position, to.area)) {
         return reflected / PI * disc_term(cell.centre, to.normal, cell.radius2, from.position, from.normal);
     }
@@ -39,7 +39,7 @@ vec3 from_lit_cell(Vpl from, uint other) {
 }
 
 // Irradiance from the surfel in a column, with that surfel's scale but without the row's.
-vec3 from_column(Vpl from, uint row, uint column, float factor) {
+vec3 from_column(Surfel from, uint row, uint column, float factor) {
     uint other = surfel_of(row, column);
     if (factor == 0.0) return vec3(0.0);
 #ifdef FIRST
@@ -53,7 +53,7 @@ vec3 from_column(Vpl from, uint row, uint column, float factor) {
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= surfel_count || flux[0].spent != 0u) return;
-    Vpl from = surfels[id];
+    Surfel from = surfels[id];
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < columns / 2u; ++i) {
         vec2 factors = unpackHalf2x16(form_factors[form_factors_at(id, i)]);

@@ -5,7 +5,7 @@
 
 layout(local_size_x = SURFEL_GROUP) in;
 
-layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) writeonly restrict buffer Cells { CellLight cells[]; };
@@ -13,7 +13,7 @@ layout(std430, binding = BINDING_CELL_LIGHT) writeonly restrict buffer Cells { C
 void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= surfel_count) return;
-    Vpl surfel = surfels[id];
+    Surfel surfel = surfels[id];
     vec3 arriving = vec3(0.0);
     vec3 direct = vec3(0.0);
     vec3 emitted = vec3(0.0);

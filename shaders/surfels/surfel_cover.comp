@@ -8,7 +8,7 @@
 
 layout(local_size_x = COVER_PARTS) in;
 
-layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_COVER) writeonly restrict buffer Cover { uint cover[]; };
 
 uniform float ray_offset;  // metres above the surface, where rays start
@@ -19,14 +19,14 @@ bool reflects(Hit hit, vec3 direction) {
     return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
 }
 
-vec3 ray_direction(Vpl surfel, uint id, uint i) {
+vec3 ray_direction(Surfel surfel, uint id, uint i) {
     return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, id));
 }
 
 void main() {
     uint id = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
     if (id >= surfel_count) return;
-    Vpl surfel = surfels[id];
+    Surfel surfel = surfels[id];
     bool changed = false;
     for (uint i = 0u; i < COVER_RAYS && !changed; ++i) {
         changed = may_have_changed(surfel.position, ray_direction(surfel, id, i), 1.0 / 0.0);

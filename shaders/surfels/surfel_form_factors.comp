@@ -7,13 +7,13 @@
 
 layout(local_size_x = SURFEL_GROUP) in;
 
-layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) restrict buffer FormFactors { uint form_factors[]; };
 
 uniform float ray_offset;  // metres above both surfaces, where rays start and end
 
-float form_factor(Vpl from, Vpl to) {
+float form_factor(Surfel from, Surfel to) {
     if (!is_near(to.position - from.position, to.area)) {
         return to.area / PI * disc_term(to.position, to.normal, to.radius2, from.position, from.normal);
     }
@@ -25,7 +25,7 @@ float form_factor(Vpl from, Vpl to) {
     return sum;
 }
 
-bool sees(Vpl from, Vpl to) {
+bool sees(Surfel from, Surfel to) {
     vec3 origin = from.position + ray_offset * from.normal;
     vec3 target = to.position + ray_offset * to.normal;
     return !any_hit(origin, target - origin, 0.0, 1.0);
@@ -41,8 +41,8 @@ bool pair_may_have_changed(uint row, uint column) {
 float visible_form_factor(uint row, uint column) {
     uint other = surfel_of(row, column);
     if (column >= columns || other >= surfel_count || other == row) return 0.0;
-    Vpl from = surfels[row];
-    Vpl to = surfels[other];
+    Surfel from = surfels[row];
+    Surfel to = surfels[other];
     float factor = form_factor(from, to);
     return factor > 0.0 && sees(from, to) ? factor : 0.0;
 }

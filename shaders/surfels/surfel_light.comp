@@ -14,7 +14,7 @@ layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
-layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_SEEN_POINTS) readonly restrict buffer Seen { uint seen[]; };
 
 uniform uint point_count;
@@ -24,8 +24,6 @@ uniform uint surfel_count;
 uniform uint emitting_count;  // surfels that emit light: the last ones
 uniform uint emitter_shares;  // a cell point receives the light of one in so many of them, and of all near its cell
 #ifdef SKY
-layout(std430, binding = BINDING_SKY_PATCHES) readonly restrict buffer SkyPatches { Vpl sky_patches[]; };
-
 uniform uint sky_patch_count;
 uniform uint sky_shares;  // a cell point receives the light of one in so many patches
 #endif
@@ -47,7 +45,7 @@ vec3 irradiance_from(Light light, CellPoint point) {
 }
 
 // Irradiance from the cell of a surfel that emits light, unoccluded.
-vec3 irradiance_from_cell(Vpl emitter, CellPoint point) {
+vec3 irradiance_from_cell(Surfel emitter, CellPoint point) {
     vec3 sum = vec3(0.0);
     for (uint i = emitter.first_point; i < emitter.first_point + emitter.point_count; ++i) {
         CellPoint from = cell_points[i];
@@ -58,11 +56,11 @@ vec3 irradiance_from_cell(Vpl emitter, CellPoint point) {
 }
 
 // Irradiance from the cell of a surfel that emits light.
-vec3 visible_from_cell(Vpl emitter, CellPoint point) {
+vec3 visible_from_cell(Surfel emitter, CellPoint point) {
     vec3 irradiance = irradiance_from_cell(emitter, point);
     if (irradiance == vec3(0.0)) return irradiance;
     vec3 origin = point.position + ray_offset * point.normal;
-    vec3 target = emitter.map_origin + ray_offset * emitter.normal;
+    vec3 target = emitter.position + ray_offset * emitter.normal;
     return any_hit(origin, target - origin, 0.0, 1.0) ? vec3(0.0) : irradiance;
 }
 
@@ -73,7 +71,7 @@ struct Share {
     float weight;
 };
 
-Share share_of(uint id, Vpl own, uint shares) {
+Share share_of(uint id, Surfel own, uint shares) {
     bool covers_all = shares <= own.point_count;
     uint first = (covers_all ? id - own.first_point : id) % shares;
     // How many points of the cell have the same share.
@@ -83,12 +81,12 @@ Share share_of(uint id, Vpl own, uint shares) {
 
 // Irradiance from surfaces that emit light: the point's share of them, and all that are near its cell.
 vec3 irradiance_from_emitters(uint id, CellPoint point) {
-    Vpl own = surfels[point.surfel];
+    Surfel own = surfels[point.surfel];
     Share share = share_of(id, own, emitter_shares);
     bool sums_near = emitting_count <= MOST_NEAR_EMITTERS;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < emitting_count; ++i) {
-        Vpl emitter = surfels[surfel_count - emitting_count + i];
+        Surfel emitter = surfels[surfel_count - emitting_count + i];
         bool near = sums_near && is_near(emitter.position - own.position, own.area + emitter.area);
         if (near || i % emitter_shares == share.first) sum += (near ? 1.0 : share.weight) * visible_from_cell(emitter, point);
     }
@@ -104,7 +102,7 @@ vec3 irradiance_from_sky(uint id, CellPoint point) {
     for (uint i = share.first; i < sky_patch_count; i += sky_shares) {
         PatchLight light = light_of_patch(sky_patches[i], point.normal);
         if (light.cosine > 0.0 && !any_hit(origin, light.direction, 0.0, 1.0 / 0.0)) {
-            sum += light.cosine / PI * sky_patches[i].flux;
+            sum += light.cosine / PI * sky_patches[i].light;
         }
     }
     return share.weight * sum;

@@ -6,7 +6,7 @@
 
 layout(local_size_x = SURFEL_GROUP) in;
 
-layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Vpl surfels[]; };
+layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_SEEN_POINTS) restrict buffer Seen { uint seen[]; };
 
@@ -18,7 +18,7 @@ void main() {
     uint id = gl_GlobalInvocationID.x;
     if (id >= point_count) return;
     CellPoint point = cell_points[id];
-    Vpl surfel = surfels[point.surfel];
+    Surfel surfel = surfels[point.surfel];
     float lift = LIFT * sqrt(surfel.area);
     vec3 origin = surfel.position + lift * surfel.normal;
     vec3 direction = point.position + lift * point.normal - origin;

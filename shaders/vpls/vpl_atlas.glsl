@@ -18,7 +18,8 @@ VplTile vpl_tile(uint map) {
     return VplTile(place * vpl_constants.map_resolution, map / (tiles * tiles));
 }
 
-vec3 vpl_map_origin(Vpl vpl) { return vpl.map_origin + vpl_constants.ray_offset * vpl.normal; }
+// Where the depth map of a VPL at that position is seen from.
+vec3 vpl_map_origin(vec3 position, vec3 normal) { return position + vpl_constants.ray_offset * normal; }
 
 // `at`: in the map's space, metres from its origin.
 float vpl_map_depth(vec3 at) { return min(vpl_constants.map_near / (abs(at.x) + abs(at.y) + at.z), 1.0); }

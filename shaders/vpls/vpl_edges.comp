@@ -10,7 +10,7 @@ const uint VPLS_A_GROUP = 16u;
 
 layout(local_size_x = 6, local_size_y = 16) in;
 
-layout(std430, binding = BINDING_VPLS) restrict buffer Vpls { Vpl vpls[]; };
+layout(std430, binding = BINDING_TRACED_VPLS) restrict buffer TracedVpls { TracedVpl traced_vpls[]; };
 
 uniform uint vpl_count;
 uniform float edge_reach;  // metres: edges farther away are ignored
@@ -42,7 +42,7 @@ float edge_distance(vec3 above, vec3 along, vec3 normal) {
 // For a world axis, or its opposite, projected into the surface's plane: sin(axis, normal) / distance to the edge in
 // that direction, in 1/m; 0 if there is no edge. For a straight edge e metres away, with normal m in the plane, the six
 // values hold the components of m / e, whatever the plane's orientation. Axes within 18 degrees of the normal give 0.
-float inverse_edge(Vpl vpl, uint direction) {
+float inverse_edge(TracedVpl vpl, uint direction) {
     uint axis = direction % 3u;
     vec3 along = -vpl.normal[axis] * vpl.normal;
     along[axis] += 1.0;
@@ -57,11 +57,11 @@ shared float inverse_edges[VPLS_A_GROUP][DIRECTIONS];
 void main() {
     uint id = gl_GlobalInvocationID.y;
     uint direction = gl_LocalInvocationID.x;
-    bool alive = id < vpl_count && vpls[min(id, vpl_count - 1u)].flux != vec3(0.0);
-    if (alive) inverse_edges[gl_LocalInvocationID.y][direction] = inverse_edge(vpls[id], direction);
+    bool alive = id < vpl_count && traced_vpls[min(id, vpl_count - 1u)].flux != vec3(0.0);
+    if (alive) inverse_edges[gl_LocalInvocationID.y][direction] = inverse_edge(traced_vpls[id], direction);
     barrier();
     if (!alive || direction > 0u) return;
     float edges[DIRECTIONS] = inverse_edges[gl_LocalInvocationID.y];
-    vpls[id].edges_up = vec3(edges[0], edges[1], edges[2]);
-    vpls[id].edges_down = vec3(edges[3], edges[4], edges[5]);
+    traced_vpls[id].edges_up = vec3(edges[0], edges[1], edges[2]);
+    traced_vpls[id].edges_down = vec3(edges[3], edges[4], edges[5]);
 }

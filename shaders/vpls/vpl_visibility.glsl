@@ -1,6 +1,6 @@
 // Visibility between a VPL and a surface: from the VPL's depth map (VPL_VISIBILITY_MAPS), by a shadow ray
-// (VPL_VISIBILITY_RAYS), or always 1. VPLs on surfaces that emit light (EMITTERS) and patches of the sky (SKY) have no
-// maps: their shadows are those of direct light, and a map's texels would be seen.
+// (VPL_VISIBILITY_RAYS), or always 1. Surfels that emit light (EMITTERS) and patches of the sky (SKY) have no maps:
+// their shadows are those of direct light, and a map's texels would be seen. `position`: metres, of the VPL.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "scene/bvh.glsl"
@@ -15,17 +15,18 @@ float visibility_of_sky(vec3 direction, Surface surface) {
     return any_hit(origin, direction, 0.0, 1.0 / 0.0) ? 0.0 : 1.0;
 }
 
-float visibility_by_ray(Vpl vpl, Surface surface) {
-    vec3 target = vpl.map_origin + vpl_constants.ray_offset * vpl.normal;
+float visibility_by_ray(vec3 position, vec3 normal, Surface surface) {
+    vec3 target = position + vpl_constants.ray_offset * normal;
     vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
     // At least as high above the VPL's plane as the target.
-    origin += max(dot(target - origin, vpl.normal), 0.0) * vpl.normal;
+    origin += max(dot(target - origin, normal), 0.0) * normal;
     return any_hit(origin, target - origin, 0.0, 1.0) ? 0.0 : 1.0;
 }
 
 #else
 
 float visibility_of_sky(vec3 direction, Surface surface) { return 1.0; }
+float visibility_by_ray(vec3 position, vec3 normal, Surface surface) { return 1.0; }
 
 #endif
 
@@ -101,33 +102,32 @@ float lift_above_map(float aside, float distance, float sine) {
 }
 
 // Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane in the surface's direction,
-// it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons.
-float vpl_visibility(Vpl vpl, Surface surface) {
-#ifdef EMITTERS
-    if (vpl.map == NO_MAP) return visibility_by_ray(vpl, surface);
-#endif
+// it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons. `map`: its slot.
+float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
     vec3 tangent, bitangent;
-    basis_around(vpl.normal, tangent, bitangent);
-    mat3 map_from_world = transpose(mat3(tangent, bitangent, vpl.normal));
-    vec3 normal = map_from_world * face_normal(surface);
-    vec3 position = map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(vpl));
-    float distance = length(position);
-    float height = dot(normal, position);
+    basis_around(normal, tangent, bitangent);
+    mat3 map_from_world = transpose(mat3(tangent, bitangent, normal));
+    vec3 facing = map_from_world * face_normal(surface);
+    vec3 at = map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(position, normal));
+    float distance = length(at);
+    float height = dot(facing, at);
     float aside = sqrt(max(distance * distance - height * height, 0.0));
-    float sine = footprint_sine(above_horizon(position) / distance, float(vpl_constants.map_resolution));
-    vec3 lifted = position + lift_above_map(aside, distance, sine) * normal;
+    float sine = footprint_sine(above_horizon(at) / distance, float(vpl_constants.map_resolution));
+    vec3 lifted = at + lift_above_map(aside, distance, sine) * facing;
     vec3 seen = above_horizon(lifted);
-    MapTexels texels = texels_around(vpl.map, seen);
+    MapTexels texels = texels_around(map, seen);
     if (see_one_plane(texels)) return is_before_plane(texels, seen) ? 1.0 : 0.0;
     return share_beyond(texels, min(length(lifted), distance));
 }
 
 #elif defined(VPL_VISIBILITY_RAYS)
 
-float vpl_visibility(Vpl vpl, Surface surface) { return visibility_by_ray(vpl, surface); }
+float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
+    return visibility_by_ray(position, normal, surface);
+}
 
 #else
 
-float vpl_visibility(Vpl vpl, Surface surface) { return 1.0; }
+float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) { return 1.0; }
 
 #endif

@@ -9,11 +9,12 @@ layout(local_size_x = 32) in;
 layout(std430, binding = BINDING_PATHS) readonly restrict buffer Paths { Path paths[]; };
 layout(std430, binding = BINDING_PATH_WEIGHTS) readonly restrict buffer Weights { float weights[]; };
 layout(std430, binding = BINDING_VPL_RECORDS) readonly restrict buffer Records { VplRecord records[]; };
-layout(std430, binding = BINDING_VPLS) writeonly restrict buffer Vpls { Vpl vpls[]; };
+layout(std430, binding = BINDING_TRACED_VPLS) writeonly restrict buffer TracedVpls { TracedVpl traced_vpls[]; };
 layout(std430, binding = BINDING_FLUX) writeonly restrict buffer Flux { FluxAccount flux[]; };
 
 uniform uint path_count;
 uniform uint max_bounces;
+uniform float radius2;  // m², of all VPLs
 
 // Share of the flux that a light's range lets through to the path's first VPL; the rest counts as escaped.
 float first_window(Light light, VplRecord first) {
@@ -21,8 +22,8 @@ float first_window(Light light, VplRecord first) {
 }
 
 // vpl_edges.comp fills in the edges.
-Vpl make_vpl(vec3 position, vec3 normal, vec3 flux, uint map) {
-    return Vpl(position, map, normal, 0.0, flux, 0u, vec3(0.0), 0u, vec3(0.0), 0.0, position, 0.0);
+TracedVpl make_vpl(vec3 position, uint state, vec3 normal, vec3 flux) {
+    return TracedVpl(position, state, normal, radius2, flux, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
 }
 
 void main() {
@@ -32,8 +33,7 @@ void main() {
     Light light = lights[path.light];
 
     for (uint i = 0u; i < path.vpl_count; ++i) {
-        uint place = path.first_vpl + i;
-        vpls[place] = make_vpl(vec3(0.0), vec3(0.0), vec3(0.0), place);
+        traced_vpls[path.first_vpl + i] = make_vpl(vec3(0.0), VPL_ESCAPED, vec3(0.0), vec3(0.0));
     }
     FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     vec3 throughput = vec3(1.0);
@@ -61,7 +61,7 @@ void main() {
         throughput = record.throughput;
         reflected = path.flux * (weight * window) * throughput;
         account.absorbed += carried - reflected;
-        vpls[place] = make_vpl(record.position, record.normal, reflected, place);
+        traced_vpls[place] = make_vpl(record.position, VPL_PLACED, record.normal, reflected);
 
         if (bounce == max_bounces) {
             account.truncated += reflected;

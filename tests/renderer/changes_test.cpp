@@ -63,14 +63,14 @@ TEST_SUITE("changes") {
                 {.entity = {i, 1}, .light = {}, .flux = glm::vec3(1.0F + static_cast<float>(i))});
         }
         const VplSettings settings{.count = 1000, .bounces = 4};
-        const VplPlan before = plan_paths(lights, 0.6F, settings);
+        const PathPlan before = plan_paths(lights, 0.6F, settings);
         lights.entries[2].light.position = {1, 2, 3};
         CHECK(plan_paths(lights, 0.6F, settings) == before);
 
         // A light that is 1 % brighter takes one or two paths from the others. The points of their sequences
         // stay.
         lights.entries[2].flux *= 1.01F;
-        const auto points_of = [](const VplPlan& plan) {
+        const auto points_of = [](const PathPlan& plan) {
             std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> points;
             for (const gpu::Path& path : plan.paths) points.insert({path.light, path.index, path.seed});
             return points;

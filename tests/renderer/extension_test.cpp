@@ -189,7 +189,7 @@ TEST_SUITE("extensions") {
             CHECK(seen[0].normal);
             CHECK(seen[0].albedo);
             CHECK_FALSE(seen[0].radiance);
-            CHECK(seen[0].vpls);
+            CHECK(seen[0].lit_surfels);
             CHECK(seen[1].indirect);
             CHECK(seen[1].radiance);
             CHECK(seen[1].list_count.has_value() == (info_of(path).lights != LightList::all));

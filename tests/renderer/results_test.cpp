@@ -24,12 +24,12 @@ constexpr FrameParts all_parts{
 
 class ResultTests : public RenderFixture {
  protected:
-    [[nodiscard]] std::vector<gpu::Vpl> vpls() {
-        const FrameResults results = renderer.results();
-        std::vector<gpu::Vpl> vpls(results.vpl_count);
-        gl.GetNamedBufferSubData(results.vpl_buffer, 0,
-                                 static_cast<GLsizeiptr>(vpls.size() * sizeof(gpu::Vpl)), vpls.data());
-        return vpls;
+    template <class T>
+    [[nodiscard]] std::vector<T> read(const ResultBuffer& result) {
+        std::vector<T> structs(result.count);
+        gl.GetNamedBufferSubData(result.buffer, 0, static_cast<GLsizeiptr>(structs.size() * sizeof(T)),
+                                 structs.data());
+        return structs;
     }
 
     void render(const Scene& scene, const FrameParts& keep) {
@@ -115,14 +115,70 @@ TEST_SUITE("results") {
 
     TEST_CASE_FIXTURE(ResultTests, "the VPLs are records as glsl_types describes them") {
         const Scene scene = cornell_box();
-        configure(linear_configuration());
-        render(scene, {.vpls = true});
-        REQUIRE(renderer.results().vpl_count > 0);
-        for (const gpu::Vpl& vpl : vpls()) {
+        const auto check = [](const auto& vpl) {
             CHECK(glm::length(vpl.normal) == doctest::Approx(1.0).epsilon(1e-5));
             CHECK(vpl.flux.x >= 0.0F);
+        };
+        Configuration configuration = linear_configuration();
+        configuration.vpls.placement = VplPlacement::surfels;
+        configure(configuration);
+        render(scene, {.vpls = true});
+        const FrameResults surfels = renderer.results();
+        REQUIRE(surfels.lit_surfels.count > 0);
+        CHECK(surfels.traced_vpls.buffer == 0);
+        for (const auto& surfel : read<gpu::LitSurfel>(surfels.lit_surfels)) check(surfel);
+
+        configuration.vpls.placement = VplPlacement::paths;
+        configure(configuration);
+        render(scene, {.vpls = true});
+        const FrameResults paths = renderer.results();
+        REQUIRE(paths.traced_vpls.count > 0);
+        CHECK(paths.lit_surfels.buffer == 0);
+        for (const auto& vpl : read<gpu::TracedVpl>(paths.traced_vpls)) {
+            if (vpl.state == VPL_PLACED) check(vpl);
         }
-        CHECK(glsl_types().find("struct Vpl {") != std::string_view::npos);
+        for (const char* const name : {"TracedVpl", "LitSurfel", "LitEmitter", "SkyPatch"}) {
+            CHECK(glsl_types().find("struct " + std::string(name) + " {") != std::string_view::npos);
+        }
+    }
+
+    TEST_CASE_FIXTURE(ResultTests,
+                      "surfels that emit light and patches of the sky have buffers of their own") {
+        constexpr float half = 0.3F;
+        constexpr double radiance = 2.0;
+        Scene scene = ground();
+        add(scene.world, upside_down_at({0, 1, 0}),
+            MeshInstance{square(half, emitter(glm::vec3(static_cast<float>(radiance))))});
+        add(scene.world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
+        Configuration configuration = linear_configuration();
+        configuration.show = Show::direct;
+        configure(configuration);
+        render(scene, {.vpls = true});
+        const FrameResults results = renderer.results();
+        REQUIRE(results.lit_surfels.count > 0);
+        for (const auto& surfel : read<gpu::LitSurfel>(results.lit_surfels)) {
+            CHECK(surfel.position.y == doctest::Approx(0.0).scale(1.0));
+            CHECK(surfel.flux == glm::vec3(0.0F));  // reflected light is not shown
+        }
+        double flux = 0.0;
+        for (const auto& emitter : read<gpu::LitEmitter>(results.lit_emitters)) {
+            CHECK(emitter.position.y == doctest::Approx(1.0));
+            CHECK(emitter.normal.y == doctest::Approx(-1.0));
+            flux += static_cast<double>(emitter.flux.r);
+        }
+        const double side = 2.0 * static_cast<double>(half);
+        CHECK(flux == doctest::Approx(3.14159265 * radiance * side * side).epsilon(1e-3));
+        REQUIRE(results.sky_patches.count > 0);
+        for (const auto& patch : read<gpu::SkyPatch>(results.sky_patches)) {
+            CHECK(glm::length(patch.direction) == doctest::Approx(1.0).epsilon(1e-5));
+            CHECK(patch.light.r > 0.0F);
+        }
+
+        configuration.show = Show::indirect;  // the light of the sky is direct
+        configure(configuration);
+        render(scene, {.vpls = true});
+        CHECK(renderer.results().sky_patches.buffer == 0);
+        CHECK(renderer.results().lit_emitters.count == results.lit_emitters.count);
     }
 
     TEST_CASE_FIXTURE(ResultTests, "VPLs of a spot are spread over its disc, down to the narrowest cone") {
@@ -136,11 +192,11 @@ TEST_SUITE("results") {
             CAPTURE(cone);
             scene.world.set(scene.light, SpotLight{.inner_cone = 0.0F, .outer_cone = cone});
             render(scene, {.vpls = true});
-            const std::vector<gpu::Vpl> all = vpls();
+            const auto all = read<gpu::TracedVpl>(renderer.results().traced_vpls);
             REQUIRE(all.size() > 1000);
             const double radius = static_cast<double>(height) * std::tan(static_cast<double>(cone));
             double squares = 0.0, largest = 0.0;
-            for (const gpu::Vpl& vpl : all) {
+            for (const gpu::TracedVpl& vpl : all) {
                 const double x = vpl.position.x, z = vpl.position.z;
                 squares += (x * x + z * z) / (radius * radius * static_cast<double>(all.size()));
                 largest = std::max(largest, std::hypot(x, z) / radius);
@@ -161,13 +217,13 @@ TEST_SUITE("results") {
         CHECK(renderer.results().depth.texture != 0);
         CHECK(renderer.results().normal.texture == 0);
         CHECK(renderer.results().radiance.texture == 0);
-        CHECK(renderer.results().vpl_buffer == 0);
+        CHECK(renderer.results().lit_surfels.buffer == 0);
         Configuration direct = linear_configuration();
         direct.indirect = false;
         configure(direct);
         render(scene, all_parts);
         CHECK(renderer.results().indirect.texture == 0);
-        CHECK(renderer.results().vpl_count == 0);
+        CHECK(renderer.results().lit_surfels.count == 0);
         CHECK(renderer.results().radiance.texture != 0);
     }
 

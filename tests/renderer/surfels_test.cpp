@@ -56,7 +56,7 @@ SceneTriangles cube() {
 
 double total_area(const SurfelSet& set) {
     double area = 0.0;
-    for (const gpu::Vpl& surfel : set.surfels) area += static_cast<double>(surfel.area);
+    for (const gpu::Surfel& surfel : set.surfels) area += static_cast<double>(surfel.area);
     return area;
 }
 
@@ -83,7 +83,7 @@ TEST_SUITE("surfels: placement") {
             CHECK(total_area(set) == doctest::Approx(24.0).epsilon(1e-4));
             const double mean = 24.0 / static_cast<double>(set.surfels.size());
             double squares = 0.0;
-            for (const gpu::Vpl& surfel : set.surfels) {
+            for (const gpu::Surfel& surfel : set.surfels) {
                 const double off = static_cast<double>(surfel.area) / mean - 1.0;
                 squares += off * off;
             }
@@ -97,7 +97,7 @@ TEST_SUITE("surfels: placement") {
         const SurfelSet set = place_surfels(cube(), {.reflecting = 200}, test_seed());
         const float width = std::sqrt(24.0F / 200.0F);
         std::size_t points = 0;
-        for (const gpu::Vpl& surfel : set.surfels) {
+        for (const gpu::Surfel& surfel : set.surfels) {
             REQUIRE(surfel.first_point == points);
             for (std::uint32_t i = 0; i < surfel.point_count; ++i, ++points) {
                 const gpu::CellPoint& point = set.points[points];
@@ -117,7 +117,7 @@ TEST_SUITE("surfels: placement") {
             sheet.double_sided[0] = both;
             const SurfelSet set = place_surfels(sheet, {.reflecting = 50}, 0);
             const auto front = std::ranges::count_if(
-                set.surfels, [](const gpu::Vpl& surfel) { return surfel.normal.z > 0.5F; });
+                set.surfels, [](const gpu::Surfel& surfel) { return surfel.normal.z > 0.5F; });
             CHECK(total_area(set) == doctest::Approx(both ? 2.0 : 1.0).epsilon(1e-4));
             CHECK(static_cast<double>(front) / static_cast<double>(set.surfels.size()) ==
                   doctest::Approx(both ? 0.5 : 1.0).epsilon(0.1));
@@ -130,7 +130,7 @@ TEST_SUITE("surfels: placement") {
         add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
         const SurfelSet set = place_surfels(two, {.reflecting = 40}, test_seed());
         for (std::size_t i = 0; i < set.surfels.size(); ++i) {
-            const gpu::Vpl& surfel = set.surfels[i];
+            const gpu::Surfel& surfel = set.surfels[i];
             for (std::uint32_t p = 0; p < surfel.point_count; ++p) {
                 CHECK((set.points[surfel.first_point + p].position.x < 1.0F) == (set.item_of[i] == 0));
             }

@@ -41,7 +41,7 @@ class VplGatherTests : public PathFixture {
 };
 
 /// Three lights whose paths have up to four bounces.
-VplPlan three_lights() {
+PathPlan three_lights() {
     LightTable lights;
     for (std::uint32_t i = 0; i < 3; ++i) {
         const auto flux = static_cast<float>(1U << (2 * i));
@@ -70,7 +70,7 @@ TEST_SUITE("interleaved gathering") {
     }
 
     TEST_CASE("each share of the VPLs contains its part of every light and bounce") {
-        const VplPlan paths = three_lights();
+        const PathPlan paths = three_lights();
         std::vector<std::uint32_t> order = order_vpls(paths);
         REQUIRE(order.size() == paths.vpl_count);
 

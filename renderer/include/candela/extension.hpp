@@ -15,11 +15,14 @@ namespace candela {
 
 namespace gpu {
 struct Light;
-struct Vpl;
+struct LitEmitter;
+struct LitSurfel;
+struct SkyPatch;
+struct TracedVpl;
 }  // namespace gpu
 
-/// GLSL source of the structs in the buffers of a frame, such as Light and Vpl, for a host's own shaders:
-/// layout std430. Static storage duration.
+/// GLSL source of the structs in the buffers of a frame, such as Light and LitSurfel, for a host's own
+/// shaders: layout std430. Static storage duration.
 [[nodiscard]] CANDELA_API std::string_view glsl_types();
 
 /// Where in a view's frame an extension adds its passes.
@@ -41,8 +44,12 @@ struct ViewFrame {
     std::optional<TextureHandle> albedo{};
     std::optional<TextureHandle> indirect{};
     std::optional<TextureHandle> radiance{};
-    BufferHandle<gpu::Light> lights{};             ///< the scene's lights: `Light` as in glsl_types()
-    std::optional<BufferHandle<gpu::Vpl>> vpls{};  ///< the VPLs: `Vpl` as in glsl_types()
+    BufferHandle<gpu::Light> lights{};  ///< the scene's lights: `Light` as in glsl_types()
+    // The VPLs, as in glsl_types(): those on paths; or surfels, surfels that emit light, patches of the sky.
+    std::optional<BufferHandle<gpu::TracedVpl>> traced_vpls{};
+    std::optional<BufferHandle<gpu::LitSurfel>> lit_surfels{};
+    std::optional<BufferHandle<gpu::LitEmitter>> lit_emitters{};
+    std::optional<BufferHandle<gpu::SkyPatch>> sky_patches{};
     std::optional<BufferHandle<std::uint32_t>> list_first{};  ///< light lists, by cell: where its list begins
     std::optional<BufferHandle<std::uint32_t>> list_count{};  ///< by cell: the length of its list
     std::optional<BufferHandle<std::uint32_t>> list_entries{};  ///< indices of lights, list after list

@@ -101,6 +101,12 @@ struct ResultTexture {
     glm::uvec2 size{0};         ///< pixels; less than the target's if a frame budget reduces the quality
 };
 
+/// A buffer of a frame; name 0 if the frame has no such content, or if it was not asked for.
+struct ResultBuffer {
+    std::uint32_t buffer = 0;  ///< GL name
+    std::uint32_t count = 0;   ///< structs in it
+};
+
 /// What a view has left on the GPU, as far as its RenderView::keep asked for it. The objects belong to the
 /// renderer, which may change or delete them in its next call; they may be read, not written.
 struct FrameResults {
@@ -113,8 +119,10 @@ struct FrameResults {
     /// rgba32f: linear radiance before exposure and tone mapping, the mean of all frames with refinement;
     /// alpha is 1 where there is a surface, else 0, and in between where blended surfaces cover the sky.
     ResultTexture radiance;
-    std::uint32_t vpl_buffer = 0;  ///< GL name of a buffer of `Vpl` as in glsl_types()
-    std::uint32_t vpl_count = 0;
+    ResultBuffer traced_vpls{};   ///< `TracedVpl` of glsl_types(); only with VplPlacement::paths
+    ResultBuffer lit_surfels{};   ///< `LitSurfel` of glsl_types(): surfels that emit no light themselves
+    ResultBuffer lit_emitters{};  ///< `LitEmitter` of glsl_types(): surfels on surfaces that emit light
+    ResultBuffer sky_patches{};   ///< `SkyPatch` of glsl_types(); only if the light of the sky is shown
 };
 
 }  // namespace candela

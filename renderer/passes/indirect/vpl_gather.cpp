@@ -48,7 +48,8 @@ std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::
 
 namespace {
 
-/// Surfels lie in the buffer surface by surface. In this order each share contains surfels of all surfaces.
+/// The order of surfels and patches of the sky. Surfels lie in the buffer surface by surface. In this order
+/// each share contains surfels of all surfaces.
 std::vector<std::uint32_t> order_surfels(std::uint32_t count) {
     constexpr std::uint32_t most_shares = 64;
     std::vector<std::uint32_t> order;
@@ -62,10 +63,7 @@ std::vector<std::uint32_t> order_surfels(std::uint32_t count) {
 
 }  // namespace
 
-std::vector<std::uint32_t> order_vpls(const VplPlan& plan) {
-    if (plan.paths.empty()) {
-        return order_surfels(plan.vpl_count);
-    }
+std::vector<std::uint32_t> order_vpls(const PathPlan& plan) {
     using Group = std::pair<std::uint32_t, std::uint32_t>;  // light and bounce
     std::map<Group, std::uint32_t> sizes;
     for (const gpu::Path& path : plan.paths) {
@@ -89,12 +87,20 @@ std::vector<std::uint32_t> order_vpls(const VplPlan& plan) {
     return order;
 }
 
-BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, ValueHandle<VplPlan> plan) {
+BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, const Vpls& vpls) {
     return graph.add("vpl-order", [&](Pass& pass) {
-        pass.read(plan);
+        std::optional<ValueHandle<PathPlan>> plan;
+        if (const auto* const traced = std::get_if<TracedVpls>(&vpls.records)) {
+            plan = traced->plan;
+            pass.read(*plan);
+        } else {
+            pass.read(vpls.counts);
+        }
         const auto order = pass.write(growing_buffer<std::uint32_t>(graph, "vpl order"), Usage::copy);
-        pass.run([=, &gpu](Execution& run) {
-            upload<std::uint32_t>(gpu, run, order, order_vpls(run.value(plan)));
+        pass.run([=, &gpu, counts = vpls.counts](Execution& run) {
+            upload<std::uint32_t>(
+                gpu, run, order,
+                plan ? order_vpls(run.value(*plan)) : order_surfels(run.value(counts).total()));
         });
         return order;
     });
@@ -117,7 +123,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
             .order = order,
             .interleave = interleave};
         pass.run([=, &gpu, &program](Execution& run) {
-            gather(gpu, program, view.size, interleave, run.value(light.vpls.plan).vpl_count,
+            gather(gpu, program, view.size, interleave, run.value(light.vpls.counts).total(),
                    max_vpls_per_invocation(light));
         });
         return out;

@@ -19,22 +19,22 @@ namespace candela {
 
 /// The order of VPLs, as indices, of which each class of pixels takes a consecutive range as its share. Each
 /// range contains VPLs of each light and bounce in proportion. Within these, they are consecutive points of
-/// the light's low-discrepancy sequence, which are evenly distributed. Surfels are ordered so that each range
-/// contains surfels from all surfaces.
-[[nodiscard]] std::vector<std::uint32_t> order_vpls(const VplPlan& paths);
+/// the light's low-discrepancy sequence, which are evenly distributed.
+[[nodiscard]] std::vector<std::uint32_t> order_vpls(const PathPlan& paths);
 
 /// What each pixel has gathered from its share of the VPLs.
 struct GatheredVpls {
     /// rgba32f: estimate of π times the irradiance from all VPLs, extrapolated from the share of the pixel's
     /// class; in lux or W/m², by the unit of the lights. Alpha is 1 where there is a surface, else 0.
     TextureHandle irradiance;
-    BufferHandle<std::uint32_t> order;  ///< result of `order_vpls`
+    BufferHandle<std::uint32_t> order;  ///< see add_vpl_order
     std::uint32_t interleave = 1;       ///< n
 };
 
-/// Adds node `vpl-order` (CPU, then upload): order_vpls. Depends on the plan.
-[[nodiscard]] BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu,
-                                                        ValueHandle<VplPlan> plan);
+/// Adds node `vpl-order` (CPU, then upload): the order of VPLs on paths is that of order_vpls; surfels are
+/// ordered so that each range contains surfels from all surfaces. Depends on the paths, or on the number of
+/// VPLs.
+[[nodiscard]] BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, const Vpls& vpls);
 
 /// Adds node `vpl-gather` (compute): each pixel sums the light of the VPLs in the share of its class (Wald et
 /// al., "Interactive Global Illumination using Fast Ray Tracing", 2002; Segovia et al., "Non-interleaved

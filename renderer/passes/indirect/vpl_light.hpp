@@ -8,7 +8,7 @@
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
-#include "renderer/passes/vpls/vpl_trace.hpp"
+#include "renderer/passes/vpls/vpls.hpp"
 
 namespace candela {
 
@@ -18,8 +18,6 @@ struct VplLight {
     VplCommon common;
     std::optional<TextureHandle> maps{};  ///< depth maps of the VPLs, if visibility is found by maps
     std::optional<Tracing> rays{};        ///< BVH for shadow rays: of all VPLs, or of those without a map
-    bool emitters = false;                ///< some surfels are on surfaces that emit light
-    bool sky = false;                     ///< some VPLs are patches of the sky
 };
 
 /// Most VPLs that an invocation may evaluate in one dispatch or draw. Software drivers silently stop all

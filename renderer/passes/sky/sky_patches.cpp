@@ -145,22 +145,6 @@ glm::vec3 drawn_direction(const SkyGrid& grid, const SkyPatch& patch, glm::vec2 
     return grid_direction((corner + glm::vec2(inside, u.y)) / glm::vec2(grid.size));
 }
 
-/// `light`: π times the irradiance on a surface that faces the patch.
-gpu::Vpl vpl_of(glm::vec3 direction, float half_width2, glm::vec3 light) {
-    return {.position = direction,
-            .map = IN_SKY,
-            .normal = -direction,
-            .radius2 = half_width2,
-            .flux = light,
-            .first_point = 0,
-            .edges_up = glm::vec3(0.0F),
-            .point_count = 0,
-            .edges_down = glm::vec3(0.0F),
-            .area = 0.0F,
-            .map_origin = direction,
-            .pad0 = 0.0F};
-}
-
 }  // namespace
 
 glm::vec3 rotated_sky(glm::vec3 direction, float rotation) {
@@ -197,8 +181,9 @@ SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
     return sky;
 }
 
-std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environment, std::uint32_t sample) {
-    std::vector<gpu::Vpl> vpls;
+std::vector<gpu::SkyPatch> place_sky(const SplitSky& sky, const Environment& environment,
+                                     std::uint32_t sample) {
+    std::vector<gpu::SkyPatch> placed;
     for (const SkyPatch& patch : sky.patches) {
         const double weight = sum_of_channels(patch.light);
         if (weight <= 0.0) {
@@ -206,10 +191,12 @@ std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environm
         }
         const glm::vec3 facing = environment.radiance * glm::vec3(std::numbers::pi * patch.light);
         if (sample > 0) {
-            const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(vpls.size()), glm::dvec2(0.5));
+            const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(placed.size()), glm::dvec2(0.5));
             const glm::vec2 u(r2_point(sample, start));
             const glm::vec3 direction = drawn_direction(*sky.grid, patch, u);
-            vpls.push_back(vpl_of(rotated_sky(direction, environment.rotation), 0.0F, facing));
+            placed.push_back({.direction = rotated_sky(direction, environment.rotation),
+                              .half_width2 = 0.0F,
+                              .light = facing});
             continue;
         }
         // Share of the light that arrives from the mean direction. It is 1 - h²/3 for a small square of
@@ -217,10 +204,11 @@ std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environm
         const double share = std::min(glm::length(patch.moment) / weight, 1.0);
         const glm::vec3 direction =
             rotated_sky(glm::vec3(glm::normalize(patch.moment)), environment.rotation);
-        vpls.push_back(
-            vpl_of(direction, static_cast<float>(3.0 * (1.0 - share)), static_cast<float>(share) * facing));
+        placed.push_back({.direction = direction,
+                          .half_width2 = static_cast<float>(3.0 * (1.0 - share)),
+                          .light = static_cast<float>(share) * facing});
     }
-    return vpls;
+    return placed;
 }
 
 }  // namespace candela

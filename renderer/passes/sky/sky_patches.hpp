@@ -38,7 +38,7 @@ struct SplitSky {
 /// How many patches the sky has where there are about `count` VPLs. Each pixel traces rays to its share of
 /// them: see max_vpls_per_invocation.
 [[nodiscard]] constexpr std::uint32_t sky_patches(std::uint32_t count) {
-    return std::clamp(count / 2, 128U, 256U);
+    return std::clamp(count / 2, 128U, std::uint32_t{MOST_SKY_PATCHES});
 }
 
 /// Divides a picture of the sky; null: a sky of radiance 1 everywhere. What is at most 2 degrees wide and has
@@ -51,9 +51,9 @@ struct SplitSky {
 /// A direction of the picture as it appears in the world, turned by Environment::rotation.
 [[nodiscard]] glm::vec3 rotated_sky(glm::vec3 direction, float rotation);
 
-/// The patches as VPLs (gpu::Vpl, IN_SKY). Sample 0: each at its mean direction, as wide as it is; else in
-/// one of its directions, drawn by radiance, so that the mean over all samples converges to the whole sky.
-[[nodiscard]] std::vector<gpu::Vpl> place_sky(const SplitSky& sky, const Environment& environment,
-                                              std::uint32_t sample);
+/// The patches with their light. Sample 0: each at its mean direction, as wide as it is; else in one of its
+/// directions, drawn by radiance, so that the mean over all samples converges to the whole sky.
+[[nodiscard]] std::vector<gpu::SkyPatch> place_sky(const SplitSky& sky, const Environment& environment,
+                                                   std::uint32_t sample);
 
 }  // namespace candela

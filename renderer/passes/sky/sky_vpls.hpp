@@ -11,9 +11,9 @@
 
 namespace candela {
 
-/// The sky's patches in the form of VPLs: see place_sky.
+/// The sky's patches as VPLs: see place_sky. A uniform block: shaders/sky/sky_patch.glsl.
 struct SkyPatches {
-    BufferHandle<gpu::Vpl> vpls;
+    BufferHandle<gpu::SkyPatch> patches;  ///< of MOST_SKY_PATCHES elements
     ValueHandle<std::uint32_t> count;
 };
 

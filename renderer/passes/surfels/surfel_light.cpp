@@ -46,10 +46,20 @@ struct VisibilityPrograms {
 /// Last round of scaling. Even, so that its results are in the first half of the rows.
 constexpr std::uint32_t last_round = 4;
 
-void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, const VplPlan& surfels,
+/// Numbers of surfels and of the points of their cells.
+struct SurfelNumbers {
+    std::uint32_t surfels = 0;
+    std::uint32_t points = 0;
+};
+
+SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
+    return {run.value(surfels.counts).all_surfels(), run.value(surfels.point_count)};
+}
+
+void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, const SurfelNumbers& numbers,
                      float ray_offset, const std::optional<std::vector<Box>>& changed) {
     constexpr std::uint32_t most_a_line = 32768;  // work groups
-    const std::uint32_t count = surfels.vpl_count;
+    const std::uint32_t count = numbers.surfels;
     const gl::Uniforms common = count_uniforms(count);
     const gl::Uniforms traced = common + changed_box_uniforms(changed, 4.0F * ray_offset);
     const gl::Uniforms offset{{"ray_offset", ray_offset}};
@@ -60,8 +70,8 @@ void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, const V
     for (std::uint32_t round = 0; round <= last_round; ++round) {
         steps.run(programs.rows, {surfel_groups}, common + gl::Uniforms{{"round", round}});
     }
-    steps.run(programs.points, {groups(surfels.point_count, SURFEL_GROUP)},
-              traced + gl::Uniforms{{"point_count", surfels.point_count}});
+    steps.run(programs.points, {groups(numbers.points, SURFEL_GROUP)},
+              traced + gl::Uniforms{{"point_count", numbers.points}});
 }
 
 struct BouncePrograms {
@@ -125,7 +135,7 @@ std::vector<std::string> read_sky(Pass& pass, const std::optional<SkyPatches>& s
         return {};
     }
     pass.read(sky->count);
-    pass.read(sky->vpls, {Usage::storage, BINDING_SKY_PATCHES});
+    pass.read(sky->patches, {Usage::uniform, UNIFORMS_SKY});
     return {"SKY"};
 }
 
@@ -134,7 +144,8 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
     const Surfels& surfels = visibility.surfels;
     const SceneLights& lights = sources.lights;
     return graph.add("surfel-light", [&](Pass& pass) {
-        pass.read(surfels.plan);
+        pass.read(surfels.counts);
+        pass.read(surfels.point_count);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(visibility.seen_points, {Usage::storage, BINDING_SEEN_POINTS});
@@ -150,53 +161,59 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             .cells = pass.write(growing_buffer<gpu::CellLight>(graph, "directly lit cells"),
                                 {Usage::storage, BINDING_CELL_LIGHT})};
         pass.run([=, &gpu, &lighter, &adder, sky = sources.sky](Execution& run) {
-            const VplPlan& plan = run.value(surfels.plan);
-            run.reserve(out.points, plan.point_count);
-            run.reserve(out.cells, plan.vpl_count);
-            if (plan.vpl_count == 0) {
+            const auto [count, points] = numbers_of(run, surfels);
+            run.reserve(out.points, points);
+            run.reserve(out.cells, count);
+            if (count == 0) {
                 return;
             }
+            const std::uint32_t emitters = run.value(surfels.counts).emitters;
             const SceneMetrics& metrics = run.value(tracing.metrics);
             const LightTable& table = run.value(lights.table);
-            warn_of_narrow_spots(gpu.log(), table, metrics, plan.point_count);
+            warn_of_narrow_spots(gpu.log(), table, metrics, points);
             const auto light_count = static_cast<std::uint32_t>(table.entries.size());
             const std::uint32_t patches = sky ? run.value(sky->count) : 0;
-            const gl::Uniforms uniforms{{"point_count", plan.point_count},
+            const gl::Uniforms uniforms{{"point_count", points},
                                         {"light_count", light_count},
                                         {"ray_offset", metrics.ray_offset()},
-                                        {"surfel_count", plan.vpl_count},
-                                        {"emitting_count", plan.emitting_count},
-                                        {"emitter_shares", shares_of(plan.emitting_count)},
+                                        {"surfel_count", count},
+                                        {"emitting_count", emitters},
+                                        {"emitter_shares", shares_of(emitters)},
                                         {"sky_patch_count", patches},
                                         {"sky_shares", shares_of(patches)}};
             ComputeSteps steps(gpu);
             for (const gl::Uniforms& part : loop_parts(light_count, most_shadow_rays)) {
-                steps.run(lighter, {groups(plan.point_count, SURFEL_GROUP)}, uniforms + part);
+                steps.run(lighter, {groups(points, SURFEL_GROUP)}, uniforms + part);
             }
-            steps.run(adder, {groups(plan.vpl_count, SURFEL_GROUP)}, count_uniforms(plan.vpl_count));
+            steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
         });
         return out;
     });
 }
 
-/// Numbers of what becomes VPLs.
-struct VplSources {
-    std::uint32_t surfels = 0;
-    std::uint32_t sky = 0;
-};
-
-void write_vpls(ComputeSteps& steps, const gl::Program& program, const VplSources& count, ShownLight shown) {
-    steps.run(
-        program, {groups(count.surfels + count.sky, SURFEL_GROUP)},
-        count_uniforms(count.surfels) + gl::Uniforms{{"sky_patch_count", count.sky},
-                                                     {"emitted_share", shown.emitted ? 1.0F : 0.0F},
-                                                     {"reflected_share", shown.reflected ? 1.0F : 0.0F}});
+/// Names to define in surfel_write.comp.
+std::vector<std::string> writer_variant(const SurfelSources& sources) {
+    return sources.emitters ? std::vector<std::string>{"EMITTERS"} : std::vector<std::string>{};
 }
 
-VplPlan with_sky(VplPlan plan, std::uint32_t patches) {
-    plan.vpl_count += patches;
-    plan.sky_count = patches;
-    return plan;
+/// Declares the surfels as VPLs. The light of the sky is emitted light.
+LitSurfels write_lit_surfels(FrameGraph& graph, Pass& pass, const SurfelSources& sources, ShownLight shown) {
+    LitSurfels lit{.surfels = pass.write(growing_buffer<gpu::LitSurfel>(graph, "lit surfels"),
+                                         {Usage::storage, BINDING_LIT_SURFELS}),
+                   .emitters = {},
+                   .points = pass.write(growing_buffer<gpu::LitPoint>(graph, "lit points"),
+                                        {Usage::storage, BINDING_LIT_POINTS}),
+                   .sky = shown.emitted ? sources.sky : std::nullopt};
+    if (sources.emitters) {
+        lit.emitters = pass.write(growing_buffer<gpu::LitEmitter>(graph, "lit emitters"),
+                                  {Usage::storage, BINDING_LIT_EMITTERS});
+    }
+    return lit;
+}
+
+gl::Uniforms share_uniforms(ShownLight shown) {
+    return {{"emitted_share", shown.emitted ? 1.0F : 0.0F},
+            {"reflected_share", shown.reflected ? 1.0F : 0.0F}};
 }
 
 }  // namespace
@@ -210,7 +227,8 @@ SurfelColumns surfel_columns(std::uint32_t surfels) {
 SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                        const Surfels& surfels, ValueHandle<SceneMotion> motion) {
     return graph.add("surfel-visibility", [&](Pass& pass) {
-        pass.read(surfels.plan);
+        pass.read(surfels.counts);
+        pass.read(surfels.point_count);
         pass.read(surfels.set);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
@@ -232,18 +250,18 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
                                       {Usage::storage, BINDING_COVER});
         const TracedContent<VisibilityKey> known(graph, pass, "known visibility");
         pass.run([=, &gpu](Execution& run) {
-            const VplPlan& plan = run.value(surfels.plan);
-            const std::uint32_t count = plan.vpl_count;
+            const SurfelNumbers numbers = numbers_of(run, surfels);
+            const std::uint32_t count = numbers.surfels;
             run.reserve(out.form_factors, std::uint64_t{count} * surfel_columns(count).count / 2);
             run.reserve(out.rows, 2 * count);
             run.reserve(hits, count * COVER_PARTS);
-            run.reserve(out.seen_points, plan.point_count);
+            run.reserve(out.seen_points, numbers.points);
             const float ray_offset = run.value(tracing.metrics).ray_offset();
             const auto changed =
                 known.outdated(run, run.value(motion), {run.value(surfels.set), ray_offset},
                                {run.object(out.form_factors), run.object(hits), run.object(out.seen_points)});
             if (count > 0) {
-                find_visibility(gpu, programs, plan, ray_offset, changed);
+                find_visibility(gpu, programs, numbers, ray_offset, changed);
             }
         });
         return out;
@@ -255,45 +273,51 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
     const Surfels& surfels = visibility.surfels;
     const DirectLight direct = add_direct_light(graph, gpu, tracing, visibility, sources);
     return graph.add("surfel-bounce", [&](Pass& pass) {
-        pass.read(surfels.plan);
+        pass.read(surfels.counts);
+        pass.read(surfels.point_count);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
-        const std::vector<std::string> defined = read_sky(pass, sources.sky);
+        if (sources.sky) {
+            pass.read(sources.sky->count);
+        }
         pass.parameter(bounces);
         pass.parameter(shown);
-        const BouncePrograms programs{.first = gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
-                                      .further = gpu.program({"surfels/surfel_bounce.comp"}),
-                                      .account = gpu.program({"surfels/surfel_account.comp"}),
-                                      .writer = gpu.program({"surfels/surfel_write.comp"}, defined)};
+        const BouncePrograms programs{
+            .first = gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
+            .further = gpu.program({"surfels/surfel_bounce.comp"}),
+            .account = gpu.program({"surfels/surfel_account.comp"}),
+            .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant(sources))};
         [[maybe_unused]] const auto lit_cells =
             pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
         const auto bounced =
             pass.write(growing_buffer<glm::vec4>(graph, "bounced light"), {Usage::storage, BINDING_BOUNCE});
-        const Vpls out{
-            .plan = pass.write(graph.value<VplPlan>("vpl plan")),
-            .vpls = pass.write(growing_buffer<gpu::Vpl>(graph, "vpls"), {Usage::storage, BINDING_VPLS}),
-            .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
-                               {Usage::storage, BINDING_FLUX_ACCOUNT}),
-            .points = pass.write(growing_buffer<gpu::LitPoint>(graph, "lit points"),
-                                 {Usage::storage, BINDING_LIT_POINTS})};
+        const LitSurfels lit = write_lit_surfels(graph, pass, sources, shown);
+        const Vpls out{.counts = pass.write(graph.value<VplCounts>("vpl counts")),
+                       .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
+                                          {Usage::storage, BINDING_FLUX_ACCOUNT}),
+                       .records = lit};
         pass.run([=, &gpu, sky = sources.sky](Execution& run) {
-            const VplPlan& plan = run.value(surfels.plan);
-            const std::uint32_t count = plan.vpl_count;
-            const std::uint32_t sky_count = sky ? run.value(sky->count) : 0;
+            VplCounts counts = run.value(surfels.counts);
+            counts.sky_patches = sky ? run.value(sky->count) : 0;
+            run.set(out.counts, counts);
+            const auto [count, points] = numbers_of(run, surfels);
             run.reserve(bounced, 2 * count);
-            run.reserve(out.vpls, count + sky_count);
-            run.reserve(*out.points, plan.point_count);
-            run.set(out.plan, with_sky(plan, sky_count));
+            run.reserve(lit.surfels, count);
+            run.reserve(lit.points, points);
+            if (lit.emitters) {
+                run.reserve(*lit.emitters, counts.emitters);
+            }
+            if (count == 0) {
+                return;
+            }
             ComputeSteps steps(gpu);
-            if (count > 0) {
-                gather_bounces(steps, programs, count, bounces);
-            }
-            if (count + sky_count > 0) {
-                write_vpls(steps, programs.writer, {count, sky_count}, shown);
-            }
+            gather_bounces(steps, programs, count, bounces);
+            steps.run(programs.writer, {groups(count, SURFEL_GROUP)},
+                      count_uniforms(count) + share_uniforms(shown) +
+                          gl::Uniforms{{"emitting_count", counts.emitters}});
         });
         return out;
     });

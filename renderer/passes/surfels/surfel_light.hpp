@@ -9,7 +9,7 @@
 #include "renderer/passes/scene/scene_motion.hpp"
 #include "renderer/passes/sky/sky_vpls.hpp"
 #include "renderer/passes/surfels/surfels.hpp"
-#include "renderer/passes/vpls/vpl_trace.hpp"
+#include "renderer/passes/vpls/vpls.hpp"
 
 namespace candela {
 
@@ -49,9 +49,10 @@ struct ShownLight {
     bool operator==(const ShownLight&) const = default;
 };
 
-/// Where the light of surfels comes from, beside those that emit it.
+/// Where the light of surfels comes from.
 struct SurfelSources {
     SceneLights lights;
+    bool emitters = false;          ///< some surfaces emit light
     std::optional<SkyPatches> sky;  ///< none: the world has no sky
 };
 
@@ -60,9 +61,8 @@ struct SurfelSources {
 /// and of the sky, shared among the points of a cell. `surfel-bounce` (compute):
 /// surfels gather the light that other surfels reflect, bounce by bounce (Jacobi iteration of the radiosity
 /// equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up to
-/// `bounces` or until less than 0.1 % of the first reflected light is left; then they are written as VPLs,
-/// followed by the sky's patches if emitted light is shown.
-/// They depend on surfels, visibility, lights, sky and BVH.
+/// `bounces` or until less than 0.1 % of the first reflected light is left; then they are written as VPLs.
+/// They depend on surfels, visibility, lights, sky and BVH. Returns LitSurfels.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const SurfelVisibility& visibility, const SurfelSources& sources,
                                     std::uint32_t bounces, ShownLight shown);

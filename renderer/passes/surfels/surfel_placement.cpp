@@ -237,19 +237,13 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points
             set.item_of.push_back(surfel.item);
             set.surfel_places.push_back(surfel.place);
             set.surfels.push_back({.position = surfel.position,
-                                   .map = static_cast<std::uint32_t>(set.surfels.size()),
-                                   .normal = surfel.normal,
-                                   .radius2 = 0.0F,
-                                   .flux = glm::vec3(0.0F),
                                    .first_point = static_cast<std::uint32_t>(set.points.size()),
-                                   .edges_up = glm::vec3(0.0F),
+                                   .normal = surfel.normal,
                                    .point_count = 0,
-                                   .edges_down = glm::vec3(0.0F),
                                    .area = 0.0F,
-                                   .map_origin = surfel.position,
-                                   .pad0 = 0.0F});
+                                   .radius2 = 0.0F});
         }
-        gpu::Vpl& surfel = set.surfels.back();
+        gpu::Surfel& surfel = set.surfels.back();
         ++surfel.point_count;
         surfel.area += points[i].area;
         surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
@@ -290,12 +284,11 @@ SurfelSet place_surfels(const Sides& all, std::uint32_t count, std::uint32_t poi
     return set;
 }
 
-/// Appends surfels that emit light. They get no depth maps.
+/// Appends surfels that emit light.
 void append_emitting(SurfelSet& set, const SurfelSet& more) {
     const auto surfels = static_cast<std::uint32_t>(set.surfels.size());
     const auto points = static_cast<std::uint32_t>(set.points.size());
-    for (gpu::Vpl surfel : more.surfels) {
-        surfel.map = NO_MAP;
+    for (gpu::Surfel surfel : more.surfels) {
         surfel.first_point += points;
         set.surfels.push_back(surfel);
     }

@@ -19,7 +19,7 @@ struct SurfacePoint {
 /// Surfels: points on the scene's surfaces that gather light and reflect it. Each represents a cell, the part
 /// of the surface around it, which is described by sample points.
 struct SurfelSet {
-    std::vector<gpu::Vpl> surfels;       ///< with flux 0
+    std::vector<gpu::Surfel> surfels;
     std::vector<gpu::CellPoint> points;  ///< of the cells, in the order of the surfels
     std::vector<std::uint32_t> item_of;  ///< by surfel: index into SceneGeometry::items
     std::vector<SurfacePoint> surfel_places;

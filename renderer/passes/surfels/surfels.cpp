@@ -16,12 +16,9 @@
 namespace candela {
 namespace {
 
-VplPlan plan_of(const SurfelSet& set) {
-    VplPlan plan;
-    plan.vpl_count = static_cast<std::uint32_t>(set.surfels.size());
-    plan.point_count = static_cast<std::uint32_t>(set.points.size());
-    plan.emitting_count = set.emitting_count;
-    return plan;
+VplCounts counts_of(const SurfelSet& set) {
+    return {.surfels = static_cast<std::uint32_t>(set.surfels.size()) - set.emitting_count,
+            .emitters = set.emitting_count};
 }
 
 /// Everything that the placement of surfels depends on. Each item is in its own space, transformed only by
@@ -124,9 +121,9 @@ class Deformer {
     }
 
     void apply(SurfelSet& set, std::size_t i) const {
-        gpu::Vpl& surfel = set.surfels[i];
+        gpu::Surfel& surfel = set.surfels[i];
         const Moved centre = moved(set.surfel_places[i]);
-        surfel.position = surfel.map_origin = centre.position;
+        surfel.position = centre.position;
         surfel.normal = centre.normal;
         surfel.area = 0.0F;
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
@@ -161,10 +158,10 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
             deformer.apply(set, i);
             continue;
         }
-        gpu::Vpl& surfel = set.surfels[i];
+        gpu::Surfel& surfel = set.surfels[i];
         const glm::mat4& matrix = matrices[set.item_of[i]];
         const glm::mat3& normal_matrix = normal_matrices[set.item_of[i]];
-        surfel.position = surfel.map_origin = glm::vec3(matrix * glm::vec4(surfel.position, 1.0F));
+        surfel.position = glm::vec3(matrix * glm::vec4(surfel.position, 1.0F));
         surfel.normal = glm::normalize(normal_matrix * surfel.normal);
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
             gpu::CellPoint& point = set.points[p];
@@ -233,16 +230,18 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
         pass.read(scene.layout);
         pass.read(scene.placement);
         const Surfels out{
-            .plan = pass.write(graph.value<VplPlan>("surfel plan")),
+            .counts = pass.write(graph.value<VplCounts>("surfel counts")),
+            .point_count = pass.write(graph.value<std::uint32_t>("cell point count")),
             .set = pass.write(graph.value<std::uint64_t>("surfel set")),
-            .surfels = pass.write(growing_buffer<gpu::Vpl>(graph, "surfels"), Usage::copy),
+            .surfels = pass.write(growing_buffer<gpu::Surfel>(graph, "surfels"), Usage::copy),
             .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
         pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
             const SpreadSurfels& spread_now = run.value(spread_surfels);
             const SurfelSet set = placed_in_world(spread_now, run.value(layout), run.value(placement));
-            upload<gpu::Vpl>(gpu, run, out.surfels, set.surfels);
+            upload<gpu::Surfel>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
-            run.set(out.plan, plan_of(set));
+            run.set(out.counts, counts_of(set));
+            run.set(out.point_count, static_cast<std::uint32_t>(set.points.size()));
             run.set(out.set, spread_now.number);
         });
         return out;

@@ -12,7 +12,7 @@
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/surfels/surfel_placement.hpp"
 #include "renderer/passes/view/refinement.hpp"
-#include "renderer/passes/vpls/vpl_paths.hpp"
+#include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
 
@@ -24,9 +24,10 @@ namespace candela {
 
 /// The surfels in world space.
 struct Surfels {
-    ValueHandle<VplPlan> plan;       ///< numbers of surfels and points
-    ValueHandle<std::uint64_t> set;  ///< changes when surfels are placed again, not when they only move
-    BufferHandle<gpu::Vpl> surfels;  ///< with flux 0
+    ValueHandle<VplCounts> counts;
+    ValueHandle<std::uint32_t> point_count;
+    ValueHandle<std::uint64_t> set;     ///< changes when surfels are placed again, not when they only move
+    BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <bit>
-#include <numbers>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
@@ -26,11 +25,10 @@ VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t map
     return atlas;
 }
 
-gpu::VplConstants constants_of(std::uint32_t vpl_count, const SceneMetrics& metrics, const VplAtlas& atlas,
-                               float bound) {
-    return {.count = vpl_count,
-            .radius2 = vpl_radius2(bound, std::max(vpl_count, 1U), metrics.area),
-            .crease_slack = 16.0F * metrics.ray_offset(),
+gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metrics, const VplAtlas& atlas) {
+    return {.count = counts.total(),
+            .first_emitter = counts.mapped(),
+            .first_sky_patch = counts.mapped() + counts.emitters,
             .ray_offset = metrics.ray_offset(),
             .map_resolution = atlas.resolution,
             .map_tiles = atlas.tiles,
@@ -39,10 +37,6 @@ gpu::VplConstants constants_of(std::uint32_t vpl_count, const SceneMetrics& metr
 }
 
 }  // namespace
-
-float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
-    return 4.0F * area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
-}
 
 VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::Limits& limits) {
     VplAtlas atlas{.resolution = resolution};
@@ -63,21 +57,19 @@ VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::
 }
 
 VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneMetrics> metrics,
-                            ValueHandle<VplPlan> plan, const VplVisibilitySettings& settings, float bound) {
+                            ValueHandle<VplCounts> counts, const VplVisibilitySettings& settings) {
     return graph.add("vpl-constants", [&](Pass& pass) {
         pass.read(metrics);
-        pass.read(plan);
+        pass.read(counts);
         pass.parameter(settings);
-        pass.parameter(bound);
         const VplCommon out{
             .atlas = pass.write(graph.value<VplAtlas>("vpl atlas")),
             .constants = pass.write(growing_buffer<gpu::VplConstants>(graph, "vpl constants"), Usage::copy)};
         pass.run([=, &gpu](Execution& run) {
             const SceneMetrics& scene = run.value(metrics);
-            const VplPlan& vpls = run.value(plan);
-            const VplAtlas atlas =
-                atlas_of_scene(settings, vpls.mapped_count(), scene, gpu.device().limits());
-            upload_one(gpu, run, out.constants, constants_of(vpls.vpl_count, scene, atlas, bound));
+            const VplCounts& vpls = run.value(counts);
+            const VplAtlas atlas = atlas_of_scene(settings, vpls.mapped(), scene, gpu.device().limits());
+            upload_one(gpu, run, out.constants, constants_of(vpls, scene, atlas));
             run.set(out.atlas, atlas);
         });
         return out;

@@ -8,7 +8,7 @@
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
-#include "renderer/passes/vpls/vpl_paths.hpp"
+#include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
 
@@ -34,18 +34,10 @@ struct VplCommon {
     BufferHandle<gpu::VplConstants> constants;
 };
 
-/// Square of the distance R within which the light of a VPL hardly increases any more, in m²:
-/// shaders/indirect/vpl_light.glsl. N VPLs share the area A (m²) of the scene's surfaces, and R is the
-/// diameter of a disc of area A/N: R² = 4 A / (π N). This choice gave the least error in the Cornell box with
-/// visibility of VPLs (tests/study). The geometry term is at most 4/3 of 1/R². `bound` multiplies 1/R²; at
-/// infinity the VPL is a point. As N grows, R and the energy that the bound removes tend to 0.
-[[nodiscard]] float vpl_radius2(float bound, std::uint32_t vpl_count, float area);
-
-/// Adds node `vpl-constants` (CPU, then upload): VplCommon. `bound`: see `vpl_radius2`. Depends on the
-/// scene's metrics and the plan.
+/// Adds node `vpl-constants` (CPU, then upload): VplCommon. Depends on the scene's metrics and the counts.
 [[nodiscard]] VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu,
-                                          ValueHandle<SceneMetrics> metrics, ValueHandle<VplPlan> plan,
-                                          const VplVisibilitySettings& settings, float bound);
+                                          ValueHandle<SceneMetrics> metrics, ValueHandle<VplCounts> counts,
+                                          const VplVisibilitySettings& settings);
 
 /// For a pass whose shader includes vpl_constants.glsl.
 void read_vpl_constants(Pass& pass, const VplCommon& common);

@@ -1,6 +1,7 @@
 #include "renderer/passes/vpls/vpl_maps.hpp"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
@@ -25,7 +26,8 @@ struct MapKey {
 /// Resources of the node.
 struct MapNode {
     Tracing tracing;
-    MappedVpls vpls;
+    ValueHandle<VplCounts> counts;
+    std::optional<MappedSurfels> surfels;
     VplCommon common;
     TextureHandle depth;
     TracedContent<MapKey> drawn;
@@ -41,7 +43,7 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node,
     if (!changed) {
         target.clear();
     }
-    gpu.draw_points(*node.program, run.value(node.vpls.plan).vpl_count,
+    gpu.draw_points(*node.program, run.value(node.counts).mapped(),
                     changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()),
                     {.depth_test = gl::DepthTest::always});
 }
@@ -49,14 +51,32 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node,
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     const VplAtlas& atlas = run.value(node.common.atlas);
     run.reserve(node.depth, atlas_desc(atlas));
-    if (!node.vpls.motion) {
+    if (!node.surfels) {
         node.drawn.forget(run);
         draw_maps(gpu, run, node, std::nullopt);
         return;
     }
     draw_maps(gpu, run, node,
-              node.drawn.outdated(run, run.value(*node.vpls.motion), {atlas, run.value(*node.vpls.set)},
+              node.drawn.outdated(run, run.value(node.surfels->motion), {atlas, run.value(node.surfels->set)},
                                   {run.object(node.depth)}));
+}
+
+const gl::Program& map_program(Gpu& gpu, const std::vector<std::string>& defined) {
+    return gpu.program({"vpls/vpl_maps.vert", "vpls/vpl_maps.geom", "vpls/vpl_maps.frag"}, defined);
+}
+
+/// Returns the names to define in shaders that include mapped_vpl.glsl.
+std::vector<std::string> read_mapped(Pass& pass, const MappedVpls& vpls) {
+    pass.read(vpls.counts);
+    if (const auto* const traced = std::get_if<BufferHandle<gpu::TracedVpl>>(&vpls.records)) {
+        pass.read(*traced, {Usage::storage, BINDING_TRACED_VPLS});
+        return {};
+    }
+    const auto& mapped = std::get<MappedSurfels>(vpls.records);
+    pass.read(mapped.surfels, {Usage::storage, BINDING_SURFELS});
+    pass.read(mapped.set);
+    pass.read(mapped.motion);
+    return {"SURFELS"};
 }
 
 }  // namespace
@@ -64,23 +84,20 @@ void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
 TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const MappedVpls& vpls,
                            const VplCommon& common) {
     return graph.add("vpl-maps", [&](Pass& pass) {
-        pass.read(vpls.plan);
-        pass.read(vpls.vpls, {Usage::storage, BINDING_VPLS});
-        if (vpls.motion) {
-            pass.read(*vpls.motion);
-            pass.read(*vpls.set);
-        }
+        const std::vector<std::string> defined = read_mapped(pass, vpls);
+        const auto* const surfels = std::get_if<MappedSurfels>(&vpls.records);
         pass.read(common.atlas);
         read_vpl_constants(pass, common);
         read_tracing(pass, tracing);
         const MapNode node{
             .tracing = tracing,
-            .vpls = vpls,
+            .counts = vpls.counts,
+            .surfels = surfels != nullptr ? std::optional(*surfels) : std::nullopt,
             .common = common,
             .depth = pass.update(graph.texture("vpl maps", atlas_desc({}), Lifetime::persistent),
                                  Usage::layer_target),
             .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
-            .program = &gpu.program({"vpls/vpl_maps.vert", "vpls/vpl_maps.geom", "vpls/vpl_maps.frag"})};
+            .program = &map_program(gpu, defined)};
         graph.note(node.depth, depth_note(common.atlas, [](const VplAtlas& atlas, std::uint32_t) {
                        return perspective_terms(atlas.near);
                    }));

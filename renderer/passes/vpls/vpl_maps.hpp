@@ -1,25 +1,28 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <variant>
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
-#include "renderer/passes/vpls/vpl_trace.hpp"
+#include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
 
-/// Input of add_vpl_maps.
+/// Surfels that have depth maps. They keep their maps where nothing has moved.
+struct MappedSurfels {
+    BufferHandle<gpu::Surfel> surfels;
+    ValueHandle<std::uint64_t> set;  ///< Surfels::set
+    ValueHandle<SceneMotion> motion;
+};
+
+/// VPLs that have depth maps: VplCounts::mapped.
 struct MappedVpls {
-    ValueHandle<VplPlan> plan;
-    BufferHandle<gpu::Vpl> vpls;  ///< only `map`, `map_origin` and `normal` are read
-    /// Only with surfels, which keep their maps where nothing moved: the motion of the scene, and
-    /// Surfels::set.
-    std::optional<ValueHandle<SceneMotion>> motion{};
-    std::optional<ValueHandle<std::uint64_t>> set{};
+    ValueHandle<VplCounts> counts;
+    std::variant<BufferHandle<gpu::TracedVpl>, MappedSurfels> records;
 };
 
 /// Adds node `vpl-maps` (raster; fragments trace rays): a depth map of the hemisphere above each VPL, in the

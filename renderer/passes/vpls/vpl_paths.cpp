@@ -99,7 +99,7 @@ double start_weight(const Share& share) {
 }
 
 /// By i from 0 to max_bounces: number of paths that make more than i bounces.
-std::vector<std::uint32_t> count_reach(const VplPlan& plan) {
+std::vector<std::uint32_t> count_reach(const PathPlan& plan) {
     std::vector<std::uint32_t> reach(plan.max_bounces + 1, 0);
     for (const gpu::Path& path : plan.paths) {
         for (std::uint32_t i = 0; i < path.vpl_count; ++i) {
@@ -111,7 +111,7 @@ std::vector<std::uint32_t> count_reach(const VplPlan& plan) {
 
 /// Weights of Russian roulette: paths that continue from a bounce also carry the flux of those that end
 /// there.
-std::vector<float> make_weights(const VplPlan& plan, const std::vector<Share>& shares) {
+std::vector<float> make_weights(const PathPlan& plan, const std::vector<Share>& shares) {
     const std::vector<std::uint32_t> reach = count_reach(plan);
     std::vector<float> weights;
     weights.reserve(plan.vpl_count);
@@ -129,8 +129,8 @@ std::vector<float> make_weights(const VplPlan& plan, const std::vector<Share>& s
 
 }  // namespace
 
-VplPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
-    VplPlan plan;
+PathPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
+    PathPlan plan;
     if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) {
         return plan;
     }
@@ -159,10 +159,10 @@ VplPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSetting
     return plan;
 }
 
-ValueHandle<VplPlan> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
-                                   ValueHandle<LightTable> lights,
-                                   std::optional<ValueHandle<Refinement>> refinement,
-                                   const VplSettings& settings) {
+ValueHandle<PathPlan> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> metrics,
+                                    ValueHandle<LightTable> lights,
+                                    std::optional<ValueHandle<Refinement>> refinement,
+                                    const VplSettings& settings) {
     return graph.add("vpl-paths", [&](Pass& pass) {
         pass.read(lights);
         pass.read(metrics);
@@ -170,7 +170,7 @@ ValueHandle<VplPlan> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics> 
             pass.read(*refinement);
         }
         pass.parameter(settings);
-        const auto paths = pass.write(graph.value<VplPlan>("vpl paths"));
+        const auto paths = pass.write(graph.value<PathPlan>("vpl paths"));
         pass.run([=](Execution& run) {
             VplSettings of_set = settings;
             of_set.seed += refinement ? run.value(*refinement).set : 0;

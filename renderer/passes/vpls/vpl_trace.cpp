@@ -1,6 +1,7 @@
 #include "renderer/passes/vpls/vpl_trace.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/compute_steps.hpp"
@@ -34,7 +35,8 @@ struct PathPrograms {
 
 /// One segment is traced per dispatch. A longer loop would reach the number of iterations after which
 /// software drivers silently stop all loops of an invocation.
-void trace(const Gpu& gpu, const PathPrograms& programs, const SceneMetrics& metrics, const VplPlan& plan) {
+void trace(const Gpu& gpu, const PathPrograms& programs, const SceneMetrics& metrics, const PathPlan& plan,
+           float bound) {
     const auto path_count = static_cast<std::uint32_t>(plan.paths.size());
     const Groups path_groups{groups(path_count, paths_a_group)};
     ComputeSteps steps(gpu);
@@ -42,19 +44,27 @@ void trace(const Gpu& gpu, const PathPrograms& programs, const SceneMetrics& met
         steps.run(programs.tracer, path_groups,
                   {{"path_count", path_count}, {"ray_offset", metrics.ray_offset()}, {"bounce", bounce}});
     }
-    steps.run(programs.writer, path_groups, {{"path_count", path_count}, {"max_bounces", plan.max_bounces}});
+    steps.run(programs.writer, path_groups,
+              {{"path_count", path_count},
+               {"max_bounces", plan.max_bounces},
+               {"radius2", vpl_radius2(bound, plan.vpl_count, metrics.area)}});
     steps.run(programs.edges, {1, groups(plan.vpl_count, vpls_a_group)},
               {{"vpl_count", plan.vpl_count}, {"edge_reach", edge_reach(metrics.area, plan.vpl_count)}});
 }
 
 }  // namespace
 
-Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHandle<VplPlan> plan_handle,
-                   BufferHandle<gpu::Light> lights) {
+float vpl_radius2(float bound, std::uint32_t vpl_count, float area) {
+    return 4.0F * area / (std::numbers::pi_v<float> * static_cast<float>(vpl_count) * bound);
+}
+
+Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHandle<PathPlan> plan_handle,
+                   BufferHandle<gpu::Light> lights, float bound) {
     return graph.add("vpl-trace", [&](Pass& pass) {
         pass.read(plan_handle);
         pass.read(lights, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
+        pass.parameter(bound);
         const PathPrograms programs{.tracer = gpu.program({"vpls/vpl_trace.comp"}),
                                     .writer = gpu.program({"vpls/vpl_write.comp"}),
                                     .edges = gpu.program({"vpls/vpl_edges.comp"})};
@@ -64,20 +74,23 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
                 pass.write(growing_buffer<float>(graph, "path weights"), {Usage::copy, BINDING_PATH_WEIGHTS}),
             .records = pass.write(growing_buffer<gpu::VplRecord>(graph, "vpl records"),
                                   {Usage::storage, BINDING_VPL_RECORDS})};
-        const Vpls out{
-            .plan = plan_handle,
-            .vpls = pass.write(growing_buffer<gpu::Vpl>(graph, "vpls"), {Usage::storage, BINDING_VPLS}),
-            .flux =
-                pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"), {Usage::storage, BINDING_FLUX})};
+        const TracedVpls traced{.plan = plan_handle,
+                                .vpls = pass.write(growing_buffer<gpu::TracedVpl>(graph, "traced vpls"),
+                                                   {Usage::storage, BINDING_TRACED_VPLS})};
+        const Vpls out{.counts = pass.write(graph.value<VplCounts>("vpl counts")),
+                       .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
+                                          {Usage::storage, BINDING_FLUX}),
+                       .records = traced};
         pass.run([=, &gpu](Execution& run) {
-            const VplPlan& plan = run.value(out.plan);
-            run.reserve(out.vpls, plan.vpl_count);
+            const PathPlan& plan = run.value(plan_handle);
+            run.set(out.counts, {.traced = plan.vpl_count});
+            run.reserve(traced.vpls, plan.vpl_count);
             run.reserve(out.flux, plan.paths.size());
             run.reserve(buffers.records, plan.vpl_count);
             upload<gpu::Path>(gpu, run, buffers.paths, plan.paths);
             upload<float>(gpu, run, buffers.weights, plan.weights);
             if (!plan.paths.empty()) {
-                trace(gpu, programs, run.value(tracing.metrics), plan);
+                trace(gpu, programs, run.value(tracing.metrics), plan, bound);
             }
         });
         return out;
