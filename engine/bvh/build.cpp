@@ -45,9 +45,7 @@ struct Slicing {
 
     Slicing(const Box& centroids, glm::length_t along) : axis(along), lower(centroids.lower[along]) {
         const float extent = centroids.upper[along] - lower;
-        if (extent > 0.0F) {
-            slices_per_metre = static_cast<float>(bin_count) / extent;
-        }
+        if (extent > 0.0F) slices_per_metre = static_cast<float>(bin_count) / extent;
     }
 
     [[nodiscard]] std::uint32_t slice(const Reference& reference) const {
@@ -80,9 +78,7 @@ struct Split {
 Reference make_reference(const Box& box, std::uint32_t index) {
     glm::vec3 centroid = 0.5F * box.lower + 0.5F * box.upper;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
-        if (!std::isfinite(centroid[axis])) {
-            centroid[axis] = 0.0F;
-        }
+        if (!std::isfinite(centroid[axis])) centroid[axis] = 0.0F;
     }
     return {box, centroid, index};
 }
@@ -100,9 +96,7 @@ Split cheapest_split(const Bins& bins, glm::length_t axis) {
         below.add(bins[i - 1]);
         const float cost = below.cost() + cost_above[i];
         const bool divides = below.count > 0 && below.count < above.count;
-        if (divides && cost < best.cost) {
-            best = {axis, i, cost};
-        }
+        if (divides && cost < best.cost) best = {axis, i, cost};
     }
     return best;
 }
@@ -118,9 +112,7 @@ Split cheapest_split(std::span<const Reference> references, const Box& centroids
     Split best;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
         const Split split = cheapest_split(bins[static_cast<std::size_t>(axis)], axis);
-        if (split.cost < best.cost) {
-            best = split;
-        }
+        if (split.cost < best.cost) best = split;
     }
     return best;
 }
@@ -154,9 +146,7 @@ std::uint32_t split_at(const Split& split, std::span<Reference> references, cons
 std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint32_t depth,
                      const Limits& limits) {
     const auto n = static_cast<std::uint32_t>(references.size());
-    if (n == 1) {
-        return 0;
-    }
+    if (n == 1) return 0;
     Box centroids;
     for (const Reference& reference : references) {
         centroids.grow(reference.centroid);
@@ -177,9 +167,7 @@ std::uint32_t divide(std::span<Reference> references, const Box& box, std::uint3
 }
 
 Bvh build(std::vector<Reference> references, const Limits& limits) {
-    if (references.empty()) {
-        return {};
-    }
+    if (references.empty()) return {};
     Bvh bvh;
     bvh.nodes.resize(1);
     std::vector<Task> tasks{{0, 0, static_cast<std::uint32_t>(references.size()), 0}};

@@ -39,14 +39,10 @@ void refit_box_bvh(Bvh& bvh, std::span<const Box> boxes) {
 }
 
 float sah_cost(const Bvh& bvh) {
-    if (bvh.nodes.empty()) {
-        return 0.0F;
-    }
+    if (bvh.nodes.empty()) return 0.0F;
     const BvhNode& root = bvh.nodes.front();
     const double root_area = half_area(root.lower, root.upper);
-    if (!(root_area > 0.0)) {
-        return 0.0F;
-    }
+    if (!(root_area > 0.0)) return 0.0F;
     double cost = 0.0;
     for (const BvhNode& node : bvh.nodes) {
         cost += half_area(node.lower, node.upper) * static_cast<double>(std::max(node.count, 1U));

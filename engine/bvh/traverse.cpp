@@ -15,30 +15,22 @@ std::optional<Hit> intersect(const Triangle& triangle, std::uint32_t index, cons
     const glm::vec3 ac = triangle.c - triangle.a;
     const glm::vec3 p = glm::cross(ray.direction, ac);
     const float determinant = glm::dot(ab, p);
-    if (determinant == 0.0F) {
-        return std::nullopt;
-    }
+    if (determinant == 0.0F) return std::nullopt;
     const glm::vec3 s = ray.origin - triangle.a;
     const glm::vec3 q = glm::cross(s, ab);
     const float inverse = 1.0F / determinant;
     const float u = glm::dot(s, p) * inverse;
     const float v = glm::dot(ray.direction, q) * inverse;
-    if (!(u >= 0.0F && v >= 0.0F && u + v <= 1.0F)) {
-        return std::nullopt;
-    }
+    if (!(u >= 0.0F && v >= 0.0F && u + v <= 1.0F)) return std::nullopt;
 
     // For a ray almost in the triangle's plane, rounding errors dominate the distance. Clamping it to the
     // triangle's box bounds that error and makes traversal exact: a ray that hits a triangle also enters all
     // boxes that contain the triangle, and not later than the hit.
     const Box box = bounds(triangle);
     const detail::Interval inside = detail::Slabs(ray)(box.lower, box.upper);
-    if (inside.empty()) {
-        return std::nullopt;
-    }
+    if (inside.empty()) return std::nullopt;
     const float t = std::max(inside.near, std::min(inside.far, glm::dot(ac, q) * inverse));
-    if (!(t > ray.t_min && t < ray.t_max)) {
-        return std::nullopt;
-    }
+    if (!(t > ray.t_min && t < ray.t_max)) return std::nullopt;
     return Hit{t, u, v, index};
 }
 

@@ -76,9 +76,7 @@ inline Entry enter(const Bvh& bvh, std::uint32_t node, const Slabs& slabs) {
 /// units of the ray's direction.
 template <class Visit>
 void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit) {
-    if (bvh.nodes.empty()) {
-        return;
-    }
+    if (bvh.nodes.empty()) return;
     const detail::Slabs slabs(ray);
     float limit = std::min(ray.t_max, std::numeric_limits<float>::max());  // finite, so that it excludes +∞
     // Each inner node on the way down puts at most its farther child on the stack, and there are at most
@@ -91,21 +89,15 @@ void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit) {
         if (current.near <= limit && node.count == 0) {
             detail::Entry nearer = detail::enter(bvh, node.first, slabs);
             detail::Entry farther = detail::enter(bvh, node.first + 1, slabs);
-            if (farther.near < nearer.near) {
-                std::swap(nearer, farther);
-            }
-            if (farther.near <= limit) {
-                stack[waiting++] = farther;
-            }
+            if (farther.near < nearer.near) std::swap(nearer, farther);
+            if (farther.near <= limit) stack[waiting++] = farther;
             current = nearer;
             continue;
         }
         for (std::uint32_t i = 0; i < node.count && current.near <= limit; ++i) {
             limit = std::min(limit, visit(bvh.order[node.first + i]));
         }
-        if (waiting == 0) {
-            return;
-        }
+        if (waiting == 0) return;
         current = stack[--waiting];
     }
 }

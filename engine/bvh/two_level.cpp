@@ -12,9 +12,7 @@ const BvhNode& node_of(const TopBvh::Leaf& leaf, std::span<const PlacedBvh> obje
 std::vector<TopBvh::Leaf> roots_of(std::span<const PlacedBvh> objects) {
     std::vector<TopBvh::Leaf> roots;
     for (std::uint32_t object = 0; object < objects.size(); ++object) {
-        if (!objects[object].bvh->nodes.empty()) {
-            roots.push_back({object, 0});
-        }
+        if (!objects[object].bvh->nodes.empty()) roots.push_back({object, 0});
     }
     return roots;
 }
@@ -29,9 +27,7 @@ void open_largest(std::vector<TopBvh::Leaf>& leaves, std::span<const PlacedBvh> 
     const auto smaller = [&](const TopBvh::Leaf& a, const TopBvh::Leaf& b) { return size(a) < size(b); };
     std::ranges::make_heap(leaves, smaller);
     for (std::uint32_t opened = 0; opened < most && !leaves.empty(); ++opened) {
-        if (size(leaves.front()) == 0.0F) {
-            return;
-        }
+        if (size(leaves.front()) == 0.0F) return;
         std::ranges::pop_heap(leaves, smaller);
         const auto [object, node] = leaves.back();
         const std::uint32_t child = objects[object].bvh->nodes[node].first;

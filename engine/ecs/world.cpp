@@ -7,9 +7,7 @@
 namespace candela {
 
 std::string to_string(Entity entity) {
-    if (!entity) {
-        return "the null entity";
-    }
+    if (!entity) return "the null entity";
     return fmt::format("entity {} (generation {})", entity.index, entity.generation);
 }
 
@@ -52,9 +50,7 @@ void World::destroy(Entity entity) {
     require_alive(entity, "components to destroy");
     const Tick now = next_tick();
     for (auto& [type, pool] : pools_) {
-        if (pool->remove(entity, now)) {
-            tick_ = now;
-        }
+        if (pool->remove(entity, now)) tick_ = now;
     }
     --live_;
     // An index whose generations are used up is not reused: an old handle could become valid again.
@@ -69,9 +65,7 @@ bool World::alive(Entity entity) const {
 }
 
 void World::require_alive(Entity entity, std::string_view component) const {
-    if (!alive(entity)) {
-        throw EntityError::not_alive(entity, component);
-    }
+    if (!alive(entity)) throw EntityError::not_alive(entity, component);
 }
 
 }  // namespace candela

@@ -11,12 +11,8 @@ namespace candela {
 using detail::none;
 
 const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
-    if (!graph_) {
-        throw GraphError("there is no frame graph");
-    }
-    if (handle.graph != graph_->declared().id) {
-        throw GraphError("a handle is not of the current frame graph");
-    }
+    if (!graph_) throw GraphError("there is no frame graph");
+    if (handle.graph != graph_->declared().id) throw GraphError("a handle is not of the current frame graph");
     return graph_->declared().resources.at(handle.resource);
 }
 
@@ -31,9 +27,7 @@ detail::Slot* GraphRuntime::import_slot(ResourceHandle handle) {
 void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture,
                         const BufferDesc& buffer) {
     detail::Slot* const slot = import_slot(imported);
-    if (!slot) {
-        return;
-    }
+    if (!slot) return;
     slot->object = object;  // may be 0: the window's framebuffer
     slot->texture = texture;
     slot->buffer = buffer;
@@ -50,9 +44,7 @@ void GraphRuntime::touch(ResourceHandle imported) {
 detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
     const std::uint32_t base = graph_->declared().resources[index].history_of;
     const std::uint32_t slot = graph_->plan().object[base == none ? index : base];
-    if (slot == none) {
-        return nullptr;
-    }
+    if (slot == none) return nullptr;
     return &state_.slots[base != none && state_.turned[slot] ? slot + 1 : slot];
 }
 
@@ -120,9 +112,7 @@ bool Execution::changed(ResourceHandle read) const {
     }
     const std::uint32_t version = plan.version(read.resource, read.version);
     for (const detail::Input& input : step.inputs) {
-        if (input.version == version) {
-            return has_no_result_ || state.versions[version].stamp != input.stamp;
-        }
+        if (input.version == version) return has_no_result_ || state.versions[version].stamp != input.stamp;
     }
     throw GraphError(fmt::format("pass '{}' asks whether {} '{}' has changed without having declared it",
                                  step.name, to_string(resource.kind), resource.name));
@@ -148,9 +138,7 @@ detail::Slot& Execution::reservable(ResourceHandle handle) const {
                access.usage != Usage::colour_target && access.usage != Usage::depth_target;
     });
     const detail::Resource& resource = runtime_.resource(handle);
-    if (from_start && resource.lifetime == Lifetime::persistent) {
-        return found;
-    }
+    if (from_start && resource.lifetime == Lifetime::persistent) return found;
     throw GraphError(
         fmt::format("pass '{}' reserves {} '{}', but may only what is persistent and what it writes from "
                     "version 0, not as a target",
@@ -159,9 +147,7 @@ detail::Slot& Execution::reservable(ResourceHandle handle) const {
 
 void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
     detail::Slot& old = reservable(buffer);
-    if (count <= old.buffer.count) {
-        return;
-    }
+    if (count <= old.buffer.count) return;
     detail::Slot grown = old;
     grown.buffer.count = std::max(count, old.buffer.count + old.buffer.count / 2);
     runtime_.create(grown, runtime_.resource(buffer).name);
@@ -172,9 +158,7 @@ void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
 
 void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
     detail::Slot& old = reservable(texture);
-    if (desc == old.texture) {
-        return;
-    }
+    if (desc == old.texture) return;
     detail::Slot other = old;
     other.texture = desc;
     runtime_.create(other, runtime_.resource(texture).name);

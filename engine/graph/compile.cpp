@@ -41,9 +41,7 @@ void check_resources(const Declaration& declared, std::vector<CompileError>& err
                 {ErrorCode::unwritten_read, fmt::format("{} '{}' has a history, but no pass writes it",
                                                         to_string(resource.kind), resource.name)});
         }
-        if (!known(resource)) {
-            continue;
-        }
+        if (!known(resource)) continue;
         const auto same = [&](std::uint32_t other) {
             return resources[other].kind == resource.kind && resources[other].name == resource.name;
         };
@@ -68,17 +66,13 @@ void number_versions(const Declaration& declared, Plan& plan) {
     plan.writer.assign(versions, none);
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
         for (const Access& access : declared.accesses_of(pass)) {
-            if (access.write) {
-                plan.writer[plan.version(access.resource, access.version)] = pass;
-            }
+            if (access.write) plan.writer[plan.version(access.resource, access.version)] = pass;
         }
     }
 }
 
 bool is_root(const Declaration& declared, std::uint32_t pass) {
-    if (declared.passes[pass].side_effect) {
-        return true;
-    }
+    if (declared.passes[pass].side_effect) return true;
     const auto accesses = declared.accesses_of(pass);
     return std::any_of(accesses.begin(), accesses.end(), [&](const Access& access) {
         return access.write && declared.resources[access.resource].lifetime == Lifetime::imported;
@@ -92,16 +86,12 @@ std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan
     std::vector<std::uint32_t> open;
     open.reserve(declared.pass_count());
     const auto need = [&](std::uint32_t pass) {
-        if (pass == none || needed[pass]) {
-            return;
-        }
+        if (pass == none || needed[pass]) return;
         needed[pass] = 1;
         open.push_back(pass);
     };
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
-        if (is_root(declared, pass)) {
-            need(pass);
-        }
+        if (is_root(declared, pass)) need(pass);
     }
     while (!open.empty()) {
         const std::uint32_t pass = open.back();
@@ -116,9 +106,7 @@ std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan
     }
     std::vector<std::uint32_t> order;
     for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
-        if (needed[pass]) {
-            order.push_back(pass);
-        }
+        if (needed[pass]) order.push_back(pass);
     }
     return order;
 }
@@ -132,9 +120,7 @@ std::string to_string(Barrier bits) {
         "command",       "texture update", "buffer update", "framebuffer",   "storage"};
     std::string text;
     for (std::size_t bit = 0; bit < names.size(); ++bit) {
-        if ((bits & static_cast<Barrier>(1U << bit)) == Barrier::none) {
-            continue;
-        }
+        if ((bits & static_cast<Barrier>(1U << bit)) == Barrier::none) continue;
         text += text.empty() ? "" : " + ";
         text += names.at(bit);
     }
@@ -142,9 +128,7 @@ std::string to_string(Barrier bits) {
 }
 
 CompiledGraph CompileResult::take() && {
-    if (graph) {
-        return std::move(*graph);
-    }
+    if (graph) return std::move(*graph);
     std::string message = "the frame graph does not compile:";
     for (const CompileError& error : errors) {
         message += "\n  " + error.message;
@@ -160,9 +144,7 @@ CompileResult compile(FrameGraph&& graph) {
     detail::check_passes(declared, errors);
     detail::check_resources(declared, errors);
     detail::number_versions(declared, plan);
-    if (!errors.empty()) {
-        return {std::nullopt, std::move(errors)};
-    }
+    if (!errors.empty()) return {std::nullopt, std::move(errors)};
     plan.order = detail::needed_passes(declared, plan);
     detail::plan_lifetimes(declared, plan);
     detail::plan_objects(declared, plan);

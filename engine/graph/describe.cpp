@@ -30,9 +30,7 @@ class Describer {
             add_pass(position);
         }
         for (std::uint32_t pass = 0; pass < declared_.pass_count(); ++pass) {
-            if (position_[pass] == none) {
-                made_.culled.emplace_back(declared_.passes[pass].name);
-            }
+            if (position_[pass] == none) made_.culled.emplace_back(declared_.passes[pass].name);
         }
         for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
             for (const Access& access : declared_.accesses_of(plan_.order[position])) {
@@ -73,21 +71,11 @@ class Describer {
                                .lifetime = resource.lifetime,
                                .first = plan_.lifetime[index].first,
                                .last = plan_.lifetime[index].last};
-        if (resource.kind == ResourceKind::texture) {
-            made.texture = declared_.texture(resource);
-        }
-        if (resource.kind == ResourceKind::buffer) {
-            made.buffer = declared_.buffer(resource);
-        }
-        if (resource.part_of != none) {
-            made.part_of = declared_.resources[resource.part_of].name;
-        }
-        if (object != none) {
-            made.object = object;
-        }
-        if (resource.history != none) {
-            made.history_object = object + 1;
-        }
+        if (resource.kind == ResourceKind::texture) made.texture = declared_.texture(resource);
+        if (resource.kind == ResourceKind::buffer) made.buffer = declared_.buffer(resource);
+        if (resource.part_of != none) made.part_of = declared_.resources[resource.part_of].name;
+        if (object != none) made.object = object;
+        if (resource.history != none) made.history_object = object + 1;
         return made;
     }
 
@@ -129,9 +117,7 @@ class Describer {
             base == none ? plan_.version(access.resource, access.version - (access.write ? 1 : 0))
                          : plan_.version(base, declared_.resources[base].versions);
         const std::uint32_t writer = plan_.writer[version];
-        if (writer == none || (writer == plan_.order[position] && base == none)) {
-            return;
-        }
+        if (writer == none || (writer == plan_.order[position] && base == none)) return;
         DescribedEdge edge{position_[writer], position, base != none, {index_of(access)}};
         const auto same = std::find_if(first_edge(position), made_.edges.end(), [&](const auto& other) {
             return other.from == edge.from && other.history == edge.history;
@@ -161,12 +147,8 @@ std::string name_of(const GraphDescription& graph, std::size_t resource, bool hi
 
 std::string access_text(const GraphDescription& graph, const DescribedAccess& access) {
     std::string text = name_of(graph, access.resource, access.history);
-    if (!access.history) {
-        text += fmt::format(" v{}", access.version);
-    }
-    if (access.usage) {
-        text += fmt::format(" ({})", to_string(*access.usage));
-    }
+    if (!access.history) text += fmt::format(" v{}", access.version);
+    if (access.usage) text += fmt::format(" ({})", to_string(*access.usage));
     return text;
 }
 
@@ -177,9 +159,7 @@ std::string pass_text(const GraphDescription& graph, std::size_t position) {
     const auto line = [&](std::string_view verb, std::string_view what) {
         text += fmt::format("      {} {}\n", verb, what);
     };
-    if (pass.barrier != Barrier::none) {
-        line("barrier", to_string(pass.barrier));
-    }
+    if (pass.barrier != Barrier::none) line("barrier", to_string(pass.barrier));
     for (const std::string& component : pass.components) {
         line("world", component);
     }
@@ -192,12 +172,8 @@ std::string pass_text(const GraphDescription& graph, std::size_t position) {
 std::string resource_text(const DescribedResource& resource) {
     std::string text = fmt::format("  {}: {}, {} [{}..{}]", resource.name, storage_text(resource),
                                    to_string(resource.lifetime), resource.first, resource.last);
-    if (resource.object) {
-        text += fmt::format(", object {}", *resource.object);
-    }
-    if (resource.history_object) {
-        text += fmt::format(", history in {}", *resource.history_object);
-    }
+    if (resource.object) text += fmt::format(", object {}", *resource.object);
+    if (resource.history_object) text += fmt::format(", history in {}", *resource.history_object);
     return text + "\n";
 }
 
@@ -205,9 +181,7 @@ std::string resource_text(const DescribedResource& resource) {
 std::string dot_escaped(std::string_view text) {
     std::string escaped;
     for (const char character : text) {
-        if (character == '"' || character == '\\') {
-            escaped += '\\';
-        }
+        if (character == '"' || character == '\\') escaped += '\\';
         escaped += character;
     }
     return escaped;
@@ -236,12 +210,8 @@ Json pass_json(const GraphDescription& graph, const DescribedPass& pass) {
     for (const DescribedAccess& access : pass.accesses) {
         Json entry{{"resource", name_of(graph, access.resource, access.history)},
                    {"version", access.version}};
-        if (access.usage) {
-            entry["usage"] = to_string(*access.usage);
-        }
-        if (access.update) {
-            entry["update"] = true;
-        }
+        if (access.usage) entry["usage"] = to_string(*access.usage);
+        if (access.update) entry["update"] = true;
         json[access.write ? "writes" : "reads"].push_back(std::move(entry));
     }
     return json;
@@ -253,12 +223,8 @@ Json resource_json(const DescribedResource& resource) {
               {"lifetime", to_string(resource.lifetime)},
               {"first", resource.first},
               {"last", resource.last}};
-    if (resource.object) {
-        json["object"] = *resource.object;
-    }
-    if (resource.history_object) {
-        json["history_object"] = *resource.history_object;
-    }
+    if (resource.object) json["object"] = *resource.object;
+    if (resource.history_object) json["history_object"] = *resource.history_object;
     json["kind"] = to_string(resource.kind);
     if (resource.kind == ResourceKind::buffer) {
         json["count"] = resource.buffer.count;
@@ -282,9 +248,7 @@ GraphDescription describe(const CompiledGraph& graph) {
 }
 
 std::string storage_text(const DescribedResource& resource) {
-    if (resource.kind == ResourceKind::value) {
-        return "value";
-    }
+    if (resource.kind == ResourceKind::value) return "value";
     if (resource.kind == ResourceKind::buffer) {
         return fmt::format("buffer of {} x {} bytes", resource.buffer.count, resource.buffer.stride);
     }
@@ -293,12 +257,8 @@ std::string storage_text(const DescribedResource& resource) {
     if (desc.shape != TextureShape::flat) {
         text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
     }
-    if (desc.mips != 1) {
-        text += fmt::format(", {} mips", desc.mips);
-    }
-    if (!resource.part_of.empty()) {
-        text += fmt::format(", part of {}", resource.part_of);
-    }
+    if (desc.mips != 1) text += fmt::format(", {} mips", desc.mips);
+    if (!resource.part_of.empty()) text += fmt::format(", part of {}", resource.part_of);
     return text;
 }
 
@@ -307,9 +267,7 @@ std::string describe_text(const GraphDescription& graph) {
     for (std::size_t position = 0; position < graph.passes.size(); ++position) {
         text += pass_text(graph, position);
     }
-    if (!graph.culled.empty()) {
-        text += "culled\n";
-    }
+    if (!graph.culled.empty()) text += "culled\n";
     for (const std::string& pass : graph.culled) {
         text += fmt::format("  {}\n", pass);
     }

@@ -43,9 +43,7 @@ double milliseconds(Clock::duration duration) {
 // The frame
 
 const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
-    if (!graph_) {
-        throw GraphError("there is no frame graph");
-    }
+    if (!graph_) throw GraphError("there is no frame graph");
     require_imports();
     mark(world, 0);
     // Set when a pass that might have changed its results did not: its readers may be marked without need.
@@ -61,9 +59,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
         record.ran = record.verified = false;
         record.cpu_ms = 0;
         pending_barriers_ = pending_barriers_ | step.barrier;
-        if (state_.need[position] == nothing) {
-            continue;
-        }
+        if (state_.need[position] == nothing) continue;
         const bool changed = dirty(step, world);
         if (!changed && marked_too_many) {
             mark(world, position);
@@ -91,9 +87,7 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
 void GraphRuntime::require_imports() const {
     for (const std::uint32_t index : state_.imports) {
         const detail::Slot& slot = state_.slots[graph_->plan().object[index]];
-        if (slot.filled || slot.value) {
-            continue;
-        }
+        if (slot.filled || slot.value) continue;
         const detail::Resource& resource = graph_->declared().resources[index];
         const std::string_view lack =
             resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
@@ -102,9 +96,7 @@ void GraphRuntime::require_imports() const {
 }
 
 bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
-    if (!step.has_run || step.side_effect) {
-        return true;
-    }
+    if (!step.has_run || step.side_effect) return true;
     return std::ranges::any_of(step.inputs,
                                [this](const detail::Input& input) {
                                    return state_.versions[input.version].stamp != input.stamp;
@@ -118,9 +110,7 @@ bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
 /// have not changed their results do not make others run.
 void GraphRuntime::mark(const World& world, std::uint32_t from) {
     for (const std::uint32_t held : state_.holds) {
-        if (held != none) {
-            state_.versions[held].present = true;
-        }
+        if (held != none) state_.versions[held].present = true;
     }
     std::fill_n(state_.need.begin(), from, std::uint8_t{nothing});
     mark_dirty(world, from);
@@ -153,9 +143,7 @@ void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
 bool GraphRuntime::mark_missing(std::uint32_t from) {
     bool again = false;
     for (std::uint32_t position = state_.step_count(); position-- > from;) {
-        if (state_.need[position] == nothing) {
-            continue;
-        }
+        if (state_.need[position] == nothing) continue;
         const detail::Step& step = state_.steps[position];
         for (const detail::Input& input : step.inputs) {
             const detail::Version& version = state_.versions[input.version];
@@ -163,9 +151,7 @@ bool GraphRuntime::mark_missing(std::uint32_t from) {
         }
         for (const detail::Output& output : step.outputs) {
             const std::uint32_t held = state_.holds[output.slot];
-            if (held == none) {
-                continue;
-            }
+            if (held == none) continue;
             detail::Version& version = state_.versions[held];
             const bool lost = version.present & (version.producer > position);
             again |= lost & ((state_.need[version.producer] & certain) == 0);
@@ -180,17 +166,13 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
     execution.has_no_result_ = repeating_ || !step.has_run || !has_results(step);
     step.has_run = false;
     begin_outputs(step);
-    if (pending_barriers_ != Barrier::none) {
-        backend_.barrier(pending_barriers_);
-    }
+    if (pending_barriers_ != Barrier::none) backend_.barrier(pending_barriers_);
     pending_barriers_ = Barrier::none;
     begin_pass(execution.position_);
     {
         const OnExit end([this] { backend_.end_pass(); });
         bind_resources(execution.position_);
-        if (step.invoke) {
-            step.invoke(step.function, execution);
-        }
+        if (step.invoke) step.invoke(step.function, execution);
     }
     keep_record(step, execution.world(), changed);
 }
@@ -211,21 +193,15 @@ bool GraphRuntime::renewed_results(const detail::Step& step) const {
 /// result that counts as valid.
 void GraphRuntime::begin_outputs(const detail::Step& step) {
     for (const detail::Output& output : step.outputs) {
-        if (output.turns_over && !repeating_) {
-            turn_over(output.slot);
-        }
-        if (output.value) {
-            state_.slots[output.slot].changed = state_.holds[output.slot] != output.version;
-        }
+        if (output.swaps_history && !repeating_) turn_over(output.slot);
+        if (output.value) state_.slots[output.slot].changed = state_.holds[output.slot] != output.version;
         release(output.slot);
     }
 }
 
 void GraphRuntime::release(std::uint32_t slot) {
     std::uint32_t& held = state_.holds[slot];
-    if (held != none) {
-        state_.versions[held].present = false;
-    }
+    if (held != none) state_.versions[held].present = false;
     held = none;
 }
 
@@ -239,9 +215,7 @@ void GraphRuntime::turn_over(std::uint32_t slot) {
 
 void GraphRuntime::begin_pass(std::uint32_t position) {
     const detail::Step& step = state_.steps[position];
-    if (step.targets.empty()) {
-        return backend_.begin_pass(step.name, position, nullptr);
-    }
+    if (step.targets.empty()) return backend_.begin_pass(step.name, position, nullptr);
 
     PassTargets targets;
     colours_.clear();
@@ -267,9 +241,7 @@ void GraphRuntime::bind_resources(std::uint32_t position) {
 /// After the running pass has replaced the object of one of its resources.
 void GraphRuntime::rebind(std::uint32_t position, std::uint32_t resource) {
     for (const detail::Bound& bound : state_.steps[position].bound) {
-        if (bound.resource == resource) {
-            bind(bound);
-        }
+        if (bound.resource == resource) bind(bound);
     }
 }
 
@@ -297,16 +269,10 @@ void GraphRuntime::keep_record(detail::Step& step, const World& world, bool chan
         release(output.slot);
         state_.holds[output.slot] = output.version;
         version.present = true;
-        if (output.turns_over) {
-            state_.slots[output.slot].filled = true;
-        }
-        if (changed && (!output.value || state_.slots[output.slot].changed)) {
-            version.stamp = clock_;
-        }
+        if (output.swaps_history) state_.slots[output.slot].filled = true;
+        if (changed && (!output.value || state_.slots[output.slot].changed)) version.stamp = clock_;
     }
-    if (verifying_) {
-        note_contents(step, changed);
-    }
+    if (verifying_) note_contents(step, changed);
     step.has_run = true;
 }
 

@@ -72,9 +72,7 @@ TextureDesc part_desc(const TextureDesc& whole, TexturePart part) {
 }
 
 std::string to_string(TexturePart part) {
-    if (part.layer == TexturePart::all_layers) {
-        return fmt::format("mip {}", part.mip);
-    }
+    if (part.layer == TexturePart::all_layers) return fmt::format("mip {}", part.mip);
     return part.mip == 0 ? fmt::format("layer {}", part.layer)
                          : fmt::format("layer {} mip {}", part.layer, part.mip);
 }

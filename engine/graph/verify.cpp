@@ -22,9 +22,7 @@ class Raised {
 }  // namespace
 
 void GraphRuntime::set_verification(bool on) {
-    if (on == verifying_) {
-        return;
-    }
+    if (on == verifying_) return;
     verifying_ = on;
     state_.contents.clear();
     state_.contents.resize(on ? state_.versions.size() : 0);
@@ -40,9 +38,7 @@ void GraphRuntime::verify(const World& world) {
     pending_barriers_ = all_barriers;  // the planned barriers assume whole frames, one after the other
     for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
         pending_barriers_ = pending_barriers_ | state_.steps[position].barrier;
-        if (!again[position]) {
-            continue;
-        }
+        if (!again[position]) continue;
         execution.position_ = position;
         run_step(execution, false);
         record_.passes[position].verified = true;
@@ -54,7 +50,7 @@ void GraphRuntime::verify(const World& world) {
 /// its previous run and throws GraphError at a difference.
 void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
     const auto drifted = [&](const detail::Input& input) { return state_.contents[input.version].drifted; };
-    const bool excused = changed || step.remembers || std::ranges::any_of(step.inputs, drifted);
+    const bool excused = changed || step.keeps_state || std::ranges::any_of(step.inputs, drifted);
     for (const detail::Output& output : step.outputs) {
         const detail::Slot& slot = state_.slots[output.slot];
         const bool stamped = state_.versions[output.version].stamp == clock_;
@@ -68,9 +64,7 @@ void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
         const bool same =
             !known.known || (known.digest == now.digest &&
                              (!both_set || !slot.equal || slot.equal(known.value.get(), now.value.get())));
-        if (!same && !excused) {
-            report_difference(step, output.version);
-        }
+        if (!same && !excused) report_difference(step, output.version);
         now.drifted = !stamped && (known.drifted || !same);
         known = std::move(now);
     }

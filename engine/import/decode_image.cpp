@@ -54,9 +54,7 @@ struct PngReader {
 
 void read_bytes(png_structp png, png_bytep to, std::size_t size) {
     Bytes& rest = *static_cast<Bytes*>(png_get_io_ptr(png));
-    if (size > rest.size()) {
-        throw SceneError("it is cut short");
-    }
+    if (size > rest.size()) throw SceneError("it is cut short");
     std::memcpy(to, rest.data(), size);
     rest = rest.subspan(size);
 }
@@ -64,9 +62,7 @@ void read_bytes(png_structp png, png_bytep to, std::size_t size) {
 /// Rows are decompressed one by one: beside the pixels, only a few rows need memory, whatever the data hold.
 Image decode_png(Bytes encoded, ImportBudget& budget) {
     PngReader reader(encoded);
-    if (!reader.info) {
-        throw std::bad_alloc();
-    }
+    if (!reader.info) throw std::bad_alloc();
     png_structp const png = reader.png;
     png_set_read_fn(png, &reader.rest, read_bytes);
     // What libpng could go on after, such as more data than the pixels need, is an error, too.
@@ -92,9 +88,7 @@ Image decode_png(Bytes encoded, ImportBudget& budget) {
 }
 
 Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
-    if (encoded.size() > std::numeric_limits<int>::max()) {
-        throw SceneError("it exceeds 2 GiB");
-    }
+    if (encoded.size() > std::numeric_limits<int>::max()) throw SceneError("it exceeds 2 GiB");
     const int size = static_cast<int>(encoded.size());
     int width = 0;
     int height = 0;
@@ -106,9 +100,7 @@ Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
         stbi_image_free);
-    if (!pixels) {
-        throw SceneError("it cannot be decoded");
-    }
+    if (!pixels) throw SceneError("it cannot be decoded");
     image.texels.resize(std::size_t{image.width} * image.height);
     std::memcpy(image.texels.data(), pixels.get(), image.texels.size() * sizeof(glm::u8vec4));
     return image;
@@ -117,12 +109,8 @@ Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
 }  // namespace
 
 Image decode_image(Bytes encoded, ImportBudget& budget) {
-    if (starts_with(encoded, "\x89PNG")) {
-        return decode_png(encoded, budget);
-    }
-    if (starts_with(encoded, "\xFF\xD8\xFF")) {
-        return decode_jpeg(encoded, budget);
-    }
+    if (starts_with(encoded, "\x89PNG")) return decode_png(encoded, budget);
+    if (starts_with(encoded, "\xFF\xD8\xFF")) return decode_jpeg(encoded, budget);
     throw SceneError("it is neither PNG nor JPEG");
 }
 

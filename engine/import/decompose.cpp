@@ -48,15 +48,11 @@ glm::dmat3 make_perpendicular(glm::dmat3& a, double tolerance) {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         bool done = true;
         for (const auto& [p, q] : pairs) {
-            if (are_perpendicular(a[p], a[q], tolerance)) {
-                continue;
-            }
+            if (are_perpendicular(a[p], a[q], tolerance)) continue;
             make_perpendicular(a, v, p, q);
             done = false;
         }
-        if (done) {
-            break;
-        }
+        if (done) break;
     }
     return v;
 }
@@ -70,16 +66,12 @@ glm::dvec3 any_perpendicular(const glm::dvec3& unit) {
 // orthonormal frame.
 glm::dmat3 directions(const glm::dmat3& columns, const glm::dvec3& lengths) {
     const double longest = std::max({lengths.x, lengths.y, lengths.z});
-    if (longest == 0.0) {
-        return glm::dmat3(1.0);
-    }
+    if (longest == 0.0) return glm::dmat3(1.0);
     glm::dmat3 frame(0.0);
     glm::bvec3 known(false);
     for (int i = 0; i < 3; ++i) {
         known[i] = lengths[i] > vanishing * longest;
-        if (known[i]) {
-            frame[i] = columns[i] / lengths[i];
-        }
+        if (known[i]) frame[i] = columns[i] / lengths[i];
     }
     for (int i = 0; i < 3; ++i) {
         const int next = (i + 1) % 3;
@@ -90,9 +82,7 @@ glm::dmat3 directions(const glm::dmat3& columns, const glm::dvec3& lengths) {
         }
     }
     for (int i = 0; i < 3; ++i) {
-        if (!known[i]) {
-            frame[i] = glm::cross(frame[(i + 1) % 3], frame[(i + 2) % 3]);
-        }
+        if (!known[i]) frame[i] = glm::cross(frame[(i + 1) % 3], frame[(i + 2) % 3]);
     }
     return frame;
 }
@@ -117,9 +107,7 @@ std::vector<Transform> decompose(const glm::dmat4& matrix) {
     outer.translation = glm::vec3(matrix[3]);
     outer.rotation = glm::normalize(glm::quat(glm::quat_cast(rotation)));
     outer.scale = glm::vec3(scale);
-    if (!sheared) {
-        return {outer};
-    }
+    if (!sheared) return {outer};
 
     Transform inner;
     inner.rotation = glm::normalize(glm::quat(glm::quat_cast(glm::transpose(v))));

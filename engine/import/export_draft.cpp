@@ -72,9 +72,7 @@ std::string binary_container(const std::string& json, std::string_view buffer) {
     using namespace std::string_view_literals;
     std::string chunks;
     append_chunk(chunks, "JSON"sv, json, ' ');
-    if (!buffer.empty()) {
-        append_chunk(chunks, "BIN\0"sv, buffer, '\0');
-    }
+    if (!buffer.empty()) append_chunk(chunks, "BIN\0"sv, buffer, '\0');
     constexpr std::size_t header = 12;
     if (chunks.size() > std::numeric_limits<std::uint32_t>::max() - header) {
         throw SceneError("a .glb file cannot exceed 4 GiB");
@@ -88,9 +86,7 @@ std::string binary_container(const std::string& json, std::string_view buffer) {
 }  // namespace
 
 Json to_json(float number) {
-    if (!std::isfinite(number)) {
-        throw SceneError("a number is not finite");
-    }
+    if (!std::isfinite(number)) throw SceneError("a number is not finite");
     return shortest(number);
 }
 
@@ -140,9 +136,7 @@ fs::path Draft::beside(std::string_view ending) const {
 }
 
 Json Draft::add_picture(std::vector<std::byte> encoded, std::string_view ending) {
-    if (binary_) {
-        return {{"bufferView", add_view(encoded)}};
-    }
+    if (binary_) return {{"bufferView", add_view(encoded)}};
     files_.push_back({beside(ending), std::move(encoded)});
     return {{"uri", percent_encoded(files_.back().path.filename().string())}};
 }
@@ -151,9 +145,7 @@ std::vector<OutputFile> Draft::finish() {
     if (!extensions_.empty()) {
         document["extensionsUsed"] = Json::array({extensions_.begin(), extensions_.end()});
     }
-    if (!buffer_.empty()) {
-        document["buffers"] = Json::array({Json{{"byteLength", buffer_.size()}}});
-    }
+    if (!buffer_.empty()) document["buffers"] = Json::array({Json{{"byteLength", buffer_.size()}}});
     if (!buffer_.empty() && !binary_) {
         files_.push_back({beside(".bin"), buffer_});
         document["buffers"][0]["uri"] = percent_encoded(files_.back().path.filename().string());

@@ -76,9 +76,7 @@ void write_emission(const glm::vec3& emissive, Json& material, Draft& draft) {
 }  // namespace
 
 std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& material) {
-    if (const auto found = materials_.find(material); found != materials_.end()) {
-        return found->second;
-    }
+    if (const auto found = materials_.find(material); found != materials_.end()) return found->second;
     Json json =
         naming(fmt::format("material \"{}\"", readable(material->name)), [&] { return describe(*material); });
     return materials_.emplace(material, draft_.add("materials", std::move(json))).first->second;
@@ -91,24 +89,14 @@ Json MaterialWriter::describe(const Material& material) {
                   {{"baseColorFactor", to_json(material.base_colour)},
                    {"metallicFactor", 0},
                    {"roughnessFactor", 1}}}};
-    if (!material.name.empty()) {
-        json["name"] = to_json(material.name);
-    }
+    if (!material.name.empty()) json["name"] = to_json(material.name);
     if (material.base_colour_texture) {
         json["pbrMetallicRoughness"]["baseColorTexture"] = texture_info(material.base_colour_texture);
     }
-    if (emits(material)) {
-        write_emission(material.emissive, json, draft_);
-    }
-    if (material.emissive_texture) {
-        json["emissiveTexture"] = texture_info(material.emissive_texture);
-    }
-    if (material.double_sided) {
-        json["doubleSided"] = true;
-    }
-    if (material.alpha_mode != AlphaMode::opaque) {
-        json["alphaMode"] = name_of(material.alpha_mode);
-    }
+    if (emits(material)) write_emission(material.emissive, json, draft_);
+    if (material.emissive_texture) json["emissiveTexture"] = texture_info(material.emissive_texture);
+    if (material.double_sided) json["doubleSided"] = true;
+    if (material.alpha_mode != AlphaMode::opaque) json["alphaMode"] = name_of(material.alpha_mode);
     if (material.alpha_cutoff != Material{}.alpha_cutoff) {
         json["alphaCutoff"] = to_json(material.alpha_cutoff);
     }
@@ -117,9 +105,7 @@ Json MaterialWriter::describe(const Material& material) {
 
 Json MaterialWriter::texture_info(const std::shared_ptr<const Image>& image) {
     auto found = textures_.find(image);
-    if (found == textures_.end()) {
-        found = textures_.emplace(image, add_texture(*image)).first;
-    }
+    if (found == textures_.end()) found = textures_.emplace(image, add_texture(*image)).first;
     return {{"index", found->second}};
 }
 
@@ -132,9 +118,7 @@ std::size_t MaterialWriter::add_texture(const Image& image) {
 
 std::size_t MaterialWriter::sampler_of(Wrap u, Wrap v) {
     const auto found = samplers_.find({u, v});
-    if (found != samplers_.end()) {
-        return found->second;
-    }
+    if (found != samplers_.end()) return found->second;
     const std::size_t index =
         draft_.add("samplers", {{"wrapS", to_wrap_mode(u)}, {"wrapT", to_wrap_mode(v)}});
     samplers_.emplace(std::pair(u, v), index);

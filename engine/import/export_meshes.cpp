@@ -69,9 +69,7 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
     add(position, std::move(bounds));
     add(normal, Json::object());
     add(uv, Json::object());
-    if (has_colours(vertices)) {
-        add(colour, {{"normalized", true}});
-    }
+    if (has_colours(vertices)) add(colour, {{"normalized", true}});
     return attributes;
 }
 
@@ -107,17 +105,11 @@ std::optional<std::size_t> MeshWriter::add(const Mesh& mesh) {
     }
     Json primitives;
     for (const Primitive& primitive : mesh.primitives) {
-        if (!primitive.indices.empty()) {
-            primitives.push_back(describe(primitive));
-        }
+        if (!primitive.indices.empty()) primitives.push_back(describe(primitive));
     }
-    if (primitives.empty()) {
-        return std::nullopt;
-    }
+    if (primitives.empty()) return std::nullopt;
     Json json = {{"primitives", std::move(primitives)}};
-    if (!mesh.name.empty()) {
-        json["name"] = to_json(mesh.name);
-    }
+    if (!mesh.name.empty()) json["name"] = to_json(mesh.name);
     return draft_.add("meshes", std::move(json));
 }
 

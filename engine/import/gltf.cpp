@@ -25,9 +25,7 @@ std::uint64_t count_triangles(const Mesh& mesh) {
 std::vector<bool> used_meshes(const gltf::Document& document, const std::vector<gltf::StagedEntity>& staged) {
     std::vector<bool> used(document.all("meshes").size());
     for (const gltf::StagedEntity& entity : staged) {
-        if (entity.mesh >= 0) {
-            used[static_cast<std::size_t>(entity.mesh)] = true;
-        }
+        if (entity.mesh >= 0) used[static_cast<std::size_t>(entity.mesh)] = true;
     }
     return used;
 }
@@ -37,21 +35,15 @@ ImportReport create_entities(std::vector<gltf::StagedEntity> staged,
     ImportReport report;
     for (gltf::StagedEntity& source : staged) {
         const Entity entity = world.create();
-        if (source.parent) {
-            source.transform.parent = report.entities[*source.parent];
-        }
+        if (source.parent) source.transform.parent = report.entities[*source.parent];
         world.set(entity, Name{std::move(source.name)});
         world.set(entity, source.transform);
         if (const auto mesh = source.mesh < 0 ? nullptr : meshes[static_cast<std::size_t>(source.mesh)]) {
             report.triangles += count_triangles(*mesh);
             world.set(entity, MeshInstance{mesh});
         }
-        if (source.camera) {
-            world.set(entity, *source.camera);
-        }
-        if (source.light) {
-            std::visit([&](const auto& light) { world.set(entity, light); }, *source.light);
-        }
+        if (source.camera) world.set(entity, *source.camera);
+        if (source.light) std::visit([&](const auto& light) { world.set(entity, light); }, *source.light);
         report.entities.push_back(entity);
     }
     return report;

@@ -40,9 +40,7 @@ struct Accessor {
 };
 
 int components_of(std::string_view type) {
-    if (type == "SCALAR") {
-        return 1;
-    }
+    if (type == "SCALAR") return 1;
     return type.starts_with("VEC") ? type.back() - '0' : 0;
 }
 
@@ -188,9 +186,7 @@ std::vector<Element> read(const Document& document, int index, const Selection& 
             elements.push_back(decode(source[selection[i]]));
         }
     }
-    if (accessor.sparse) {
-        apply_sparse(document, index, selection, decode, size, elements);
-    }
+    if (accessor.sparse) apply_sparse(document, index, selection, decode, size, elements);
     return elements;
 }
 
@@ -225,9 +221,7 @@ bool has_real_components(const Accessor& accessor) {
 /// Component `i` of an element of such an accessor.
 float real_component(const unsigned char* element, std::size_t i, int type) {
     const unsigned char* const bytes = element + i * component_size(type);
-    if (type == floating_point) {
-        return load<float>(bytes);
-    }
+    if (type == floating_point) return load<float>(bytes);
     const float one = type == unsigned_short ? 65535.0F : 255.0F;
     return static_cast<float>(load_unsigned(bytes, type)) / one;
 }
@@ -235,9 +229,7 @@ float real_component(const unsigned char* element, std::size_t i, int type) {
 }  // namespace
 
 std::size_t Selection::place(std::size_t element) const {
-    if (indices_.empty()) {
-        return element;
-    }
+    if (indices_.empty()) return element;
     const auto found = std::ranges::lower_bound(indices_, element);
     const bool is_selected = found != indices_.end() && *found == element;
     return is_selected ? static_cast<std::size_t>(found - indices_.begin()) : count_;

@@ -35,16 +35,12 @@ std::uint32_t read_u32(Bytes bytes, std::size_t offset) {
 
 /// Removes one chunk of a .glb from the front of `rest` and returns its data.
 Bytes take_chunk(Bytes& rest, std::string_view type) {
-    if (rest.size() < 8) {
-        throw SceneError("the .glb ends inside a chunk's header");
-    }
+    if (rest.size() < 8) throw SceneError("the .glb ends inside a chunk's header");
     const std::uint32_t length = read_u32(rest, 0);
     if (!std::ranges::equal(rest.subspan(4, 4), type)) {
         throw SceneError(fmt::format("the .glb lacks its {} chunk", type.substr(0, type.find('\0'))));
     }
-    if (length > rest.size() - 8) {
-        throw SceneError("the .glb ends inside a chunk");
-    }
+    if (length > rest.size() - 8) throw SceneError("the .glb ends inside a chunk");
     const Bytes chunk = rest.subspan(8, length);
     // The last chunk's padding may be missing; chunks in between are aligned to four bytes.
     rest = rest.subspan(std::min<std::size_t>(rest.size(), 8 + (std::size_t{length} + 3) / 4 * 4));
@@ -53,15 +49,9 @@ Bytes take_chunk(Bytes& rest, std::string_view type) {
 
 Container split(Bytes bytes) {
     using namespace std::string_view_literals;
-    if (bytes.empty()) {
-        throw SceneError("the file is empty");
-    }
-    if (bytes.size() < 4 || !std::ranges::equal(bytes.first(4), "glTF"sv)) {
-        return {bytes, {}};
-    }
-    if (bytes.size() < 12) {
-        throw SceneError("the .glb ends inside its header");
-    }
+    if (bytes.empty()) throw SceneError("the file is empty");
+    if (bytes.size() < 4 || !std::ranges::equal(bytes.first(4), "glTF"sv)) return {bytes, {}};
+    if (bytes.size() < 12) throw SceneError("the .glb ends inside its header");
     if (read_u32(bytes, 4) != 2) {
         throw SceneError(fmt::format("the .glb has version {}; only 2 is read", read_u32(bytes, 4)));
     }
@@ -72,9 +62,7 @@ Container split(Bytes bytes) {
     }
     Bytes rest = bytes.subspan(12, length - 12);
     Container container{take_chunk(rest, "JSON"sv), {}};
-    if (!rest.empty()) {
-        container.binary = take_chunk(rest, "BIN\0"sv);
-    }
+    if (!rest.empty()) container.binary = take_chunk(rest, "BIN\0"sv);
     return container;
 }
 
@@ -165,9 +153,7 @@ std::vector<std::string> omissions(const Json& document) {
     const auto below_1 = [](const Json& value) { return value.number() < 1.0; };
     std::vector<std::string> warnings;
     for (const char* member : {"animations", "skins"}) {
-        if (document.contains(member)) {
-            warnings.push_back(fmt::format("{} are ignored", member));
-        }
+        if (document.contains(member)) warnings.push_back(fmt::format("{} are ignored", member));
     }
     if (any_material(document, "pbrMetallicRoughness/metallicFactor", above_0) ||
         any_material(document, "pbrMetallicRoughness/metallicRoughnessTexture", any)) {
@@ -176,9 +162,7 @@ std::vector<std::string> omissions(const Json& document) {
     if (any_material(document, "pbrMetallicRoughness/roughnessFactor", below_1)) {
         warnings.emplace_back("roughness is ignored: all surfaces are diffuse");
     }
-    if (any_material(document, "normalTexture", any)) {
-        warnings.emplace_back("normal maps are ignored");
-    }
+    if (any_material(document, "normalTexture", any)) warnings.emplace_back("normal maps are ignored");
     if (any_material(document, "occlusionTexture", any)) {
         warnings.emplace_back("occlusion textures are ignored");
     }

@@ -35,9 +35,7 @@ std::shared_ptr<const SkyPicture> read_picture(const Document& document, const J
 std::optional<NamedEnvironment> read_environment(const Document& document, ImportFiles& files,
                                                  ImportBudget& budget) {
     const Json* const source = default_scene(document).find_path("extensions/CANDELA_environment");
-    if (!source) {
-        return std::nullopt;
-    }
+    if (!source) return std::nullopt;
     return NamedEnvironment{text_in(*source, "name", "environment"),
                             Environment{.radiance = vector_in(*source, "radiance", glm::vec3(1.0F)),
                                         .picture = read_picture(document, *source, files, budget),

@@ -70,9 +70,7 @@ std::set<Entity> find_nodes(const World& world) {
         if (parent && !world.alive(parent)) {
             throw SceneError(fmt::format("{}: its parent no longer exists", describe(world, entity)));
         }
-        if (parent && entities.insert(parent).second) {
-            ahead.push_back(parent);
-        }
+        if (parent && entities.insert(parent).second) ahead.push_back(parent);
     }
     return entities;
 }
@@ -94,9 +92,7 @@ Nodes choose_nodes(const World& world, std::span<const Entity> without) {
         for (const Entity child : children[parent]) {
             reached.insert(child);
             ahead.emplace_back(child, is_kept && !left_out.contains(child));
-            if (ahead.back().second) {
-                nodes.push_back(child);
-            }
+            if (ahead.back().second) nodes.push_back(child);
         }
     }
     const auto lost = std::ranges::find_if(all, [&](Entity entity) { return !reached.contains(entity); });
@@ -117,9 +113,7 @@ Json describe_camera(const Camera& camera) {
                   {"zfar", to_json(camera.far_plane)}}}};
     }
     Json lens = {{"yfov", to_json(camera.vertical_fov)}, {"znear", to_json(camera.near_plane)}};
-    if (std::isfinite(camera.far_plane)) {
-        lens["zfar"] = to_json(camera.far_plane);
-    }
+    if (std::isfinite(camera.far_plane)) lens["zfar"] = to_json(camera.far_plane);
     return {{"type", "perspective"}, {"perspective", std::move(lens)}};
 }
 
@@ -149,13 +143,9 @@ class WorldWriter {
         };
         std::vector<Entity> entities;
         for (const auto& [entity, environment] : world_.view<Environment>()) {
-            if (is_kept(entity)) {
-                entities.push_back(entity);
-            }
+            if (is_kept(entity)) entities.push_back(entity);
         }
-        if (entities.empty()) {
-            return;
-        }
+        if (entities.empty()) return;
         Entity counting = entities.front();  // if none shines
         static_cast<void>(environment_of(world_, [&](Entity entity, const Environment&) {
             counting = is_kept(entity) ? entity : counting;
@@ -179,21 +169,13 @@ class WorldWriter {
 
     Json describe_node(Entity entity) {
         Json node = Json::object();
-        if (const auto* const name = world_.find<Name>(entity)) {
-            node["name"] = to_json(name->value);
-        }
+        if (const auto* const name = world_.find<Name>(entity)) node["name"] = to_json(name->value);
         if (const auto* const transform = world_.find<Transform>(entity)) {
             add_transform(entity, *transform, node);
         }
-        if (const auto* const instance = world_.find<MeshInstance>(entity)) {
-            add_mesh(entity, *instance, node);
-        }
-        if (const auto* const camera = world_.find<Camera>(entity)) {
-            add_camera(entity, *camera, node);
-        }
-        if (const std::optional<AnyLight> light = find_light(entity)) {
-            add_light(entity, *light, node);
-        }
+        if (const auto* const instance = world_.find<MeshInstance>(entity)) add_mesh(entity, *instance, node);
+        if (const auto* const camera = world_.find<Camera>(entity)) add_camera(entity, *camera, node);
+        if (const std::optional<AnyLight> light = find_light(entity)) add_light(entity, *light, node);
         return node;
     }
 
@@ -202,25 +184,17 @@ class WorldWriter {
         if (transform.translation != unmoved.translation) {
             node["translation"] = to_json(transform.translation);
         }
-        if (transform.scale != unmoved.scale) {
-            node["scale"] = to_json(transform.scale);
-        }
-        if (transform.rotation == unmoved.rotation) {
-            return;
-        }
+        if (transform.scale != unmoved.scale) node["scale"] = to_json(transform.scale);
+        if (transform.rotation == unmoved.rotation) return;
         const double length = glm::length(glm::dquat(transform.rotation));
-        if (length != 0.0) {
-            node["rotation"] = to_json(transform.rotation);
-        }
+        if (length != 0.0) node["rotation"] = to_json(transform.rotation);
         if (!is_unit_length(length)) {
             warn(entity, "its rotation is not of unit length and will be normalised");
         }
     }
 
     void add_mesh(Entity entity, const MeshInstance& instance, Json& node) {
-        if (!instance.mesh) {
-            throw SceneError("it has no mesh");
-        }
+        if (!instance.mesh) throw SceneError("it has no mesh");
         if (const std::optional<std::size_t> index = meshes_.index_of(instance.mesh)) {
             node["mesh"] = *index;
         } else {
@@ -243,12 +217,8 @@ class WorldWriter {
     void add_light(Entity entity, const AnyLight& light, Json& node) {
         check(fault_of(light));
         gltf::WrittenLight written = gltf::write_light(light);
-        if (!written.warning.empty()) {
-            warn(entity, written.warning);
-        }
-        if (written.json.contains("extensions")) {
-            draft_.use_extension(gltf::light_extension);
-        }
+        if (!written.warning.empty()) warn(entity, written.warning);
+        if (written.json.contains("extensions")) draft_.use_extension(gltf::light_extension);
         draft_.use_extension(gltf::lights_extension);
         Json& lights = draft_.document["extensions"][gltf::lights_extension]["lights"];
         lights.push_back(std::move(written.json));
@@ -258,9 +228,7 @@ class WorldWriter {
     [[nodiscard]] std::optional<AnyLight> find_light(Entity entity) const {
         std::optional<AnyLight> found;
         visit_lights_of(world_, entity, [&](const auto& light) {
-            if (found) {
-                throw SceneError("it has several lights, but a node of glTF has only one");
-            }
+            if (found) throw SceneError("it has several lights, but a node of glTF has only one");
             found = light;
         });
         return found;
@@ -271,9 +239,7 @@ class WorldWriter {
         check(fault_of(environment));
         Json json = {{"radiance", to_json(environment.radiance)},
                      {"rotation", to_json(environment.rotation)}};
-        if (const auto* const name = world_.find<Name>(entity)) {
-            json["name"] = to_json(name->value);
-        }
+        if (const auto* const name = world_.find<Name>(entity)) json["name"] = to_json(name->value);
         if (environment.picture) {
             const SkyPicture& picture = *environment.picture;
             check(fault_of(picture));

@@ -67,9 +67,7 @@ WrittenLight write(const Light& light) {
                                   {"color", to_json(light.colour / most)},
                                   {"intensity", to_json(strength_of(light) * most)}},
                          .warning = {}};
-    if (!light.casts_shadow) {
-        written.json["extensions"][light_extension] = {{"castsShadow", false}};
-    }
+    if (!light.casts_shadow) written.json["extensions"][light_extension] = {{"castsShadow", false}};
     if (kind.range != nullptr && std::isfinite(light.*kind.range)) {
         written.json["range"] = to_json(std::max(light.*kind.range, std::numeric_limits<float>::min()));
     }
@@ -101,13 +99,9 @@ AnyLight read_light(const Json& source, int index) {
     const std::string& type = source.at("type").text();
     std::optional<AnyLight> light;
     for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
-        if (type == type_of<Light>) {
-            light = read<Light>(source, index);
-        }
+        if (type == type_of<Light>) light = read<Light>(source, index);
     });
-    if (!light) {
-        throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(type)));
-    }
+    if (!light) throw SceneError(fmt::format("light {} has the unknown type \"{}\"", index, readable(type)));
     return *light;
 }
 

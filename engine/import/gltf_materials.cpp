@@ -41,9 +41,7 @@ struct Wraps {
 
 Wraps wraps_of(const Document& document, const Json& texture) {
     const int index = index_in(texture, "sampler");
-    if (index < 0) {
-        return {};
-    }
+    if (index < 0) return {};
     const Json& sampler = document.at("samplers", index);
     return {to_wrap(number_in(sampler, "wrapS", wrap_repeat), index),
             to_wrap(number_in(sampler, "wrapT", wrap_repeat), index)};
@@ -53,9 +51,7 @@ Wraps wraps_of(const Document& document, const Json& texture) {
 /// be null.
 glm::mat3 transform_of(const Json* use) {
     const Json* const transform = use ? use->find_path("extensions/KHR_texture_transform") : nullptr;
-    if (!transform) {
-        return glm::mat3(1.0F);
-    }
+    if (!transform) return glm::mat3(1.0F);
     const auto scale = vector_in(*transform, "scale", glm::vec2(1.0F));
     const auto offset = vector_in(*transform, "offset", glm::vec2(0.0F));
     const double rotation = number_in(*transform, "rotation", 0.0);
@@ -79,9 +75,7 @@ class ImageReader {
     /// The image of a textureInfo; null, with a warning that starts with `label`, if it cannot be used. `use`
     /// may be null.
     std::shared_ptr<const Image> read(const Json* use, const std::string& label) {
-        if (!use) {
-            return nullptr;
-        }
+        if (!use) return nullptr;
         const Json& texture = document_.at("textures", index_in(*use, "index"));
         const int image = index_in(texture, "source");
         if (image < 0) {
@@ -117,9 +111,7 @@ class ImageReader {
             return buffer_view_bytes(document_, view);
         }
         Content& content = contents_[index];
-        if (!content) {
-            content = files_.read(source.at("uri").text());
-        }
+        if (!content) content = files_.read(source.at("uri").text());
         return *content;
     }
 
@@ -132,9 +124,7 @@ class ImageReader {
 
 /// check_schema accepts no other names.
 AlphaMode to_alpha_mode(std::string_view name) {
-    if (name == "MASK") {
-        return AlphaMode::mask;
-    }
+    if (name == "MASK") return AlphaMode::mask;
     return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 

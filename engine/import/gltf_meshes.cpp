@@ -46,9 +46,7 @@ template <class Read, class Set>
 void read_attribute(const Document& document, const Json& source, const char* name, std::string_view plural,
                     const Selection& selection, std::vector<Vertex>& vertices, Read read, Set set) {
     const auto accessor = find_attribute(source, name);
-    if (!accessor) {
-        return;
-    }
+    if (!accessor) return;
     const std::size_t positions = element_count(document, *find_attribute(source, "POSITION"));
     const std::size_t count = element_count(document, *accessor);
     if (count != positions) {
@@ -149,22 +147,16 @@ void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& tri
     for (const Corners& corners : triangles) {
         const glm::vec3 normal = face_normal(vertices, corners);
         for (const std::uint32_t corner : corners) {
-            if (vertices[corner].normal == glm::vec3(0.0F)) {
-                vertices[corner].normal = normal;
-            }
+            if (vertices[corner].normal == glm::vec3(0.0F)) vertices[corner].normal = normal;
         }
     }
     for (Vertex& vertex : vertices) {
-        if (vertex.normal == glm::vec3(0.0F)) {
-            vertex.normal = {0.0F, 0.0F, 1.0F};
-        }
+        if (vertex.normal == glm::vec3(0.0F)) vertex.normal = {0.0F, 0.0F, 1.0F};
     }
 }
 
 bool is_drawn(const Json& source, Omissions& omissions) {
-    if (!list_in(source, "targets").empty()) {
-        omissions.insert("morph targets are ignored");
-    }
+    if (!list_in(source, "targets").empty()) omissions.insert("morph targets are ignored");
     if (find_attribute(source, "COLOR_1")) {
         omissions.insert("vertex colours beyond the first set are ignored");
     }
@@ -196,9 +188,7 @@ void count_triangles(const Document& document, const Json& source, ImportBudget&
     const std::uint64_t triangles = triangle_count(order, mode_of(source));
     budget.add_triangles(triangles);
     budget.add_memory(order * sizeof(std::uint32_t) + triangles * sizeof(Corners));
-    if (!find_attribute(source, "NORMAL")) {
-        budget.add_memory(triangles * 3 * sizeof(Vertex));
-    }
+    if (!find_attribute(source, "NORMAL")) budget.add_memory(triangles * 3 * sizeof(Vertex));
 }
 
 /// Without indices if no triangle has an area.
@@ -218,9 +208,7 @@ Primitive read_primitive(const Document& document, const Json& source, ImportBud
     std::erase_if(triangles, [&](const Corners& corners) {
         return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
     });
-    if (!find_attribute(source, "NORMAL")) {
-        primitive.vertices = unshare(primitive.vertices, triangles);
-    }
+    if (!find_attribute(source, "NORMAL")) primitive.vertices = unshare(primitive.vertices, triangles);
     fill_normals(primitive.vertices, triangles);
     primitive.indices.reserve(3 * triangles.size());
     for (const Corners& corners : triangles) {
@@ -234,13 +222,9 @@ Mesh read_mesh(const Document& document, const Json& source, const std::vector<R
     Mesh mesh;
     mesh.name = text_in(source, "name");
     for (const Json& part : source.at("primitives").items()) {
-        if (!is_drawn(part, omissions)) {
-            continue;
-        }
+        if (!is_drawn(part, omissions)) continue;
         Primitive primitive = read_primitive(document, part, budget);
-        if (primitive.indices.empty()) {
-            continue;
-        }
+        if (primitive.indices.empty()) continue;
         const int material = index_in(part, "material");
         const ReadMaterial& read =
             material < 0 ? materials.back() : materials[static_cast<std::size_t>(material)];
@@ -261,9 +245,7 @@ std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const s
     Omissions omissions;
     std::vector<std::shared_ptr<const Mesh>> meshes(used.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        if (!used[i]) {
-            continue;
-        }
+        if (!used[i]) continue;
         progress("reading meshes", i, meshes.size());
         Mesh mesh = naming(fmt::format("mesh {}", i), [&] {
             return read_mesh(document, document.all("meshes")[i], materials, omissions, budget);

@@ -52,9 +52,7 @@ void check_hierarchy(const Document& document) {
     const std::vector<int> parents = find_parents(document);
     std::vector<int> reached;
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
-        if (parents[static_cast<std::size_t>(node)] < 0) {
-            reached.push_back(node);
-        }
+        if (parents[static_cast<std::size_t>(node)] < 0) reached.push_back(node);
     }
     std::vector<bool> below_a_root(parents.size(), false);
     while (!reached.empty()) {
@@ -77,9 +75,7 @@ void check_hierarchy(const Document& document) {
         if (parents[i] >= 0) {
             throw SceneError(fmt::format("node {} is a root of the scene but has a parent", node));
         }
-        if (listed[i]) {
-            throw SceneError(fmt::format("node {} is a root of the scene twice", node));
-        }
+        if (listed[i]) throw SceneError(fmt::format("node {} is a root of the scene twice", node));
         listed[i] = true;
     }
 }
@@ -87,9 +83,7 @@ void check_hierarchy(const Document& document) {
 bool is_finite(const Transform& transform) {
     const auto finite = [](float x) { return std::isfinite(x); };
     for (int i = 0; i < 3; ++i) {
-        if (!finite(transform.translation[i]) || !finite(transform.scale[i])) {
-            return false;
-        }
+        if (!finite(transform.translation[i]) || !finite(transform.scale[i])) return false;
     }
     return finite(transform.rotation.w) && finite(transform.rotation.x) && finite(transform.rotation.y) &&
            finite(transform.rotation.z);
@@ -113,9 +107,7 @@ Transform read_translation_rotation_scale(const Json& node) {
     const auto parts = vector_in(node, "rotation", glm::dvec4(0.0, 0.0, 0.0, 1.0));
     const glm::dquat rotation(parts.w, parts.x, parts.y, parts.z);
     const double length = glm::length(rotation);
-    if (length == 0.0) {
-        throw SceneError("its rotation is zero");
-    }
+    if (length == 0.0) throw SceneError("its rotation is zero");
     transform.rotation = glm::quat(is_unit_length(length) ? rotation : rotation / length);
     return transform;
 }
@@ -125,9 +117,7 @@ std::vector<Transform> read_transforms(const Json& node) {
     const Json& matrix = list_in(node, "matrix");
     std::vector<Transform> transforms =
         matrix.empty() ? std::vector{read_translation_rotation_scale(node)} : read_matrix(matrix);
-    if (!std::ranges::all_of(transforms, is_finite)) {
-        throw SceneError("its transform overflows");
-    }
+    if (!std::ranges::all_of(transforms, is_finite)) throw SceneError("its transform overflows");
     return transforms;
 }
 
@@ -160,18 +150,14 @@ constexpr std::string_view all_lights = "extensions/KHR_lights_punctual/lights";
 
 std::string name_of(const Document& document, int index) {
     const Json& node = document.at("nodes", index);
-    if (const Json* const name = node.find("name")) {
-        return name->text();
-    }
+    if (const Json* const name = node.find("name")) return name->text();
     const auto name_in = [&](std::string_view list, int i) {
         return i < 0 ? std::string() : text_in(document.at(list, i), "name");
     };
     for (std::string name :
          {name_in("cameras", index_in(node, "camera")), name_in(all_lights, light_of(node)),
           name_in("meshes", index_in(node, "mesh"))}) {
-        if (!name.empty()) {
-            return name;
-        }
+        if (!name.empty()) return name;
     }
     return fmt::format("node {}", index);
 }
@@ -190,9 +176,7 @@ void equip(StagedEntity& entity, const Document& document, const Json& node) {
 }  // namespace
 
 const Json& default_scene(const Document& document) {
-    if (document.all("scenes").empty()) {
-        throw SceneError("it has no scene");
-    }
+    if (document.all("scenes").empty()) throw SceneError("it has no scene");
     return document.at("scenes", number_in(document.json, "scene", 0));
 }
 

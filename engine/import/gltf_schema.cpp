@@ -49,9 +49,7 @@ constexpr std::uint64_t any_size = std::numeric_limits<std::int64_t>::max();
 constexpr std::uint64_t most_elements = std::numeric_limits<std::uint32_t>::max();
 
 Problem check_number(const Json& value, const Range& range) {
-    if (!value.is_number()) {
-        return "is not a number";
-    }
+    if (!value.is_number()) return "is not a number";
     const auto number = value.number();
     if (number < range.lowest || number > range.highest) {
         return fmt::format("is {}, which is out of range", number);
@@ -65,13 +63,9 @@ Check number(Range range) {
 
 Check numbers(std::size_t length, Range range) {
     return [length, range](const Json& value, const Json&) -> Problem {
-        if (!value.is_array() || value.size() != length) {
-            return fmt::format("is not {} numbers", length);
-        }
+        if (!value.is_array() || value.size() != length) return fmt::format("is not {} numbers", length);
         for (const Json& item : value.items()) {
-            if (Problem error = check_number(item, range)) {
-                return "holds a member that " + *error;
-            }
+            if (Problem error = check_number(item, range)) return "holds a member that " + *error;
         }
         return {};
     };
@@ -79,9 +73,7 @@ Check numbers(std::size_t length, Range range) {
 
 Check whole(std::uint64_t lowest, std::uint64_t highest) {
     return [lowest, highest](const Json& value, const Json&) -> Problem {
-        if (!value.is_whole()) {
-            return "is not a whole number";
-        }
+        if (!value.is_whole()) return "is not a whole number";
         if (!value.is_not_negative() || value.whole<std::uint64_t>() < lowest ||
             value.whole<std::uint64_t>() > highest) {
             return fmt::format("is {}, which is out of range", value.dump());
@@ -92,12 +84,8 @@ Check whole(std::uint64_t lowest, std::uint64_t highest) {
 
 Check stride() {
     return [](const Json& value, const Json& document) -> Problem {
-        if (Problem error = whole(4, 252)(value, document)) {
-            return error;
-        }
-        if (value.whole<int>() % 4 != 0) {
-            return fmt::format("is {}, not a multiple of 4", value.whole<int>());
-        }
+        if (Problem error = whole(4, 252)(value, document)) return error;
+        if (value.whole<int>() % 4 != 0) return fmt::format("is {}, not a multiple of 4", value.whole<int>());
         return {};
     };
 }
@@ -114,13 +102,9 @@ Check flag() {
 
 Check has(std::initializer_list<const char*> members) {
     return [required = std::vector<const char*>(members)](const Json& value, const Json&) -> Problem {
-        if (!value.is_object()) {
-            return "is not an object";
-        }
+        if (!value.is_object()) return "is not an object";
         for (const char* member : required) {
-            if (!value.contains(member)) {
-                return fmt::format("has no \"{}\"", member);
-            }
+            if (!value.contains(member)) return fmt::format("has no \"{}\"", member);
         }
         return {};
     };
@@ -137,9 +121,7 @@ Check has_its_kind(std::vector<std::string_view> kinds) {
 
 Check version() {
     return [](const Json& value, const Json&) -> Problem {
-        if (!value.is_string()) {
-            return "is not a string";
-        }
+        if (!value.is_string()) return "is not a string";
         const auto& number = value.text();
         return number.starts_with("2.") ? Problem{}
                                         : fmt::format("is \"{}\"; only 2.0 is read", readable(number));
@@ -148,9 +130,7 @@ Check version() {
 
 Check one_of(std::vector<std::string_view> names) {
     return [names = std::move(names)](const Json& value, const Json&) -> Problem {
-        if (!value.is_string()) {
-            return "is not a string";
-        }
+        if (!value.is_string()) return "is not a string";
         const auto& name = value.text();
         const bool known = std::ranges::find(names, name) != names.end();
         return known ? Problem{}
@@ -161,9 +141,7 @@ Check one_of(std::vector<std::string_view> names) {
 /// Checks for an index into the array at `path` of the document, which messages call `plural`.
 Check index_into(const char* path, const char* plural) {
     return [path, plural](const Json& value, const Json& document) -> Problem {
-        if (!value.is_whole()) {
-            return "is not an index";
-        }
+        if (!value.is_whole()) return "is not an index";
         const Json* const list = document.find_path(path);
         const std::size_t size = list ? list->size() : 0;
         if (!value.is_not_negative() || value.whole<std::uint64_t>() >= size) {
@@ -317,13 +295,9 @@ struct Place {
     std::size_t item = 0;
 
     [[nodiscard]] std::string name() const {
-        if (!parent) {
-            return {};
-        }
+        if (!parent) return {};
         const std::string before = parent->name();
-        if (member.empty()) {
-            return fmt::format("{}[{}]", before, item);
-        }
+        if (member.empty()) return fmt::format("{}[{}]", before, item);
         return before.empty() ? readable(member) : fmt::format("{}.{}", before, readable(member));
     }
 };
@@ -332,9 +306,7 @@ struct Place {
 void apply(const Rule& rule, std::string_view path, const Json& value, const Place& place,
            const Json& document) {
     if (path.empty()) {
-        if (const Problem error = rule.check(value, document)) {
-            throw SceneError(place.name() + ' ' + *error);
-        }
+        if (const Problem error = rule.check(value, document)) throw SceneError(place.name() + ' ' + *error);
         return;
     }
     const std::size_t dot = path.find('.');
@@ -361,12 +333,8 @@ void apply(const Rule& rule, std::string_view path, const Json& value, const Pla
 }  // namespace
 
 void check_schema(const Json& document) {
-    if (!document.is_object()) {
-        throw SceneError("the document is not a JSON object");
-    }
-    if (!document.contains("asset")) {
-        throw SceneError("it has no \"asset\", so it is not glTF 2.0");
-    }
+    if (!document.is_object()) throw SceneError("the document is not a JSON object");
+    if (!document.contains("asset")) throw SceneError("it has no \"asset\", so it is not glTF 2.0");
     for (const Rule& rule : rules()) {
         apply(rule, rule.path, document, Place{}, document);
     }

@@ -23,9 +23,7 @@ namespace candela::gltf {
 template <class Number>
 [[nodiscard]] Number number_in(const Json& object, std::string_view path, Number otherwise) {
     const Json* const found = object.find_path(path);
-    if (!found) {
-        return otherwise;
-    }
+    if (!found) return otherwise;
     if constexpr (std::is_integral_v<Number>) {
         return found->whole<Number>();
     } else {

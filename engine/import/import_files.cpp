@@ -63,20 +63,14 @@ bool starts_with(Bytes bytes, std::string_view prefix) {
 std::vector<unsigned char> read_file(const fs::path& path, std::string_view called, ImportBudget& budget) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::not_found) {
-        throw SceneError(fmt::format("{} does not exist", called));
-    }
-    if (!fs::is_regular_file(status)) {
-        throw SceneError(fmt::format("{} is not a file", called));
-    }
+    if (status.type() == fs::file_type::not_found) throw SceneError(fmt::format("{} does not exist", called));
+    if (!fs::is_regular_file(status)) throw SceneError(fmt::format("{} is not a file", called));
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const std::streamoff size = file ? std::streamoff{file.tellg()} : 0;
     budget.add_file(static_cast<std::uint64_t>(size));
     std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
     file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
-    if (!file) {
-        throw SceneError(fmt::format("{} cannot be read", called));
-    }
+    if (!file) throw SceneError(fmt::format("{} cannot be read", called));
     return bytes;
 }
 
@@ -93,9 +87,7 @@ fs::path ImportFiles::resolve(const std::string& path, std::string_view called) 
     std::error_code error;
     fs::path found = fs::weakly_canonical(base_directory_ / path, error);
     const fs::path root = fs::weakly_canonical(root_, error);
-    if (error) {
-        throw SceneError(fmt::format("{} cannot be read", called));
-    }
+    if (error) throw SceneError(fmt::format("{} cannot be read", called));
     if (!is_below(found, root)) {
         throw SceneError(fmt::format("{} is outside of the folder that files are read from", called));
     }
@@ -103,9 +95,7 @@ fs::path ImportFiles::resolve(const std::string& path, std::string_view called) 
 }
 
 Content ImportFiles::read(const std::string& uri) {
-    if (uri.starts_with("data:")) {
-        return decode_data(uri);
-    }
+    if (uri.starts_with("data:")) return decode_data(uri);
     const std::string called = readable(uri);
     const fs::path path = resolve(percent_decoded(uri), called);
     Content& content = files_[path];

@@ -19,9 +19,7 @@ inline constexpr std::size_t longest_message = 300;
 
 /// Throws what is wrong, if anything is.
 inline void check(const Fault& fault) {
-    if (fault) {
-        throw SceneError(*fault);
-    }
+    if (fault) throw SceneError(*fault);
 }
 
 /// Runs a part of an import or export. A SceneError then names what it concerns.

@@ -44,9 +44,7 @@ class FreshFiles {
 };
 
 void check(const std::error_code& error, const fs::path& path) {
-    if (error) {
-        throw SceneError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
-    }
+    if (error) throw SceneError(fmt::format("{}: cannot be written: {}", path.string(), error.message()));
 }
 
 /// An error if a file cannot take the place of what is at the path.
@@ -60,12 +58,8 @@ std::error_code error_of_place(const fs::path& path) {
 
 std::error_code write_bytes(const fs::path& path, const char* mode, std::span<const std::byte> bytes) {
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), mode), &std::fclose);
-    if (!file) {
-        return last_error();
-    }
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
-        return last_error();
-    }
+    if (!file) return last_error();
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return last_error();
     // Buffered bytes are written on close, so only fclose reports that the disk is full.
     return std::fclose(file.release()) == 0 ? std::error_code{} : last_error();
 }

@@ -14,9 +14,7 @@ class Progress {
     /// `doing` has static storage duration; `done` of `all` parts are done.
     void operator()(std::string_view doing, std::size_t done, std::size_t all) const {
         const double share = all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all);
-        if (tell_ && !tell_({doing, share})) {
-            throw ImportCancelled("the import was cancelled");
-        }
+        if (tell_ && !tell_({doing, share})) throw ImportCancelled("the import was cancelled");
     }
 
  private:

@@ -43,9 +43,7 @@ bool is_exr(gltf::Bytes bytes) {
 }
 
 PictureSize hdr_size(gltf::Bytes bytes) {
-    if (bytes.size() > std::numeric_limits<int>::max()) {
-        throw SceneError("it exceeds 2 GiB");
-    }
+    if (bytes.size() > std::numeric_limits<int>::max()) throw SceneError("it exceeds 2 GiB");
     int width = 0;
     int height = 0;
     int channels = 0;
@@ -62,17 +60,13 @@ SkyPicture read_hdr(gltf::Bytes bytes) {
     int channels = 0;
     const Texels texels(
         stbi_loadf_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 3));
-    if (texels == nullptr) {
-        throw SceneError(fmt::format("it cannot be decoded: {}", stbi_failure_reason()));
-    }
+    if (texels == nullptr) throw SceneError(fmt::format("it cannot be decoded: {}", stbi_failure_reason()));
     return to_picture(width, height, texels, 3);
 }
 
 /// Throws if the library reports an error. Takes over its message.
 void check_exr(int result, const char* message) {
-    if (result == TINYEXR_SUCCESS) {
-        return;
-    }
+    if (result == TINYEXR_SUCCESS) return;
     std::string reason = message != nullptr ? message : "it is damaged or of an unsupported kind";
     std::erase(reason, '\n');
     FreeEXRErrorMessage(message);
@@ -109,9 +103,7 @@ void check_sky_size(std::int64_t width, std::int64_t height) {
         throw SceneError(
             fmt::format("it has {} × {} pixels and is not twice as wide as high", width, height));
     }
-    if (width > widest) {
-        throw SceneError(fmt::format("it is {} pixels wide; {} are possible", width, widest));
-    }
+    if (width > widest) throw SceneError(fmt::format("it is {} pixels wide; {} are possible", width, widest));
 }
 
 PictureSize sky_picture_size(gltf::Bytes bytes) {

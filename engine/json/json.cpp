@@ -80,9 +80,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
         return true;
     }
     bool open(Json value) {
-        if (open_.size() == deepest_nesting) {
-            throw JsonError("its JSON is nested too deeply");
-        }
+        if (open_.size() == deepest_nesting) throw JsonError("its JSON is nested too deeply");
         open_.push_back(&insert(std::move(value)));
         return true;
     }
@@ -91,9 +89,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
         return true;
     }
     Json& insert(Json value) {
-        if (open_.empty()) {
-            return root = std::move(value);
-        }
+        if (open_.empty()) return root = std::move(value);
         if (auto* const items = std::get_if<Json::Array>(&open_.back()->value_)) {
             return items->emplace_back(std::move(value));
         }
@@ -181,9 +177,7 @@ class JsonWriter {
             write_item(item);
         }
         --level_;
-        if (!items.empty()) {
-            break_line();
-        }
+        if (!items.empty()) break_line();
         text += last;
     }
 
@@ -245,9 +239,7 @@ std::string Json::dump(int indent, Faulty faulty) const {
 
 double Json::number() const {
     const auto* const real = std::get_if<double>(&value_);
-    if (real) {
-        return *real;
-    }
+    if (real) return *real;
     return is_not_negative() ? static_cast<double>(std::get<std::uint64_t>(value_))
                              : static_cast<double>(std::get<std::int64_t>(value_));
 }
@@ -283,28 +275,20 @@ const Json* Json::find_path(std::string_view names) const {
 }
 
 const Json& Json::at(std::string_view name) const {
-    if (const Json* const found = find(name)) {
-        return *found;
-    }
+    if (const Json* const found = find(name)) return *found;
     throw std::out_of_range(fmt::format("there is no \"{}\"", name));
 }
 
 Json& Json::operator[](std::string_view name) {
-    if (is_null()) {
-        value_ = JsonObject{};
-    }
+    if (is_null()) value_ = JsonObject{};
     auto& object = std::get<JsonObject>(value_);
-    if (Json* const found = value_in(object, name)) {
-        return *found;
-    }
+    if (Json* const found = value_in(object, name)) return *found;
     object.sorted = object.sorted && (object.members.empty() || object.members.back().name < name);
     return object.members.emplace_back(JsonMember{std::string(name), Json()}).value;
 }
 
 void Json::push_back(Json item) {
-    if (is_null()) {
-        value_ = Array();
-    }
+    if (is_null()) value_ = Array();
     std::get<Array>(value_).push_back(std::move(item));
 }
 

@@ -65,9 +65,7 @@ Fault fault_of_brightness(std::string_view what, glm::vec3 light) {
 template <class Light>
 Fault fault_of_strength_and_range(const Light& light) {
     const LightTraits<Light>& kind = light_traits<Light>;
-    if (!is_amount(light.colour)) {
-        return negative_or_infinite("the colour");
-    }
+    if (!is_amount(light.colour)) return negative_or_infinite("the colour");
     if (!is_amount(strength_of(light))) {
         return negative_or_infinite(fmt::format("the {}", kind.strength_name));
     }
@@ -87,9 +85,7 @@ Fault fault_of_shape(const Light& /*light*/) {
 }
 
 Fault fault_of_shape(const SpotLight& light) {
-    if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) {
-        return negative_or_infinite("a cone");
-    }
+    if (!is_amount(light.inner_cone) || !is_amount(light.outer_cone)) return negative_or_infinite("a cone");
     if (light.outer_cone < narrowest_cone) {
         return fmt::format("the outer cone of {} is narrower than {:g} radians", light.outer_cone,
                            narrowest_cone);
@@ -113,34 +109,24 @@ Fault fault_of(const Material& material) {
     if (!is_amount(glm::vec3(material.base_colour)) || !is_amount(material.base_colour.a)) {
         return negative_or_infinite("the base colour");
     }
-    if (!is_amount(material.emissive)) {
-        return negative_or_infinite("the emission");
-    }
+    if (!is_amount(material.emissive)) return negative_or_infinite("the emission");
     if (!is_amount(material.alpha_cutoff, Limit::infinite)) {
         return "the alpha cutoff is negative or not a number";
     }
     if (const Fault fault = fault_of(material.base_colour_texture)) {
         return "the base colour texture has " + *fault;
     }
-    if (const Fault fault = fault_of(material.emissive_texture)) {
-        return "the emissive texture has " + *fault;
-    }
+    if (const Fault fault = fault_of(material.emissive_texture)) return "the emissive texture has " + *fault;
     return {};
 }
 
 Fault fault_of(const Vertex& vertex, Strictness strictness) {
-    if (!is_finite(vertex.position)) {
-        return "its position is not finite";
-    }
+    if (!is_finite(vertex.position)) return "its position is not finite";
     if (is_too_large(vertex.position)) {
         return fmt::format("its position is farther than {:g} metres from the origin", most);
     }
-    if (!is_finite(vertex.normal)) {
-        return "its normal is not finite";
-    }
-    if (!is_finite(vertex.uv)) {
-        return "its texture coordinates are not finite";
-    }
+    if (!is_finite(vertex.normal)) return "its normal is not finite";
+    if (!is_finite(vertex.uv)) return "its texture coordinates are not finite";
     constexpr float tolerance = 0.01F;  // more than the rounding of normals that are stored in bytes
     if (strictness == Strictness::strict && std::abs(glm::length(vertex.normal) - 1.0F) > tolerance) {
         return fmt::format("its normal is {} long", glm::length(vertex.normal));
@@ -158,9 +144,7 @@ Fault fault_of(const std::vector<Vertex>& vertices, Strictness strictness) {
 }
 
 Fault fault_of(const Primitive& primitive, Strictness strictness) {
-    if (!primitive.material) {
-        return "it has no material";
-    }
+    if (!primitive.material) return "it has no material";
     if (const Fault fault = fault_of(*primitive.material)) {
         return fmt::format("material \"{}\": {}", readable(primitive.material->name), *fault);
     }
@@ -242,9 +226,7 @@ Fault fault_of(const DeformedMesh::Vertices& vertices, Strictness strictness) {
 }
 
 Fault fault_of_fit(const DeformedMesh& deformed, const Mesh& mesh) {
-    if (!deformed.vertices) {
-        return "there are no vertices";
-    }
+    if (!deformed.vertices) return "there are no vertices";
     if (deformed.vertices->size() != mesh.primitives.size()) {
         return fmt::format("{} lists of vertices, but mesh \"{}\" has {} primitives",
                            deformed.vertices->size(), readable(mesh.name), mesh.primitives.size());
@@ -284,12 +266,8 @@ Fault fault_of(const AnyLight& light) {
 }
 
 Fault fault_of(const Environment& environment) {
-    if (!is_amount(environment.radiance)) {
-        return negative_or_infinite("the radiance");
-    }
-    if (!std::isfinite(environment.rotation)) {
-        return "the rotation is not finite";
-    }
+    if (!is_amount(environment.radiance)) return negative_or_infinite("the radiance");
+    if (!std::isfinite(environment.rotation)) return "the rotation is not finite";
     return {};
 }
 
@@ -300,16 +278,12 @@ Fault fault_of(const Camera& camera) {
 
 Fault fault_of(const glm::mat4& world) {
     for (int column = 0; column < 4; ++column) {
-        if (!is_finite(world[column])) {
-            return "the world matrix is not finite";
-        }
+        if (!is_finite(world[column])) return "the world matrix is not finite";
         if (column < 3 && is_too_large(world[column])) {
             return fmt::format("the world matrix scales by more than {:g}", most);
         }
     }
-    if (is_too_large(world[3])) {
-        return fmt::format("it is farther than {:g} metres from the origin", most);
-    }
+    if (is_too_large(world[3])) return fmt::format("it is farther than {:g} metres from the origin", most);
     return {};
 }
 

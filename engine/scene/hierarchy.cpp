@@ -25,9 +25,7 @@ glm::mat4 world_matrix(const World& world, Entity entity) {
 
 glm::mat4 WorldMatrices::operator()(Entity entity) {
     const auto* const transform = world_->find<Transform>(entity);
-    if (!transform) {
-        return glm::mat4(1.0F);
-    }
+    if (!transform) return glm::mat4(1.0F);
     const glm::mat4 local = local_matrix(*transform);
     return transform->parent ? of_parent(entity, *transform) * local : local;
 }

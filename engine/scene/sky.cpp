@@ -16,9 +16,7 @@ Environment environment_of(const World& world,
                            const std::function<bool(Entity, const Environment&)>& accepts) {
     for (const auto& [entity, environment] : world.view<Environment>()) {
         const bool shines = environment.radiance != glm::vec3(0.0F);
-        if (shines && (!accepts || accepts(entity, environment))) {
-            return environment;
-        }
+        if (shines && (!accepts || accepts(entity, environment))) return environment;
     }
     return {};
 }

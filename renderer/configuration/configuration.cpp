@@ -75,9 +75,7 @@ bool is_within(T value, const Range& range) {
 using Fault = std::optional<std::string>;
 
 Fault read(const Json& json, const Range& /*range*/, bool& value) {
-    if (!json.is_boolean()) {
-        return "is not true or false";
-    }
+    if (!json.is_boolean()) return "is not true or false";
     value = json.flag();
     return {};
 }
@@ -89,13 +87,9 @@ Fault read(const Json& json, const Range& range, std::uint32_t& value) {
     return {};
 }
 Fault read(const Json& json, const Range& range, float& value) {
-    if (!json.is_number() && !json.is("infinity")) {
-        return "is not a number";
-    }
+    if (!json.is_number() && !json.is("infinity")) return "is not a number";
     const auto number = static_cast<float>(json.is_number() ? json.number() : infinity);
-    if (!is_within(number, range)) {
-        return fmt::format("is not from {} to {}", range.least, range.most);
-    }
+    if (!is_within(number, range)) return fmt::format("is not from {} to {}", range.least, range.most);
     value = number;
     return {};
 }
@@ -118,9 +112,7 @@ requires std::is_enum_v<Enum> Fault read(const Json& json, const Range& /*range*
     const std::string given = json.is_string() ? json.text() : json.is_number() ? json.dump() : "";
     const std::span<const Choice> choices = choices_of(value);
     const auto chosen = std::ranges::find(choices, given, &Choice::name);
-    if (chosen == choices.end()) {
-        return fmt::format("is not one of {}", names_of(choices));
-    }
+    if (chosen == choices.end()) return fmt::format("is not one of {}", names_of(choices));
     value = static_cast<Enum>(chosen - choices.begin());
     return {};
 }
@@ -133,9 +125,7 @@ KnownMembers known_members() {
     const Configuration any;
     for_each_setting(any, [&](const Setting& setting, const auto& /*value*/) {
         known[setting.group()].insert(setting.name());
-        if (!setting.group().empty()) {
-            known[""].insert(setting.group());
-        }
+        if (!setting.group().empty()) known[""].insert(setting.group());
     });
     return known;
 }
@@ -158,9 +148,7 @@ void check_names(const Json& object, std::string_view group, const KnownMembers&
 
 /// Changes the settings that `json` has. Returns what is wrong with it.
 std::vector<std::string> read_members(const Json& json, Configuration& configuration) {
-    if (!json.is_object()) {
-        return {"not a JSON object"};
-    }
+    if (!json.is_object()) return {"not a JSON object"};
     std::vector<std::string> errors;
     for_each_setting(configuration, [&](const Setting& setting, auto& value) {
         const Json* const object = setting.group().empty() ? &json : json.find(setting.group());
@@ -177,9 +165,7 @@ std::vector<std::string> read_members(const Json& json, Configuration& configura
 template <class T>
 void check(const Setting& setting, const T& value, std::vector<std::string>& errors) {
     if constexpr (std::is_same_v<T, std::optional<float>>) {
-        if (value) {
-            check(setting, *value, errors);
-        }
+        if (value) check(setting, *value, errors);
     } else if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
         const auto& [least, most, step] = setting.range;
         const bool is_multiple = std::is_floating_point_v<T> || std::fmod(value, step) == 0;
@@ -204,9 +190,7 @@ ConfigurationResult read_configuration(std::string_view text, const Configuratio
     // Rejected members kept their old values; this adds errors that depend on several values.
     const std::vector<std::string> of_values = validate(configuration);
     result.errors.insert(result.errors.end(), of_values.begin(), of_values.end());
-    if (result.errors.empty()) {
-        result.configuration = configuration;
-    }
+    if (result.errors.empty()) result.configuration = configuration;
     return result;
 }
 

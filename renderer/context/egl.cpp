@@ -112,8 +112,9 @@ class EglContext final : public HeadlessContext {
         egl_.bind_api(EGL_OPENGL_API);
         const EGLConfig config = choose_config();
         create_context(config, options);
-        if (!lists(egl_.query_string(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context"))
+        if (!lists(egl_.query_string(display_, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
             create_surface(config);
+        }
     }
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
@@ -129,8 +130,9 @@ class EglContext final : public HeadlessContext {
         // OSMesa may have replaced the driver's current context without EGL noticing: release the context
         // first, so that EGL binds it again.
         if (egl_.current_context() == context_) release();
-        if (!egl_.make_current(display_, surface_, surface_, context_))
+        if (!egl_.make_current(display_, surface_, surface_, context_)) {
             fail("the context cannot be made current");
+        }
     }
     [[nodiscard]] gl::GetProc get_proc() const override { return egl_.get_proc; }
     [[nodiscard]] std::string description() const override { return "EGL " + name_; }

@@ -50,9 +50,7 @@ std::string describe(const Picture& picture) {
 }
 
 std::string_view unit_of(const Picture& picture) {
-    if (picture.lists) {
-        return "lights";
-    }
+    if (picture.lists) return "lights";
     return picture.shown.depth_terms ? "m" : "";
 }
 
@@ -84,9 +82,7 @@ struct CANDELA_PRIVATE ResourceInspector::State : std::enable_shared_from_this<S
 void ResourceInspector::State::declare(FrameGraph& graph, Gpu& gpu, const ViewFrame& frame) {
     declared &= frame.index > 0;
     const auto found = declared ? std::nullopt : find_inspected(graph, wanted.resource);
-    if (!found) {
-        return;
-    }
+    if (!found) return;
     declared = true;
     if (found->has_picture()) {
         add_picture(graph, gpu, *found);
@@ -123,9 +119,7 @@ void ResourceInspector::State::add_picture(FrameGraph& graph, Gpu& gpu, const In
                              .texture = run.object(drawn),
                              .ranges = run.object(ranges),
                              .range = same_range ? self->picture.range : std::nullopt};
-            if (inspected.buffer) {
-                self->elements = elements_of(run, *inspected.buffer);
-            }
+            if (inspected.buffer) self->elements = elements_of(run, *inspected.buffer);
         });
     });
 }
@@ -158,9 +152,7 @@ std::vector<std::string> ResourceInspector::show(std::optional<Inspection> wante
         state->declare(graph, gpu, frame);
     };
     std::vector<std::string> errors = renderer_->extend(std::move(extension));
-    if (errors.empty()) {
-        state_ = std::move(state);
-    }
+    if (errors.empty()) state_ = std::move(state);
     return errors;
 }
 
@@ -177,9 +169,7 @@ bool ResourceInspector::has_run() const {
 
 InspectionResult ResourceInspector::result() const {
     InspectionResult result;
-    if (!state_) {
-        return result;
-    }
+    if (!state_) return result;
     if (!has_run()) {
         const bool no_frame = renderer_->last_passes().empty();
         result.description = no_frame ? "no frame yet" : "not in this graph, or not before the tone map";
@@ -208,9 +198,7 @@ InspectionResult ResourceInspector::result() const {
 }
 
 BufferElements ResourceInspector::read_buffer(std::uint64_t first, std::uint64_t most) const {
-    if (!state_ || !has_run() || state_->elements.buffer == 0) {
-        return {};
-    }
+    if (!state_ || !has_run() || state_->elements.buffer == 0) return {};
     const FoundElements& found = state_->elements;
     const std::uint64_t begin = std::min(first, found.count);
     BufferElements read{.bytes = {}, .stride = found.stride, .count = found.count};

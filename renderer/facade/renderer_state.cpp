@@ -50,9 +50,7 @@ FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index
 
 /// Standard error of the sum of independent terms, per channel.
 glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
-    if (terms.size() < 2) {
-        return glm::dvec3(0.0);
-    }
+    if (terms.size() < 2) return glm::dvec3(0.0);
     const auto n = static_cast<double>(terms.size());
     glm::dvec3 sum(0.0);
     for (const glm::dvec3& term : terms) {
@@ -117,9 +115,7 @@ Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& optio
 
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
     std::vector<std::string> errors = validate(configuration);
-    if (!errors.empty() || configuration == configuration_) {
-        return errors;
-    }
+    if (!errors.empty() || configuration == configuration_) return errors;
     return try_to(configuration, extensions_);
 }
 
@@ -167,9 +163,7 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     FrameHandles frame = build_frame(graph, gpu_, configuration, shape, extensions);
     runtime_.switch_to(compile(std::move(graph)).take());
     frame_ = std::move(frame);
-    if (shape != shape_ || !same_radiance(configuration, configuration_)) {
-        ++refinement_clock_.epoch;
-    }
+    if (shape != shape_ || !same_radiance(configuration, configuration_)) ++refinement_clock_.epoch;
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);
@@ -178,9 +172,7 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
 
 /// Throws gl::GlError if there are none, or if a target or a texture is not possible.
 void Renderer::State::require_views(std::span<const RenderView> views) const {
-    if (views.empty()) {
-        throw gl::GlError("a frame needs at least one view");
-    }
+    if (views.empty()) throw gl::GlError("a frame needs at least one view");
     const gl::Device& device = gpu_.device();
     for (const RenderView& view : views) {
         require_possible(device, view.target);
@@ -215,9 +207,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
         requests.push_back({view.camera, view.target.size, view.jitter});
     }
     shape.quality = quality_now(world, std::move(requests));
-    if (shape != shape_) {
-        switch_to(configuration_, shape, extensions_);
-    }
+    if (shape != shape_) switch_to(configuration_, shape, extensions_);
     for (std::size_t i = 0; i < views.size(); ++i) {
         set_view(frame_.views[i], views[i]);
     }
@@ -227,9 +217,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
         refine_ = false;
     }
     set_refinement_clock();
-    if (frame_.epoch) {
-        runtime_.set(*frame_.epoch, epoch_);
-    }
+    if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);
 
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t index = next_frame_++;
@@ -242,9 +230,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     refine_ = refines();
     pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality()});
     match_times(backend_.timer().collect());
-    if (runtime_.verifies()) {
-        runtime_.verify(world);
-    }
+    if (runtime_.verifies()) runtime_.verify(world);
 }
 
 /// Whether another frame is to be added to the mean of a view.
@@ -294,9 +280,7 @@ FrameResults Renderer::State::results(std::size_t view) const {
 double Renderer::State::budget_ms() const {
     constexpr double on_hardware = 16.0;
     constexpr double on_software = 60.0;
-    if (configuration_.frame_budget_ms) {
-        return static_cast<double>(*configuration_.frame_budget_ms);
-    }
+    if (configuration_.frame_budget_ms) return static_cast<double>(*configuration_.frame_budget_ms);
     return gpu_.device().is_software() ? on_software : on_hardware;
 }
 
@@ -307,12 +291,8 @@ Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest
     const bool moved = world.revision() != last_revision_ || requests != last_requests_;
     last_revision_ = world.revision();
     last_requests_ = std::move(requests);
-    if (moved) {
-        last_move_ = now;
-    }
-    if (budget_ms() == 0.0 || now - last_move_ > settled) {
-        return {};
-    }
+    if (moved) last_move_ = now;
+    if (budget_ms() == 0.0 || now - last_move_ > settled) return {};
     return moved ? quality_in_motion_ : shape_.quality;
 }
 
@@ -321,9 +301,7 @@ FrameContents Renderer::State::contents_now(const World& world) {
     const Tick transforms = world.revision<Transform>();
     const bool may_differ = revisions != contents_revisions_ ||
                             (contents_depend_on_transforms_ && transforms != contents_transforms_);
-    if (!may_differ) {
-        return shape_.contents;
-    }
+    if (!may_differ) return shape_.contents;
     const WorldContents contents = contents_of(world, gpu_.scene_check());
     contents_revisions_ = revisions;
     contents_transforms_ = transforms;
@@ -342,9 +320,7 @@ void Renderer::State::learn_cost(const PendingFrame& frame) {
 
 void Renderer::State::set_refinement_clock() {
     refinement_clock_.round += std::exchange(refine_, false) ? 1 : 0;
-    if (frame_.refinement_clock) {
-        runtime_.set(*frame_.refinement_clock, refinement_clock_);
-    }
+    if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, refinement_clock_);
 }
 
 void Renderer::State::invalidate() {
@@ -356,9 +332,7 @@ void Renderer::State::invalidate() {
 void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {
     for (const gl::FrameTime& time : times) {
         // A frame that threw has GPU times but no report.
-        if (pending_.empty() || pending_.front().report.index != time.frame) {
-            continue;
-        }
+        if (pending_.empty() || pending_.front().report.index != time.frame) continue;
         PendingFrame frame = std::move(pending_.front());
         pending_.pop_front();
         frame.report.gpu_ms = time.ms;
@@ -367,9 +341,7 @@ void Renderer::State::match_times(const std::vector<gl::FrameTime>& times) {
         }
         learn_cost(frame);
         arrived_.push_back(std::move(frame.report));
-        if (arrived_.size() > kept_frames) {
-            arrived_.pop_front();
-        }
+        if (arrived_.size() > kept_frames) arrived_.pop_front();
     }
 }
 
@@ -443,17 +415,13 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
     }
     const auto& lit = std::get<LitSurfels>(vpls.records);
     report.alive = count_alive(read(lit.surfels, counts.surfels));
-    if (lit.emitters) {
-        report.alive += count_alive(read(*lit.emitters, counts.emitters));
-    }
+    if (lit.emitters) report.alive += count_alive(read(*lit.emitters, counts.emitters));
     report.flux = sum_up(read(vpls.flux, std::min(counts.all_surfels(), 1U)));
     return report;
 }
 
 std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {
-    if (!view.indirect) {
-        return 0;
-    }
+    if (!view.indirect) return 0;
     return backend_.buffer(runtime_.object(view.indirect->fill_list)).download<std::uint32_t>().at(3);
 }
 
@@ -467,9 +435,7 @@ LightReport Renderer::State::report_lights(const ViewHandles& view) const {
     report.with_shadow = shadows.cubes + shadows.maps;
     report.shadow_views = runtime_.value(frame_.lights.shadows.drawn).newly_drawn;
     report.without_shadow = shadows.lights_without;
-    if (!view.lists) {
-        return report;
-    }
+    if (!view.lists) return report;
     const LightBins& bins = runtime_.value(view.lists->bins);
     auto counts = backend_.buffer(runtime_.object(view.lists->count)).download<std::uint32_t>();
     counts.resize(bins.grid.cells());
@@ -489,9 +455,7 @@ Report Renderer::State::report(std::size_t index) {
                   .rendered_size = view.parts.size,
                   .lights = report_lights(view),
                   .memory = runtime_.memory()};
-    if (frame_.vpls && configuration_.show != Show::direct) {
-        report.vpls = report_vpls(*frame_.vpls, view);
-    }
+    if (frame_.vpls && configuration_.show != Show::direct) report.vpls = report_vpls(*frame_.vpls, view);
     return report;
 }
 

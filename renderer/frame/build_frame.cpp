@@ -17,9 +17,7 @@ LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configurati
     const Tracing tracing = add_bvh(graph, gpu, scene);
     frame.metrics = tracing.metrics;
     std::optional<Sky> sky;
-    if (contents.sky) {
-        sky = add_sky(graph, gpu.scene_check(), sky_patches(configuration.vpls.count));
-    }
+    if (contents.sky) sky = add_sky(graph, gpu.scene_check(), sky_patches(configuration.vpls.count));
     frame.lights = add_lights(graph, gpu, scene, tracing.metrics, sky, configuration.shadows);
     return {.scene = scene, .tracing = tracing, .lights = frame.lights, .sky = sky};
 }
@@ -38,9 +36,7 @@ ViewHandles import_view(FrameGraph& graph, const ViewShape& shape) {
     view.request = graph.import_value<ViewRequest>("view request");
     view.target = graph.import_value<Target>("target");
     view.picture = graph.texture("target", {shape.target, Format::rgba8}, Lifetime::imported);
-    if (shape.host_surfaces) {
-        view.host = import_host_surfaces(graph);
-    }
+    if (shape.host_surfaces) view.host = import_host_surfaces(graph);
     return view;
 }
 
@@ -54,9 +50,7 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
         requested.push_back(frame.views[i].camera);
     }
     end_view(graph);
-    if (!configuration.refinement.enabled) {
-        return std::nullopt;
-    }
+    if (!configuration.refinement.enabled) return std::nullopt;
     const auto environment = lit.sky ? std::optional(lit.sky->environment) : std::nullopt;
     frame.refinement_clock = graph.import_value<RefinementClock>("refinement clock");
     const Refined refined = add_refinement(graph, *frame.refinement_clock, lit.scene,
@@ -94,12 +88,8 @@ WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& 
                       .shown = {.emitted = has_emission && shows_direct(configuration.show),
                                 .reflected = configuration.indirect && shows_indirect(configuration.show)},
                       .emitters = contents.emitters};
-    if (has_emission) {
-        wanted.settings.placement = VplPlacement::surfels;
-    }
-    if (!configuration.indirect) {
-        wanted.settings.bounces = 0;
-    }
+    if (has_emission) wanted.settings.placement = VplPlacement::surfels;
+    if (!configuration.indirect) wanted.settings.bounces = 0;
     wanted.count = configuration.indirect ? wanted.settings.count : 0;
     wanted.count += contents.emitters ? emitting_surfels(wanted.settings.count) : 0;
     wanted.count += contents.sky ? sky_patches(wanted.settings.count) : 0;
@@ -121,9 +111,7 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, settings);
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
     SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};
-    if (lit.sky) {
-        sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
-    }
+    if (lit.sky) sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     frame.vpls =
         add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, wanted.shown);
     return {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, motion}};
@@ -134,18 +122,14 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
                                    const FrameContents& contents, const LitScene& lit,
                                    std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     const WantedVpls wanted = wanted_vpls(configuration, contents);
-    if (!wanted.any()) {
-        return std::nullopt;
-    }
+    if (!wanted.any()) return std::nullopt;
     const MappedVpls mapped = place_vpls(graph, gpu, wanted, lit, refinement, frame);
     VplLight light{
         .vpls = *frame.vpls,
         .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->counts, configuration.visibility)};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
-        if (contents.emitters || contents.sky) {
-            light.rays = lit.tracing;
-        }
+        if (contents.emitters || contents.sky) light.rays = lit.tracing;
     } else if (configuration.visibility.method == VplVisibility::rays) {
         light.rays = lit.tracing;
     }
@@ -166,9 +150,7 @@ WorldContents contents_of(const World& world, SceneCheck& check) {
         of_frame.emitters = check.accepts(world, entity, instance) && emits(*instance.mesh) &&
                             is_placed(entity) &&
                             check.accepts_at(world, entity, instance, world_matrices(entity));
-        if (of_frame.emitters) {
-            break;
-        }
+        if (of_frame.emitters) break;
     }
     const Environment environment = accepted_environment(world, check);
     of_frame.sky = environment.radiance != glm::vec3(0.0F);

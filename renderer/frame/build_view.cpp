@@ -41,9 +41,7 @@ bool shows_emitters(const SharedFrame& shared) {
 /// which shades need.
 Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
                        const ViewData& view, const FrameParts& asked) {
-    if (stage == SurfaceStage::gbuffer || asked.albedo) {
-        return add_gbuffer(graph, gpu, seen, view);
-    }
+    if (stage == SurfaceStage::gbuffer || asked.albedo) return add_gbuffer(graph, gpu, seen, view);
     if (stage == SurfaceStage::forward_after_prepass || asked.depth || asked.normal) {
         return add_depth_prepass(graph, gpu, seen, view);
     }
@@ -76,9 +74,7 @@ TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                           const ViewData& view, ViewHandles& out) {
     const GatheredVpls gathered =
         add_vpl_gather(graph, gpu, surfaces, vpls.light, vpls.order, view, out.interleave);
-    if (out.interleave == 1) {
-        return gathered.irradiance;
-    }
+    if (out.interleave == 1) return gathered.irradiance;
     out.indirect = add_vpl_reconstruct(graph, gpu, surfaces, gathered, vpls.light, view);
     return out.indirect->irradiance;
 }
@@ -89,9 +85,7 @@ Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>&
     if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
         lighting.shadow_rays = shared.lit.tracing;
     }
-    if (shared.vpls) {
-        lighting.vpls = shared.vpls->light;
-    }
+    if (shared.vpls) lighting.vpls = shared.vpls->light;
     return lighting;
 }
 
@@ -101,9 +95,7 @@ Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>&
 Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewHandles& out) {
     const ShadingPathInfo& path = info_of(shared.configuration.path);
     Lighting lighting = lighting_of(shared, out.lists);
-    if (out.interleave > 1) {
-        lighting.most_vpls = most_vpls_of_blended;
-    }
+    if (out.interleave > 1) lighting.most_vpls = most_vpls_of_blended;
     if (out.lists && path.lights == LightList::tile && path.surfaces != SurfaceStage::forward) {
         lighting.lists = add_blended_light_tiles(graph, gpu, out.lists->inputs, shared.lit.scene.layout);
     }
@@ -112,9 +104,7 @@ Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& sha
 
 void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, ViewFrame& parts) {
     for (const Extension& extension : shared.extensions) {
-        if (extension.place == place) {
-            extension.declare(graph, parts);
-        }
+        if (extension.place == place) extension.declare(graph, parts);
     }
 }
 
@@ -126,9 +116,7 @@ void set_vpls(ViewFrame& parts, const Vpls& vpls) {
     const auto& lit = std::get<LitSurfels>(vpls.records);
     parts.lit_surfels = lit.surfels;
     parts.lit_emitters = lit.emitters;
-    if (lit.sky) {
-        parts.sky_patches = lit.sky->patches;
-    }
+    if (lit.sky) parts.sky_patches = lit.sky->patches;
 }
 
 ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewData& view,
@@ -140,9 +128,7 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
                     .normal = surfaces.normal,
                     .albedo = surfaces.albedo,
                     .lights = shared.lit.lights.buffer};
-    if (shared.vpls) {
-        set_vpls(parts, shared.vpls->light.vpls);
-    }
+    if (shared.vpls) set_vpls(parts, shared.vpls->light.vpls);
     return parts;
 }
 
@@ -213,43 +199,31 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.list_count = out.lists->count;
         parts.list_entries = out.lists->entries;
     }
-    if (gathers) {
-        parts.indirect = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, out);
-    }
+    if (gathers) parts.indirect = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, out);
 
     shade(graph, gpu, shared, seen, view, out, parts);
-    if (!out.host) {
-        add_sources(graph, gpu, shared, seen, view, parts);
-    }
+    if (!out.host) add_sources(graph, gpu, shared, seen, view, parts);
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {
         const Lighting lighting = lighting_of_blended(graph, gpu, shared, out);
         parts.radiance = add_transparent(graph, gpu, seen, lighting, view, surfaces_of(parts),
                                          *parts.radiance, shows_emitters(shared));
     }
-    if (out.averaged) {
-        parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
-    }
+    if (out.averaged) parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
     extend(graph, shared, ExtensionPlace::before_tone_map, parts);
     add_tone_map(graph, gpu, *parts.radiance, out.target, out.picture, display_of(configuration));
     out.parts = parts;
 }
 
 void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewFrame& parts) {
-    if (keep == FrameParts{}) {
-        return;
-    }
+    if (keep == FrameParts{}) return;
     graph.add("keep", [&](Pass& pass) {
         pass.side_effect();
         const auto read = [&](bool wanted, const std::optional<TextureHandle>& texture) {
-            if (wanted && texture) {
-                pass.read(*texture, Usage::sampled);
-            }
+            if (wanted && texture) pass.read(*texture, Usage::sampled);
         };
         const auto read_vpls = [&](const auto& buffer) {
-            if (keep.vpls && buffer) {
-                pass.read(*buffer, Usage::storage);
-            }
+            if (keep.vpls && buffer) pass.read(*buffer, Usage::storage);
         };
         read(keep.depth, parts.depth);
         read(keep.normal, parts.normal);

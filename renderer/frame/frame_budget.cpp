@@ -27,9 +27,7 @@ bool is_better(const Quality& a, const Quality& b) {
 FrameCost cost_of(const FrameReport& frame) {
     FrameCost cost;
     for (const PassReport& pass : frame.passes) {
-        if (!pass.ran) {
-            continue;
-        }
+        if (!pass.ran) continue;
         if (pass.workload == Workload::pixels) {
             cost.pixels += pass.gpu_ms;
         } else if (pass.workload == Workload::pixels_vpls) {

@@ -75,9 +75,7 @@ void DebugLog::record(GLenum type, GLuint id, GLenum severity, std::string text)
         return;
     }
     messages_.push_back({.type = type, .severity = severity, .id = id, .text = std::move(text)});
-    if (receiver_ && messages_.back().is_error()) {
-        receiver_(messages_.back());
-    }
+    if (receiver_ && messages_.back().is_error()) receiver_(messages_.back());
 }
 
 }  // namespace candela::gl

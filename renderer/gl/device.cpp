@@ -21,8 +21,9 @@ void require_version(const GetProc& get_proc) {
     if (!get_proc) throw GlError("the host gives no function to look up GL functions");
     const auto get = reinterpret_cast<PFNGLGETSTRINGPROC>(get_proc("glGetString"));
     const auto get_integer = reinterpret_cast<PFNGLGETINTEGERVPROC>(get_proc("glGetIntegerv"));
-    if (!get || !get_integer)
+    if (!get || !get_integer) {
         throw GlError("the host's function look-up knows no glGetString or glGetIntegerv");
+    }
     const std::string version = get_string(get, GL_VERSION);
     if (version.empty()) throw GlError("no OpenGL context is current");
 
@@ -78,9 +79,7 @@ Device::Device(const GetProc& get_proc, DebugOutput debug_output, DebugReceiver 
       extensions_(get_extensions(functions_)),
       limits_(get_limits(functions_, has_extension("GL_ARB_texture_filter_anisotropic") ||
                                          has_extension("GL_EXT_texture_filter_anisotropic"))) {
-    if (debug_output == DebugOutput::on) {
-        log_.emplace(functions_, std::move(receiver));
-    }
+    if (debug_output == DebugOutput::on) log_.emplace(functions_, std::move(receiver));
 }
 
 std::vector<DebugMessage> Device::take_messages() {

@@ -73,9 +73,7 @@ void GraphBackend::barrier(Barrier bits) {
 
 void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const PassTargets* targets) {
     const Functions& gl = device_->gl();
-    if (targets != nullptr) {
-        bind_targets(*targets);
-    }
+    if (targets != nullptr) bind_targets(*targets);
     // The host may have used up the stack.
     GLint depth = 0;
     gl.GetIntegerv(GL_DEBUG_GROUP_STACK_DEPTH, &depth);
@@ -89,9 +87,7 @@ void GraphBackend::begin_pass(std::string_view name, std::uint32_t index, const 
 
 void GraphBackend::end_pass() {
     timer_.end_pass();
-    if (in_debug_group_) {
-        device_->gl().PopDebugGroup();
-    }
+    if (in_debug_group_) device_->gl().PopDebugGroup();
 }
 
 void GraphBackend::bind_texture(ObjectId texture, const TextureDesc& desc, Binding binding) {
@@ -141,9 +137,7 @@ void GraphBackend::bind_targets(const PassTargets& targets) {
         for (const ObjectId colour : targets.colour) {
             framebuffer.attach_colour(index++, colour);
         }
-        if (targets.depth != 0) {
-            framebuffer.attach_depth(targets.depth);
-        }
+        if (targets.depth != 0) framebuffer.attach_depth(targets.depth);
         framebuffer.draw_buffers(index);
         framebuffer.check();
         found = framebuffers_.emplace(std::move(key), std::move(framebuffer)).first;
@@ -166,9 +160,7 @@ GLbitfield barrier_bits(Barrier barrier) {
          {Barrier::storage, GL_SHADER_STORAGE_BARRIER_BIT}}};
     GLbitfield bits = 0;
     for (const auto& [planned, bit] : table) {
-        if ((barrier & planned) != Barrier::none) {
-            bits |= bit;
-        }
+        if ((barrier & planned) != Barrier::none) bits |= bit;
     }
     return bits;
 }

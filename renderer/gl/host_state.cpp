@@ -75,9 +75,7 @@ using Restore = std::function<void()>;
 Restore pause_transform_feedback(const Functions& gl) {
     const bool running =
         get(gl, GL_TRANSFORM_FEEDBACK_ACTIVE) == GL_TRUE && get(gl, GL_TRANSFORM_FEEDBACK_PAUSED) == GL_FALSE;
-    if (!running) {
-        return [] {};
-    }
+    if (!running) return [] {};
     gl.PauseTransformFeedback();
     return [&gl] { gl.ResumeTransformFeedback(); };
 }

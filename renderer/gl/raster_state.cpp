@@ -62,27 +62,13 @@ void RasterStates::reset(const Functions& gl) {
 }
 
 void RasterStates::set(const Functions& gl, const RasterState& state) {
-    if (state.depth_test != now_.depth_test) {
-        set_depth_test(gl, state.depth_test);
-    }
-    if (state.writes_depth != now_.writes_depth) {
-        gl.DepthMask(state.writes_depth ? GL_TRUE : GL_FALSE);
-    }
-    if (state.clamps_depth != now_.clamps_depth) {
-        set_enabled(gl, GL_DEPTH_CLAMP, state.clamps_depth);
-    }
-    if (state.slope_offset != now_.slope_offset) {
-        set_slope_offset(gl, state.slope_offset);
-    }
-    if (state.blending != now_.blending) {
-        set_blending(gl, state.blending);
-    }
-    if (state.culling != now_.culling) {
-        set_culling(gl, state.culling);
-    }
-    if (state.clockwise_front != now_.clockwise_front) {
-        gl.FrontFace(state.clockwise_front ? GL_CW : GL_CCW);
-    }
+    if (state.depth_test != now_.depth_test) set_depth_test(gl, state.depth_test);
+    if (state.writes_depth != now_.writes_depth) gl.DepthMask(state.writes_depth ? GL_TRUE : GL_FALSE);
+    if (state.clamps_depth != now_.clamps_depth) set_enabled(gl, GL_DEPTH_CLAMP, state.clamps_depth);
+    if (state.slope_offset != now_.slope_offset) set_slope_offset(gl, state.slope_offset);
+    if (state.blending != now_.blending) set_blending(gl, state.blending);
+    if (state.culling != now_.culling) set_culling(gl, state.culling);
+    if (state.clockwise_front != now_.clockwise_front) gl.FrontFace(state.clockwise_front ? GL_CW : GL_CCW);
     now_ = state;
 }
 

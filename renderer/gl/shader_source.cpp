@@ -53,8 +53,9 @@ struct Remark {
 std::optional<Remark> read_mesa(std::string_view text) {
     Remark remark;
     std::size_t column = 0;
-    if (!take_number(text, remark.file) || !take(text, ":") || !take_number(text, remark.line))
+    if (!take_number(text, remark.file) || !take(text, ":") || !take_number(text, remark.line)) {
         return std::nullopt;
+    }
     if (!take(text, "(") || !take_number(text, column) || !take(text, "): ")) return std::nullopt;
     remark.words = text;
     return remark;

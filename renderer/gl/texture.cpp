@@ -61,8 +61,9 @@ class PackedTransfers {
 std::string error(const TextureDesc& desc, const Limits& limits) {
     const std::uint32_t longest = std::max(desc.size.x, desc.size.y);
     if (std::min(desc.size.x, desc.size.y) == 0) return "a side has no texels";
-    if (longest > limits.texture_size)
+    if (longest > limits.texture_size) {
         return fmt::format("the driver allows {} texels a side", limits.texture_size);
+    }
     if (desc.layers == 0 || desc.layers > limits.texture_layers) {
         return fmt::format("{} layers, but the driver allows 1 to {}", desc.layers, limits.texture_layers);
     }
@@ -155,9 +156,7 @@ Texture::Texture(Device& device, std::string_view label, const TextureDesc& desc
     // Not glGetError: it would also return, and clear, an error of the host.
     GLint stored = GL_FALSE;
     gl().GetTextureParameteriv(name(), GL_TEXTURE_IMMUTABLE_FORMAT, &stored);
-    if (stored != GL_TRUE) {
-        throw MemoryError(fmt::format("{}: no memory", called));
-    }
+    if (stored != GL_TRUE) throw MemoryError(fmt::format("{}: no memory", called));
     set_bytes(byte_size(desc));
     set_sampling();
 }

@@ -37,9 +37,7 @@ bool place_ranges(Execution& run, BufferHandle<T> buffer, std::span<BufferRange*
             end += range->count;
         }
     }
-    if (end <= run.count(buffer) && end / 2 <= used) {
-        return false;
-    }
+    if (end <= run.count(buffer) && end / 2 <= used) return false;
     end = head;
     for (BufferRange* range : ranges) {
         *range = {.first = end, .count = range->count};
@@ -70,9 +68,7 @@ void upload_ranges(const Gpu& gpu, Execution& run, BufferHandle<T> buffer,
     };
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         BufferRange& range = *ranges[i];
-        if (range.uploaded) {
-            continue;
-        }
+        if (range.uploaded) continue;
         if (range.first != first + elements.size()) {
             flush();
             first = range.first;

@@ -69,9 +69,7 @@ const gl::Program& Gpu::program(const std::vector<std::string>& stages,
                                 const std::vector<std::string>& defined) {
     ProgramKey key(stages, defined);
     const auto found = programs_.find(key);
-    if (found != programs_.end()) {
-        return found->second;
-    }
+    if (found != programs_.end()) return found->second;
     std::vector<gl::Define> defines;
     defines.reserve(defined.size());
     for (const std::string& word : defined) {

@@ -34,9 +34,7 @@ class Log {
     /// because ...".
     void warn(std::string_view what, std::string_view kind) {
         const std::string line = fmt::format("{}: {}", readable(what), readable(kind, longest_line));
-        if (known_.contains(line)) {
-            return;
-        }
+        if (known_.contains(line)) return;
         Kind& same = kinds_[readable(kind, longest_line)];
         if (same.shown < most_of_a_kind) {
             ++same.shown;
@@ -67,9 +65,7 @@ class Log {
 
     void pass_on(std::string line) {
         const auto [known, is_new] = known_.insert(std::move(line));
-        if (receiver_ && is_new) {
-            receiver_(*known);
-        }
+        if (receiver_ && is_new) receiver_(*known);
     }
 
     Receiver receiver_;

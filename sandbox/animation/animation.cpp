@@ -103,8 +103,9 @@ void apply_transform(World& world, Entity entity, const Pose& pose) {
 void apply_light(World& world, Entity entity, const Pose& pose, float strength) {
     edit_lights_of(world, entity, [&](auto& light) {
         put(pose.colour, light.colour);
-        if (pose.intensity || pose.enabled)
+        if (pose.intensity || pose.enabled) {
             strength_of(light) = pose.enabled.value_or(true) ? strength : 0.0F;
+        }
     });
 }
 

@@ -48,8 +48,9 @@ const Json& require(const Json& object, const std::string& place, const char* me
 void check_object(const Json& json, const std::string& place, std::initializer_list<std::string_view> known) {
     if (!json.is_object()) fail(place, "is not an object");
     for (const auto& [member, value] : json.members()) {
-        if (std::find(known.begin(), known.end(), member) == known.end())
+        if (std::find(known.begin(), known.end(), member) == known.end()) {
             fail(member_of(place, readable(member)), "is unknown");
+        }
     }
 }
 
@@ -148,8 +149,9 @@ Keys<T> read_keys(const Json& track, const std::string& track_place, const char*
         const std::string key_place = element_of(place, keys.size());
         check_array(pair, key_place, 2, "a pair of a frame and a value");
         const int frame = read_whole(pair[0], element_of(key_place, 0), 0, frames);
-        if (!keys.empty() && frame <= keys.back().frame)
+        if (!keys.empty() && frame <= keys.back().frame) {
             fail(key_place, fmt::format("frame {} does not come after frame {}", frame, keys.back().frame));
+        }
         keys.push_back({frame, read_value(pair[1], element_of(key_place, 1))});
     }
     return keys;
@@ -161,8 +163,9 @@ Track read_track(const Json& json, const std::string& place, int frames) {
         {"node", "interpolation", "translation", "rotation", "scale", "intensity", "colour", "enabled"});
     Track track;
     track.node = read_text(require(json, place, "node"), member_of(place, "node"));
-    if (const Json* interpolation = json.find("interpolation"))
+    if (const Json* interpolation = json.find("interpolation")) {
         track.interpolation = read_interpolation(*interpolation, member_of(place, "interpolation"));
+    }
     track.translation = read_keys(json, place, "translation", frames, read_vector);
     track.rotation = read_keys(json, place, "rotation", frames, read_rotation);
     track.scale = read_keys(json, place, "scale", frames, read_vector);
@@ -181,8 +184,9 @@ std::vector<Track> read_tracks(const Json& json, int frames) {
         const std::string place = element_of("tracks", tracks.size());
         tracks.push_back(read_track(track, place, frames));
         const std::string& node = tracks.back().node;
-        if (!nodes.insert(node).second)
+        if (!nodes.insert(node).second) {
             fail(member_of(place, "node"), fmt::format("'{}' has a track already", readable(node)));
+        }
     }
     return tracks;
 }
@@ -199,8 +203,9 @@ Json parse(std::string_view text) {
 std::vector<std::string> shipped_names() {
     std::vector<std::string> names;
     std::error_code ignored;
-    for (const fs::directory_entry& file : fs::directory_iterator(shipped_file("animations", ""), ignored))
+    for (const fs::directory_entry& file : fs::directory_iterator(shipped_file("animations", ""), ignored)) {
         names.push_back(file.path().stem().string());
+    }
     std::sort(names.begin(), names.end());
     return names;
 }

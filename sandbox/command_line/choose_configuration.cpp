@@ -67,8 +67,9 @@ std::string list_configurations() {
     const auto longest =
         std::ranges::max(named, {}, [](const auto& one) { return one.name.size(); }).name.size();
     std::string text;
-    for (const NamedConfiguration& one : named)
+    for (const NamedConfiguration& one : named) {
         text += fmt::format("{:<{}}  {}\n", one.name, longest, one.description);
+    }
     return text;
 }
 

@@ -129,10 +129,11 @@ void run_session(const Options& options, const MakeReference& make_reference) {
     }
     std::vector<std::string> tried;
     if (const std::unique_ptr<Window> window =
-            open_window(options, options.size.value_or(window_size), tried))
+            open_window(options, options.size.value_or(window_size), tried)) {
         return run_window(
             *window, [&](const TellProgress& tell) { return open_scene(options, tell); }, configuration,
             watch, options, make_reference);
+    }
     for (const std::string& error : tried) print_message("no window: " + error);
     Scene scene = open_scene(options, {});
     for (const std::string& warning : first_ten(scene.warnings)) print_message(warning);

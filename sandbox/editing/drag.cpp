@@ -148,8 +148,9 @@ void Drag::scale_by(World& world, const glm::vec3& factors) const {
     Transform transform = start_.value_or(Transform());
     transform.scale *= glm::clamp(factors, 1.0F / most, most);
     const glm::vec3& scale = transform.scale;
-    if (std::isnormal(scale.x) && std::isnormal(scale.y) && std::isnormal(scale.z))
+    if (std::isnormal(scale.x) && std::isnormal(scale.y) && std::isnormal(scale.z)) {
         world.set(entity_, transform);
+    }
 }
 
 void Drag::scale_along_axis(World& world, const Ray& ray) const {

@@ -41,8 +41,9 @@ void add_axis(Gizmo& gizmo, const Frame& frame, DragMode mode, const glm::vec3& 
     constexpr float start = 0.2F;
     const auto line = project_all(
         frame.viewport, {frame.position + start * frame.metres * axis, frame.position + frame.metres * axis});
-    if (line && glm::distance(gizmo.centre, line->back()) > least_length * frame.size)
+    if (line && glm::distance(gizmo.centre, line->back()) > least_length * frame.size) {
         gizmo.handles.push_back({mode, *line});
+    }
 }
 
 void add_ring(Gizmo& gizmo, const Frame& frame, DragMode mode, const glm::vec3& axis, float radius) {
@@ -88,8 +89,9 @@ float distance_to_segment(glm::vec2 point, glm::vec2 a, glm::vec2 b) {
 
 float distance_to(const Handle& handle, glm::vec2 point) {
     float least = glm::distance(point, handle.line.front());
-    for (std::size_t i = 1; i < handle.line.size(); ++i)
+    for (std::size_t i = 1; i < handle.line.size(); ++i) {
         least = std::min(least, distance_to_segment(point, handle.line[i - 1], handle.line[i]));
+    }
     return least;
 }
 

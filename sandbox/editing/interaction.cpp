@@ -172,8 +172,9 @@ void Interaction::press(const InputEvent& event, const Viewport& viewport) {
 
 void Interaction::press_left(const Viewport& viewport) {
     if (const std::optional<Gizmo> shown = gizmo(viewport)) {
-        if (const auto handle = handle_at(*shown, pointer_, handle_radius * unit))
+        if (const auto handle = handle_at(*shown, pointer_, handle_radius * unit)) {
             return grab(*selected, shown->handles[*handle].mode, viewport);
+        }
     }
     if (const auto light = pick(light_markers(*world_), viewport, pointer_, pick_radius * unit)) {
         selected = light;

@@ -13,8 +13,9 @@ namespace candela::sandbox {
 std::vector<LightMarker> light_markers(const World& world) {
     std::vector<LightMarker> markers;
     visit_lights(world, [&]<class Light>(Entity entity, const Light& light) {
-        if (light_traits<Light>.has_position)
+        if (light_traits<Light>.has_position) {
             markers.push_back({entity, name_of(world, entity), light.colour, position_of(world, entity)});
+        }
     });
     std::sort(markers.begin(), markers.end(),
               [](const LightMarker& a, const LightMarker& b) { return a.entity < b.entity; });

@@ -106,8 +106,9 @@ Entity duplicate(World& world, History& history, Entity entity, const glm::vec3&
     for (const auto& [original, copy] : copies) {
         EntityState state = state_of(world, original);
         if (state.name) state.name = Name{unique_name(world, state.name->value)};
-        if (state.transform && copies.contains(state.transform->parent))
+        if (state.transform && copies.contains(state.transform->parent)) {
             state.transform->parent = copies.at(state.transform->parent);
+        }
         set_state(world, copy, state);
     }
     const Entity copy = copies.at(entity);

@@ -24,8 +24,9 @@ float limited_turn(float elevation, float turn) {
 
 /// Half the width and height of the picture: in metres if orthographic, else 1 metre in front of the eye.
 glm::vec2 half_extents(const Camera& lens, float aspect) {
-    if (lens.projection == Camera::Projection::custom)
+    if (lens.projection == Camera::Projection::custom) {
         return {std::abs(1.0F / lens.matrix[0][0]), std::abs(1.0F / lens.matrix[1][1])};
+    }
     const float height = is_orthographic(lens) ? lens.half_height : std::tan(lens.vertical_fov * 0.5F);
     return {height * aspect, height};
 }

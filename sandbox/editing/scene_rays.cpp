@@ -29,8 +29,9 @@ std::vector<Triangle> triangles_of(const Primitive& primitive, std::size_t first
     const auto corner = [&](std::size_t index) {
         return primitive.vertices[primitive.indices[index]].position;
     };
-    for (std::size_t i = first; i < end; ++i)
+    for (std::size_t i = first; i < end; ++i) {
         triangles.push_back({corner(3 * i), corner(3 * i + 1), corner(3 * i + 2)});
+    }
     return triangles;
 }
 
@@ -44,8 +45,9 @@ bool is_finite(const glm::mat4& matrix) {
 
 Box transformed(const Box& box, const glm::mat4& matrix) {
     Box around;
-    for (unsigned corner = 0; corner < 8; ++corner)
+    for (unsigned corner = 0; corner < 8; ++corner) {
         around.grow(glm::vec3(matrix * glm::vec4(box.corner(corner), 1.0F)));
+    }
     return around;
 }
 
@@ -82,8 +84,9 @@ SceneRays::Patches SceneRays::build_patches(const Mesh& mesh, const std::stop_to
 SceneRays::Meshes SceneRays::build(const std::vector<std::shared_ptr<const Mesh>>& meshes,
                                    const std::stop_token& stop) {
     Meshes built;
-    for (const auto& mesh : meshes)
+    for (const auto& mesh : meshes) {
         built.emplace(mesh, std::make_shared<const Patches>(build_patches(*mesh, stop)));
+    }
     return built;
 }
 
@@ -101,8 +104,9 @@ void SceneRays::build_missing(const World& world) {
     std::vector<std::shared_ptr<const Mesh>> missing;
     std::copy_if(used.begin(), used.end(), std::back_inserter(missing),
                  [&](const auto& mesh) { return !meshes_.contains(mesh); });
-    if (!missing.empty())
+    if (!missing.empty()) {
         building_ = std::async(std::launch::async, build, std::move(missing), stop_.get_token());
+    }
 }
 
 void SceneRays::place(const World& world) {
@@ -114,8 +118,9 @@ void SceneRays::place(const World& world) {
         const glm::mat4 world_from_local = world_matrices(entity);
         const glm::mat4 local_from_world = glm::inverse(world_from_local);
         if (!is_finite(local_from_world)) continue;
-        for (const Patch& patch : *mesh->second)
+        for (const Patch& patch : *mesh->second) {
             placed.push_back({entity, &patch, world_from_local, local_from_world});
+        }
     }
     if (placed == placed_) return;
     std::vector<Box> boxes;

@@ -23,8 +23,9 @@ std::string read_file(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) fail("cannot be read: " + std::generic_category().message(errno));
     const std::uintmax_t size = fs::file_size(path, error);
-    if (!error && size > largest_text)
+    if (!error && size > largest_text) {
         fail(fmt::format("has {} bytes; {} are read at most", size, largest_text));
+    }
     return {std::istreambuf_iterator<char>(file), {}};
 }
 

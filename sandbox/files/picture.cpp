@@ -41,9 +41,10 @@ std::vector<std::uint8_t> rgb_of_texels(glm::uvec2 size, std::span<const glm::ve
     rgb.reserve(3 * texels.size());
     for (std::uint32_t y = size.y; y-- > 0;) {
         for (const glm::vec4& texel : texels.subspan(static_cast<std::size_t>(y) * size.x, size.x)) {
-            for (const float channel : {texel.r, texel.g, texel.b})
+            for (const float channel : {texel.r, texel.g, texel.b}) {
                 rgb.push_back(
                     static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(channel, 0.0F, 1.0F))));
+            }
         }
     }
     return rgb;
@@ -53,8 +54,9 @@ Picture flipped(Picture picture) {
     const auto row = [&](int y) {
         return picture.pixels.begin() + static_cast<std::ptrdiff_t>(y) * picture.size.x;
     };
-    for (int y = 0; y < picture.size.y / 2; ++y)
+    for (int y = 0; y < picture.size.y / 2; ++y) {
         std::swap_ranges(row(y), row(y + 1), row(picture.size.y - 1 - y));
+    }
     return picture;
 }
 

@@ -82,8 +82,9 @@ Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, 
 
 void write_documents(const Options& options, const RunReport& report, const Renderer& renderer) {
     if (options.report) write_text(*options.report, to_json(report));
-    if (options.describe_graph)
+    if (options.describe_graph) {
         write_text(*options.describe_graph, renderer.describe(graph_format(*options.describe_graph)));
+    }
 }
 
 }  // namespace candela::sandbox

@@ -87,9 +87,10 @@ std::string light_table(const LightReport& lights) {
 std::string vpl_table(const VplReport& vpls) {
     std::string table = fmt::format("VPLs             {} alive of {} requested", vpls.alive, vpls.requested);
     table += vpls.paths > 0 ? fmt::format(", on {} paths\n", vpls.paths) : "\n";
-    if (vpls.interleave > 1)
+    if (vpls.interleave > 1) {
         table += fmt::format("  of which       a pixel asks one in {}; {} pixels asked more\n",
                              vpls.interleave * vpls.interleave, vpls.filled_pixels);
+    }
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r,
                              line.value.g, line.value.b);
@@ -135,8 +136,9 @@ double relative_residual(const EnergyAccount& flux) {
     double largest = 0.0;
     for (int channel = 0; channel < 3; ++channel) {
         if (!std::isfinite(rest[channel])) return std::numeric_limits<double>::infinity();
-        if (flux.emitted[channel] > 0.0)
+        if (flux.emitted[channel] > 0.0) {
             largest = std::max(largest, glm::abs(rest[channel]) / flux.emitted[channel]);
+        }
     }
     return largest;
 }
@@ -158,10 +160,11 @@ void check_energy(const std::string& scene, const Report& state) {
     const bool is_traced = state.vpls && state.vpls->paths > 0;
     const double most = is_traced ? 0.01 : std::numeric_limits<double>::max();
     const double residual = state.vpls ? relative_residual(state.vpls->flux) : 0.0;
-    if (residual > most)
+    if (residual > most) {
         throw PictureError(
             fmt::format("{}: {:.3g} % of the emitted flux is unaccounted for: the picture is wrong", scene,
                         100.0 * residual));
+    }
 }
 
 std::vector<EnergyLine> energy_lines(const EnergyAccount& flux) {

@@ -63,9 +63,10 @@ void list_resources_of(GraphSelection& selection, const GraphDescription& graph)
     if (pass == graph.passes.end()) return;
     for (const bool write : {false, true}) {
         for (const DescribedAccess& access : pass->accesses) {
-            if (access.write == write && !access.history)
+            if (access.write == write && !access.history) {
                 list_resource(graph.resources[access.resource], write ? "writes" : "reads",
                               selection.resource);
+            }
         }
     }
 }
@@ -111,8 +112,9 @@ bool draw_pass(const DescribedPass& pass, const PassCost* cost, double frame_ms,
     const ImU32 fill = cost != nullptr ? cost_colour(*cost, frame_ms) : IM_COL32(70, 70, 70, 255);
     const float rounding = pass.gpu ? 0.0F : 0.5F * height;  // passes on the CPU have round ends
     list->AddRectFilled(corner, {corner.x + width, corner.y + height}, fill, rounding);
-    if (hovered || chosen == pass.name)
+    if (hovered || chosen == pass.name) {
         list->AddRect(corner, {corner.x + width, corner.y + height}, IM_COL32_WHITE, rounding);
+    }
     const float inset = 0.5F * ImGui::GetFontSize();
     list->AddText({corner.x + inset, corner.y + 1.0F}, IM_COL32_WHITE, pass.name.c_str());
     if (cost == nullptr || cost->history.empty()) return hovered;
@@ -152,8 +154,9 @@ void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, 
         anchors[i] = ImVec2(corner.x, corner.y + 0.5F * ImGui::GetTextLineHeight());
         const bool chosen = selection.pass == pass.name;
         if (draw_pass(pass, cost_of(costs, pass.name), costs.frame().last_ms(), selection.pass) ||
-            (chosen && focus == graph.passes.size()))
+            (chosen && focus == graph.passes.size())) {
             focus = i;
+        }
     }
     ImGui::Unindent(space);
     draw_arcs(graph, anchors, space, focus);

@@ -34,8 +34,9 @@ std::optional<fs::path> OpenPanel::draw() {
         const bool entered = ImGui::InputText("##file", &typed_, ImGuiInputTextFlags_EnterReturnsTrue);
         note_control("file name", "of a .gltf or .glb file; or drop a file on the window");
         ImGui::SameLine();
-        if ((button("open file", "opens the file of this name") || entered) && !typed_.empty())
+        if ((button("open file", "opens the file of this name") || entered) && !typed_.empty()) {
             chosen = typed_;
+        }
         for (const SceneList& list : lists_) {
             if (list.files.empty()) continue;
             ImGui::Separator();

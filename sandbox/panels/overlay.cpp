@@ -60,8 +60,9 @@ void draw_lights(const std::vector<LightLabel>& lights) {
         } else {
             list.AddCircle(centre, radius, light.hidden ? IM_COL32(0, 0, 0, 80) : dark, 0, 2.0F * unit);
         }
-        if (!light.name.empty())
+        if (!light.name.empty()) {
             draw_label(list, {centre.x + radius, centre.y + radius + 4.0F * unit}, light.name);
+        }
     }
 }
 
@@ -86,8 +87,9 @@ void draw_gizmo(const Gizmo& gizmo, std::optional<std::size_t> active) {
             for (const glm::vec2& point : handle.line) list.PathLineTo({point.x, point.y});
             list.PathStroke(paint, 0, thickness * unit);
         }
-        if (!is_turn(handle.mode.kind))
+        if (!is_turn(handle.mode.kind)) {
             list.AddCircleFilled({handle.line.back().x, handle.line.back().y}, 4.0F * unit, colour);
+        }
     }
 }
 
@@ -102,9 +104,10 @@ void draw_divider(Comparison& comparison, const Rectangle& scene) {
     if (ImGui::Begin("comparison", nullptr,
                      (floating & ~ImGuiWindowFlags_AlwaysAutoResize) | ImGuiWindowFlags_NoBackground)) {
         ImGui::InvisibleButton("dividing line", {2.0F * grip, scene.size.y});
-        if (ImGui::IsItemActive())
+        if (ImGui::IsItemActive()) {
             comparison.divider =
                 std::clamp((ImGui::GetIO().MousePos.x - scene.corner.x) / scene.size.x, 0.0F, 1.0F);
+        }
         if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
         note_control("dividing line", "A left, B right");
     }

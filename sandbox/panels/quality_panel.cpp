@@ -45,8 +45,9 @@ void control(const char* label, const char* tip, const Range& range, Number& val
 }
 void control(const char* label, const char* tip, const Range& range, std::optional<float>& value) {
     bool automatic = !value;
-    if (checkbox(fmt::format("{}: auto", label).c_str(), automatic, tip))
+    if (checkbox(fmt::format("{}: auto", label).c_str(), automatic, tip)) {
         value = automatic ? std::nullopt : std::optional(0.0F);
+    }
     if (value) control(label, tip, range, *value);
 }
 template <class Enum>

@@ -48,8 +48,9 @@ void draw_fitted(const InspectionResult& result, const Rectangle& space) {
 void draw_range(Inspection& inspection, const InspectionResult& result) {
     bool automatic = !inspection.range;
     const std::string unit = result.unit.empty() ? "" : fmt::format(" {}", result.unit);
-    if (checkbox("range from the least to the greatest value", automatic, "of what is shown"))
+    if (checkbox("range from the least to the greatest value", automatic, "of what is shown")) {
         inspection.range = automatic ? std::nullopt : std::optional(ValueRange{result.low, result.high});
+    }
     if (!inspection.range) return text(fmt::format("{:.4g} to {:.4g}{}", result.low, result.high, unit));
     constexpr float any = 1e30F;
     const float speed = std::max(0.005F * (inspection.range->high - inspection.range->low), 1e-6F);
@@ -77,11 +78,13 @@ void draw_ramp(const InspectionResult& result) {
 void draw_texture_controls(Inspection& inspection, const InspectionResult& result) {
     int mip = static_cast<int>(inspection.mip);
     int layer = static_cast<int>(inspection.layer);
-    if (result.mips > 1 && slide("mip level", mip, 0, static_cast<int>(result.mips) - 1, "0: the largest"))
+    if (result.mips > 1 && slide("mip level", mip, 0, static_cast<int>(result.mips) - 1, "0: the largest")) {
         inspection.mip = static_cast<std::uint32_t>(mip);
+    }
     if (result.layers > 1 && slide("layer", layer, 0, static_cast<int>(result.layers) - 1,
-                                   "of an array; the face of a cube; the slice of clusters"))
+                                   "of an array; the face of a cube; the slice of clusters")) {
         inspection.layer = static_cast<std::uint32_t>(layer);
+    }
     choose("colours", inspection.mapping,
            std::array{Mapping::automatic, Mapping::colour, Mapping::depth, Mapping::heat},
            "how values become colours; depth is in metres where its meaning is known");

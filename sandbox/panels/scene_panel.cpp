@@ -25,18 +25,22 @@ namespace {
 constexpr float any = std::numeric_limits<float>::max();
 
 void draw_files(std::vector<Action>& wanted, const AppState& state) {
-    if (button("open", "Ctrl+O: another scene; or drop a file on the window"))
+    if (button("open", "Ctrl+O: another scene; or drop a file on the window")) {
         wanted.push_back(Action::open_scene);
+    }
     ImGui::SameLine();
-    if (button("save", "Ctrl+S: the scene as glTF, in the current folder"))
+    if (button("save", "Ctrl+S: the scene as glTF, in the current folder")) {
         wanted.push_back(Action::save_scene);
+    }
     ImGui::SameLine();
-    if (button("screenshot", "F12: the picture as PNG, in the current folder"))
+    if (button("screenshot", "F12: the picture as PNG, in the current folder")) {
         wanted.push_back(Action::screenshot);
+    }
     ImGui::SameLine();
     if (button(state.sequence ? "end sequence###sequence" : "sequence###sequence",
-               "Shift+F12: saves each new picture as a numbered PNG, in the current folder"))
+               "Shift+F12: saves each new picture as a numbered PNG, in the current folder")) {
         wanted.push_back(Action::sequence);
+    }
 }
 
 void draw_history(Interaction& interaction) {
@@ -49,8 +53,9 @@ void draw_history(Interaction& interaction) {
     };
     offer("undo", interaction.history().undo_name(), Action::undo);
     offer("redo", interaction.history().redo_name(), Action::redo);
-    if (button("frame", "F: look at the selection, or at the whole scene"))
+    if (button("frame", "F: look at the selection, or at the whole scene")) {
         interaction.carry_out(Action::frame_selected);
+    }
     ImGui::SameLine();
     if (button("reset view", "Home: back to the scene's camera")) interaction.carry_out(Action::reset_view);
 }
@@ -62,8 +67,9 @@ void draw_cameras(const World& world, Interaction& interaction) {
     for (const Entity camera : cameras(world)) {
         if (camera == interaction.viewer()) continue;
         ImGui::PushID(static_cast<int>(camera.index));
-        if (ImGui::Selectable(name_of(world, camera).c_str(), camera == interaction.camera()))
+        if (ImGui::Selectable(name_of(world, camera).c_str(), camera == interaction.camera())) {
             interaction.look_from_camera(camera);
+        }
         ImGui::PopID();
     }
     ImGui::EndCombo();
@@ -115,8 +121,9 @@ void draw_tools(Interaction& interaction) {
 /// Angles around x, y and z, in degrees.
 void draw_rotation(glm::quat& rotation) {
     glm::vec3 degrees = glm::degrees(glm::eulerAngles(rotation));
-    if (drag("rotation, °", degrees, 0.5F, -360.0F, 360.0F, "degrees around x, then y, then z"))
+    if (drag("rotation, °", degrees, 0.5F, -360.0F, 360.0F, "degrees around x, then y, then z")) {
         rotation = glm::normalize(glm::quat(glm::radians(degrees)));
+    }
 }
 
 void draw_transform(World& world, Entity entity) {
@@ -124,16 +131,18 @@ void draw_transform(World& world, Entity entity) {
     world.edit<Transform>(entity, [&](Transform& transform) {
         drag("position, m", transform.translation, 0.01F, -any, any, "metres, relative to the parent");
         draw_rotation(transform.rotation);
-        if (world.has<MeshInstance>(entity))
+        if (world.has<MeshInstance>(entity)) {
             drag("scale", transform.scale, 0.01F, -any, any, "along the object's own axes");
+        }
     });
 }
 
 /// Metres; a light without a limit has an infinite range.
 void draw_range(float& range) {
     bool limited = std::isfinite(range);
-    if (checkbox("limited range", limited, "whether the light falls to zero at a distance"))
+    if (checkbox("limited range", limited, "whether the light falls to zero at a distance")) {
         range = limited ? 10.0F : std::numeric_limits<float>::infinity();
+    }
     if (limited) drag("range, m", range, 0.02F, 1e-3F, any, "metres; the light is zero from there on");
 }
 
@@ -193,8 +202,9 @@ void draw_selected(Document& document, std::vector<Action>& wanted) {
     draw_tools(interaction);
     ImGui::SameLine();
     if (button(document.recorder ? "end recording###record" : "record###record",
-               "Ctrl+R: records how it moves, as a script for --animate, in the current folder"))
+               "Ctrl+R: records how it moves, as a script for --animate, in the current folder")) {
         wanted.push_back(Action::record_drag);
+    }
     draw_fields(document, *interaction.selected);
 }
 
@@ -203,8 +213,9 @@ void draw_sky(Document& document) {
     const Entity entity = environment_entity(world);
     if (entity == Entity{}) {
         if (button("add a sky",
-                   "the same radiance from all directions; or drop a .hdr or .exr file on the window"))
+                   "the same radiance from all directions; or drop a .hdr or .exr file on the window")) {
             set_environment(world, {.radiance = default_sky, .picture = nullptr});
+        }
         return;
     }
     EntityStates before = states_of(world, {entity});
@@ -213,8 +224,9 @@ void draw_sky(Document& document) {
              "radiance of the sky, cd/m²; multiplies its picture, if it has one");
         float degrees = glm::degrees(environment.rotation);
         if (environment.picture &&
-            slide("rotation of the sky, °", degrees, -180.0F, 180.0F, "degrees around the vertical"))
+            slide("rotation of the sky, °", degrees, -180.0F, 180.0F, "degrees around the vertical")) {
             environment.rotation = glm::radians(degrees);
+        }
     });
     document.interaction.history().record(world, "change the sky", std::move(before));
 }

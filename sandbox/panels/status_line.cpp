@@ -34,8 +34,9 @@ void draw_spinner(double seconds) {
 std::string to_words(const Status& status) {
     std::string words = fmt::format("{:.1f} ms (mean {:.1f})", status.frame_ms, status.mean_ms);
     if (status.vpls > 0) words += fmt::format(" · {} VPLs", status.vpls);
-    if (status.quality != Quality{} && !status.settled && status.quality.scale < 1.0F)
+    if (status.quality != Quality{} && !status.settled && status.quality.scale < 1.0F) {
         words += fmt::format(" · {:.0f} % of the sides while moving", 100.0F * status.quality.scale);
+    }
     if (status.to_refine > 0) words += fmt::format(" · refined {}/{}", status.refined, status.to_refine);
     if (status.settled) words += " · done";
     return words;

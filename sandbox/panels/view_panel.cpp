@@ -30,19 +30,23 @@ void draw_comparison(AppState& state) {
     Comparison& comparison = state.comparison;
     draw_mode(comparison, state.configuration);
     if (comparison.mode == CompareMode::off) return;
-    if (comparison.mode == CompareMode::divider)
+    if (comparison.mode == CompareMode::divider) {
         slide("position", comparison.divider, 0.0F, 1.0F, "of the line, a fraction of the picture's width");
-    if (comparison.mode == CompareMode::difference)
+    }
+    if (comparison.mode == CompareMode::difference) {
         slide("factor", comparison.factor, 1.0F, 100.0F, "on differences of colours between 0 and 1");
-    if (button("swap A and B", "the panel's settings are those of A"))
+    }
+    if (button("swap A and B", "the panel's settings are those of A")) {
         std::swap(state.configuration, comparison.other);
+    }
     ImGui::SameLine();
     if (button("B = A", "makes B the same as A")) comparison.other = state.configuration;
     ImGui::PushID("B");
     if (ImGui::BeginCombo("B", std::string(name_of(comparison.other)).c_str())) {
         for (const NamedConfiguration& named : named_configurations()) {
-            if (ImGui::Selectable(std::string(named.name).c_str()))
+            if (ImGui::Selectable(std::string(named.name).c_str())) {
                 comparison.other = choose_named(state.configuration, named);
+            }
             note_control(std::string("B ") + std::string(named.name), nullptr);
         }
         ImGui::EndCombo();
@@ -61,15 +65,17 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
     if (!state.reference) return;
     Comparison& comparison = state.comparison;
     if (checkbox("compare with it", comparison.with_reference, "B is the reference") &&
-        comparison.with_reference && comparison.mode == CompareMode::off)
+        comparison.with_reference && comparison.mode == CompareMode::off) {
         comparison.mode = CompareMode::divider;
+    }
     if (!reference.fault().empty()) ImGui::TextWrapped("%s", reference.fault().c_str());
     const ReferencePicture* picture = reference.picture();
     if (picture == nullptr) return text("tracing the first picture");
     text(fmt::format("{} paths a pixel, {:.0f} s", picture->samples, picture->seconds));
     constexpr double measurable = 0.05;  // noise above it may be far more than it is estimated to be
-    if (!state.error || !picture->noise || *picture->noise > measurable)
+    if (!state.error || !picture->noise || *picture->noise > measurable) {
         return text("too noisy to measure with, so far");
+    }
     text(fmt::format("relMSE {:.4f} in {:.1f} ms a frame", *state.error, frame_ms));
     text(fmt::format("of that, noise of the reference: {:.4f}", *picture->noise));
 }

@@ -55,8 +55,9 @@ Emission::Draw Emission::draw(float which, glm::vec2 u) const {
 
 float Emission::density(std::uint32_t light, const Arrival& arrival, float cosine) const {
     const Source& source = sources_[light];
-    if (source.light.kind == Light::Kind::directional)
+    if (source.light.kind == Light::Kind::directional) {
         return source.probability * cosine / (pi * bounds_.radius * bounds_.radius);
+    }
     return source.probability * cosine / (source.light.solid_angle * arrival.distance * arrival.distance);
 }
 

@@ -42,8 +42,9 @@ glm::vec3 by_drawing_a_point(const SceneContent& scene, const Surface& receiver,
     const Triangle& triangle = scene.geometry.triangle(drawn.triangle);
     const glm::vec3 direction = position_at(triangle, drawn.weights) - receiver.position;
     const Surface emitter = struck_surface(scene.geometry, {0.0F, drawn.triangle, drawn.weights}, direction);
-    if (emitter.emission == glm::vec3(0.0F) || !are_connected(scene.geometry, receiver, emitter))
+    if (emitter.emission == glm::vec3(0.0F) || !are_connected(scene.geometry, receiver, emitter)) {
         return glm::vec3(0.0F);
+    }
     return weighted(scene, receiver, emitter, drawn.triangle);
 }
 

@@ -176,8 +176,9 @@ void Geometry::attach(RTCScene scene, std::size_t index) {
     auto* indices = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3), group.count));
     for (std::uint32_t i = 0; i < group.count; ++i) {
-        for (const Triangle::Corner& corner : triangles_[group.first + i].corners)
+        for (const Triangle::Corner& corner : triangles_[group.first + i].corners) {
             *positions++ = corner.position;
+        }
         indices[i] = glm::uvec3(3 * i, 3 * i + 1, 3 * i + 2);
     }
     rtcSetGeometryUserData(geometry, &group);

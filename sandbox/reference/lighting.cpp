@@ -113,8 +113,9 @@ glm::vec3 light_by_looking_from_light(const SceneContent& scene, const Surface& 
     const Surface struck = struck_surface(scene.geometry, *hit, drawn.ray.direction);
     Reflected light{drawn.light, arrival(scene.lights[drawn.light], struck.position), {}};
     light.radiance = reflected(light.arrival, struck, defect);
-    if (power_of(light.radiance) <= 0.0F || !are_connected(scene.geometry, receiver, struck))
+    if (power_of(light.radiance) <= 0.0F || !are_connected(scene.geometry, receiver, struck)) {
         return glm::vec3(0.0F);
+    }
     // The density of this way cancels: radiance · around / from_light · from_light / (around + from_light).
     return light.radiance * share_of_looking_around(scene, receiver, struck, light);
 }

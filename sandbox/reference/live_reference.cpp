@@ -69,8 +69,9 @@ struct Mean {
         ++passes;
         if (passes == 1) picture = pass;
         const float share = 1.0F / static_cast<float>(passes);
-        for (std::size_t i = 0; i < pass.pixels.size(); ++i)
+        for (std::size_t i = 0; i < pass.pixels.size(); ++i) {
             picture.pixels[i] += share * (pass.pixels[i] - picture.pixels[i]);
+        }
     }
 };
 
@@ -89,8 +90,9 @@ class Passes {
         ReferencePicture result{
             .radiance = halves_[0].picture, .hit = hit_, .samples = samples_of_pass * count(), .noise = {}};
         const float share = static_cast<float>(halves_[1].passes) / static_cast<float>(count());
-        for (std::size_t i = 0; i < halves_[1].picture.pixels.size(); ++i)
+        for (std::size_t i = 0; i < halves_[1].picture.pixels.size(); ++i) {
             result.radiance.pixels[i] += share * (halves_[1].picture.pixels[i] - result.radiance.pixels[i]);
+        }
         result.noise = noise(result.radiance);
         return result;
     }

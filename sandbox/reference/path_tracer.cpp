@@ -26,10 +26,12 @@ struct Trace {
 };
 
 void check(const Settings& settings) {
-    if (settings.samples == 0 || settings.samples % 2 != 0 || settings.first_sample % 2 != 0)
+    if (settings.samples == 0 || settings.samples % 2 != 0 || settings.first_sample % 2 != 0) {
         throw std::invalid_argument("the reference's samples must be an even number");
-    if (settings.size.x == 0 || settings.size.y == 0)
+    }
+    if (settings.size.x == 0 || settings.size.y == 0) {
         throw std::invalid_argument("the reference's picture has no pixels");
+    }
 }
 
 const PlacedCamera& find_camera(const SceneContent& scene, Entity wanted) {
@@ -116,8 +118,9 @@ void trace_rows(Trace& trace) {
     std::atomic<std::uint32_t> next_row{0};
     const auto work = [&] {
         for (std::uint32_t y = next_row++; y < trace.settings.size.y; y = next_row++) {
-            for (std::uint32_t x = 0; x < trace.settings.size.x && !trace.stop.stop_requested(); ++x)
+            for (std::uint32_t x = 0; x < trace.settings.size.x && !trace.stop.stop_requested(); ++x) {
                 trace_pixel(trace, {x, y});
+            }
         }
     };
     const unsigned wanted = trace.settings.threads;

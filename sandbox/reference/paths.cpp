@@ -48,8 +48,9 @@ glm::vec3 indirect_light(const SceneContent& scene, const Surface& seen, Sampler
         if (counts) radiance += carried * light_by_looking_from_light(scene, at, sampler, settings.defect);
         const std::optional<Surface> struck = next_surface(scene.geometry, at, sampler);
         if (!struck) break;
-        if (counts)
+        if (counts) {
             radiance += carried * light_by_looking_around(scene, at, *struck, sampler, settings.defect);
+        }
         at = *struck;
         carried *= at.albedo;
         if (counts && scene.emitters.any()) radiance += carried * light_of_emitters(scene, at, sampler);

@@ -9,8 +9,9 @@ namespace {
 
 std::vector<PlacedCamera> cameras_of(const World& world) {
     std::vector<PlacedCamera> cameras;
-    for (auto [entity, camera] : world.view<Camera>())
+    for (auto [entity, camera] : world.view<Camera>()) {
         cameras.push_back({entity, camera, world_matrix(world, entity)});
+    }
     return cameras;
 }
 

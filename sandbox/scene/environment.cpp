@@ -19,8 +19,9 @@ bool has_light(const World& world) {
 }
 
 Environment to_environment(const SkyChoice& choice) {
-    if (const auto* radiance = std::get_if<glm::vec3>(&choice))
+    if (const auto* radiance = std::get_if<glm::vec3>(&choice)) {
         return {.radiance = *radiance, .picture = nullptr};
+    }
     return {.radiance = glm::vec3(1.0F),
             .picture = load_sky_picture(std::get<std::filesystem::path>(choice))};
 }
@@ -33,8 +34,9 @@ Entity environment_entity(const World& world) {
 }
 
 void set_environment(World& world, const Environment& environment) {
-    for (Entity old = environment_entity(world); old != Entity{}; old = environment_entity(world))
+    for (Entity old = environment_entity(world); old != Entity{}; old = environment_entity(world)) {
         world.remove<Environment>(old);
+    }
     const Entity entity = world.create();
     world.set(entity, Name{"environment"});
     world.set(entity, environment);

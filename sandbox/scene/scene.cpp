@@ -31,8 +31,9 @@ std::optional<std::size_t> parse_index(const std::string& text) {
 std::string list_cameras(const World& world, const std::vector<Entity>& all) {
     std::vector<std::string> names;
     names.reserve(all.size());
-    for (const Entity camera : all)
+    for (const Entity camera : all) {
         names.push_back(fmt::format("{} '{}'", names.size(), name_of(world, camera)));
+    }
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -108,8 +109,9 @@ Box box_of(const World& world, const std::vector<Entity>& entities) {
         if (instance == nullptr) continue;
         const glm::mat4 to_world = world_matrices(entity);
         for (const Primitive& primitive : instance->mesh->primitives) {
-            for (const Vertex& vertex : primitive.vertices)
+            for (const Vertex& vertex : primitive.vertices) {
                 box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));
+            }
         }
     }
     return box;

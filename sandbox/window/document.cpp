@@ -18,14 +18,16 @@ bool Document::animate() {
     playback->advance(scene.world);
     const bool jumped = playback->jumped();
     const bool moved = world_matrix(scene.world, camera) != before;
-    if (moved || (jumped && scene.animation->moves(scene.world, camera)))
+    if (moved || (jumped && scene.animation->moves(scene.world, camera))) {
         interaction.look_from_camera(camera);
+    }
     return jumped;
 }
 
 std::shared_ptr<const World> Document::copy_of_world() {
-    if (!copy_ || copy_->revision() != scene.world.revision())
+    if (!copy_ || copy_->revision() != scene.world.revision()) {
         copy_ = std::make_shared<const World>(scene.world);
+    }
     return copy_;
 }
 

@@ -146,8 +146,9 @@ void FrameRenderer::draw_second(RenderedFrame& frame, Slot& slot) {
         return;
     }
     frame.other = finished(slot.other);
-    if (request_->difference && frame.other->size == request_->size)
+    if (request_->difference && frame.other->size == request_->size) {
         frame.difference = draw_difference_of(slot);
+    }
 }
 
 /// Gives the canvas this size, in pixels.
@@ -211,8 +212,9 @@ std::shared_ptr<const GraphDescription> FrameRenderer::graph() {
     std::vector<std::string> names;
     names.reserve(passes.size());
     for (const PassRecord& pass : passes) names.emplace_back(pass.name);
-    if (!graph_ || names != graph_passes_)
+    if (!graph_ || names != graph_passes_) {
         graph_ = std::make_shared<const GraphDescription>(renderer_->description());
+    }
     graph_passes_ = std::move(names);
     return graph_;
 }

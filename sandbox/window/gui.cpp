@@ -25,8 +25,9 @@ void load_font(float pixels) {
     fonts->Clear();
     std::error_code ignored;
     if (std::filesystem::exists(CANDELA_FONT, ignored) &&
-        fonts->AddFontFromFileTTF(CANDELA_FONT, pixels, nullptr, letters.data()) != nullptr)
+        fonts->AddFontFromFileTTF(CANDELA_FONT, pixels, nullptr, letters.data()) != nullptr) {
         return;
+    }
     ImFontConfig config;
     config.SizePixels = pixels;
     fonts->AddFontDefault(&config);

@@ -27,8 +27,9 @@ void change_path(AppState& state, int step) {
 
 void change_comparison(AppState& state) {
     Comparison& comparison = state.comparison;
-    if (comparison.mode == CompareMode::off && comparison.other == Configuration{})
+    if (comparison.mode == CompareMode::off && comparison.other == Configuration{}) {
         comparison.other = state.configuration;
+    }
     comparison.mode = static_cast<CompareMode>((static_cast<int>(comparison.mode) + 1) % 3);
 }
 
@@ -36,8 +37,9 @@ void change_comparison(AppState& state) {
 void change_resource(const GraphDescription& graph, GraphSelection& selection, int step) {
     std::vector<std::optional<std::string>> all{std::nullopt};
     for (const DescribedResource& resource : graph.resources) {
-        if (resource.kind != ResourceKind::value && !is_of_inspection(resource.name))
+        if (resource.kind != ResourceKind::value && !is_of_inspection(resource.name)) {
             all.emplace_back(resource.name);
+        }
     }
     const auto at = std::ranges::find(all, selection.resource);
     const auto index = at == all.end() ? 0 : at - all.begin();

@@ -87,9 +87,10 @@ void WindowSession::announce_scene() {
 void WindowSession::take_dropped_file(const std::filesystem::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".gltf" || extension == ".glb") return open(file);
-    if (!state_.document || (extension != ".hdr" && extension != ".exr"))
+    if (!state_.document || (extension != ".hdr" && extension != ".exr")) {
         return report_errors(
             {fmt::format("{}: is neither a scene (.gltf, .glb) nor a sky (.hdr, .exr)", file.string())});
+    }
     attempt([&] {
         set_sky(state_.document->scene, file);
         redraw_.changed();

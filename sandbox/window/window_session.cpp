@@ -97,8 +97,9 @@ void WindowSession::move() {
     const Tick before = document.scene.world.revision();
     document.interaction.step(seconds, state_.layout.scene.size, state_.layout.scene.corner);
     if (document.scene.world.revision() != before && !input_) input_ = now;
-    if (document.recorder)
+    if (document.recorder) {
         document.recorder->record(document.scene.world, Seconds(now.time_since_epoch()).count());
+    }
 }
 
 void WindowSession::follow_reference() {

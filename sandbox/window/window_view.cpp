@@ -17,8 +17,9 @@ namespace {
 void draw_pictures(const RenderedFrame& shown, const Comparison& comparison, const Rectangle& scene) {
     const bool is_difference = shown.difference && comparison.mode == CompareMode::difference;
     draw_picture(is_difference ? shown.difference->texture : shown.picture.texture, scene);
-    if (shown.other && comparison.mode == CompareMode::divider)
+    if (shown.other && comparison.mode == CompareMode::divider) {
         draw_picture(shown.other->texture, scene, comparison.divider, 1.0F);
+    }
 }
 
 void draw_overlay(const SessionState& state) {
@@ -65,9 +66,10 @@ void draw_scene(SessionState& state, glm::vec2 window) {
                                                   IM_COL32(24, 24, 26, 255));
     if (!state.shown || !state.document) return;
     const RenderedFrame& shown = *state.shown;
-    if (state.selection.resource && shown.inspection)
+    if (state.selection.resource && shown.inspection) {
         return draw_resource(*state.selection.resource, state.selection.inspection, *shown.inspection,
                              shown.elements, state.layout.scene);
+    }
     draw_pictures(shown, state.app.comparison, state.layout.scene);
     draw_overlay(state);
     draw_divider(state.app.comparison, state.layout.scene);

@@ -44,14 +44,10 @@ TEST_CASE("intersect: a hit solves the ray equation") {
         const glm::dvec3 uvt = glm::inverse(system) * glm::dvec3(ray.origin - triangle.a);
         // How far inside the hit is. At the border, and for slivers, single precision may decide differently.
         const double inside = std::min({uvt.x, uvt.y, 1.0 - uvt.x - uvt.y, uvt.z});
-        if (std::abs(inside) < 1e-3 || std::abs(glm::determinant(system)) < 1e-2) {
-            continue;
-        }
+        if (std::abs(inside) < 1e-3 || std::abs(glm::determinant(system)) < 1e-2) continue;
         const auto hit = intersect(triangle, 7, ray);
         REQUIRE(hit.has_value() == (inside > 0.0));
-        if (!hit) {
-            continue;
-        }
+        if (!hit) continue;
         ++hits;
         CHECK(hit->triangle == 7);
         // A determinant of 1e-2 from terms of order 1 loses two of the seven digits; 1e-4 allows for one
@@ -77,9 +73,7 @@ int exact_side(const Triangle& triangle, const Ray& ray) {
     const double u = sign * glm::dot(s, p);
     const double v = sign * glm::dot(glm::dvec3(ray.direction), q);
     const double t = sign * glm::dot(ac, q);
-    if (determinant == 0.0 || u < 0.0 || v < 0.0 || t <= 0.0 || u + v > std::abs(determinant)) {
-        return -1;
-    }
+    if (determinant == 0.0 || u < 0.0 || v < 0.0 || t <= 0.0 || u + v > std::abs(determinant)) return -1;
     return u + v < std::abs(determinant) ? 1 : 0;
 }
 
@@ -96,9 +90,7 @@ TEST_CASE("intersect: hits are exact for small integer coordinates, including ra
         const glm::vec3 target = i % 3 == 0 ? triangle.a : corner();
         const Ray ray{origin, target - origin};
         const int side = exact_side(triangle, ray);
-        if (side == 0) {
-            continue;
-        }
+        if (side == 0) continue;
         REQUIRE(intersect(triangle, 0, ray).has_value() == (side > 0));
         hits += side > 0 ? 1 : 0;
     }

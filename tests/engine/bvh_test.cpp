@@ -65,17 +65,13 @@ std::optional<Hit> brute_force(std::span<const Triangle> triangles, const Ray& r
     std::optional<Hit> closest;
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         const auto hit = intersect(triangles[i], i, ray);
-        if (hit && (!closest || hit->t < closest->t)) {
-            closest = hit;
-        }
+        if (hit && (!closest || hit->t < closest->t)) closest = hit;
     }
     return closest;
 }
 
 bool same(const std::optional<Hit>& a, const std::optional<Hit>& b) {
-    if (!a || !b) {
-        return a.has_value() == b.has_value();
-    }
+    if (!a || !b) return a.has_value() == b.has_value();
     return a->triangle == b->triangle && a->t == b->t && a->u == b->u && a->v == b->v;
 }
 
@@ -131,9 +127,7 @@ Shape check_layout(const Bvh& bvh, std::size_t n) {
         for (std::uint32_t k = 0; k < node.count; ++k) {
             ++order_uses.at(node.first + k);
         }
-        if (node.count > 0) {
-            continue;
-        }
+        if (node.count > 0) continue;
         REQUIRE(node.first > i);
         for (const std::uint32_t child : {node.first, node.first + 1}) {
             depth.at(child) = depth[i] + 1;
@@ -156,9 +150,7 @@ std::size_t count_escaped(const Bvh& bvh, const BvhNode& node, std::span<const T
     for (std::uint32_t i = 0; i < node.count; ++i) {
         escaped += contains(node, triangles[bvh.order[node.first + i]]) ? 0 : 1;
     }
-    if (node.count > 0) {
-        return escaped;
-    }
+    if (node.count > 0) return escaped;
     for (const std::uint32_t child : {node.first, node.first + 1}) {
         escaped += contains(node, bvh.nodes[child].lower, bvh.nodes[child].upper) ? 0 : 1;
     }
@@ -295,9 +287,7 @@ TEST_CASE("bvh: of duplicate triangles the one with the lowest index is hit") {
     check_layout(bvh, triangles.size());
     for (int i = 0; i < 2000; ++i) {
         const auto hit = closest_hit(bvh, triangles, ray_through(random));
-        if (hit) {
-            CHECK(hit->triangle < originals.size());
-        }
+        if (hit) CHECK(hit->triangle < originals.size());
     }
     CHECK(disagreements(bvh, triangles, 1000, random) == 0);
 }
@@ -360,9 +350,7 @@ TEST_CASE("bvh: NaN and infinite vertices do not hang the build and do not hide 
     Triangles triangles = soup(200, 0.2F, random);
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
         triangles[i].b.y = i % 2 == 0 ? nan : infinity;
-        if (i % 4 == 0) {
-            triangles[i] = {glm::vec3(nan), glm::vec3(nan), glm::vec3(nan)};
-        }
+        if (i % 4 == 0) triangles[i] = {glm::vec3(nan), glm::vec3(nan), glm::vec3(nan)};
     }
     const Bvh bvh = build_bvh(triangles);
     check_layout(bvh, triangles.size());
@@ -496,9 +484,7 @@ std::uint32_t check_joint(const Bvh& bvh, std::span<const Triangle> triangles) {
     std::vector<std::uint32_t> found;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> waiting;  // nodes and their depths
     std::uint32_t deepest = 0;
-    if (!bvh.nodes.empty()) {
-        waiting.emplace_back(0, 0);
-    }
+    if (!bvh.nodes.empty()) waiting.emplace_back(0, 0);
     while (!waiting.empty()) {
         const auto [index, depth] = waiting.back();
         waiting.pop_back();

@@ -31,9 +31,7 @@ class TemporaryDirectory {
  public:
     TemporaryDirectory() {
         std::string name = (std::filesystem::temp_directory_path() / "candela-XXXXXX").string();
-        if (!mkdtemp(name.data())) {
-            throw std::runtime_error("no temporary directory");
-        }
+        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary directory");
         path_ = name;
     }
     TemporaryDirectory(const TemporaryDirectory&) = delete;
@@ -140,16 +138,12 @@ struct GltfBuilder {
     /// The document with its buffer, if any, as a binary chunk.
     [[nodiscard]] Bytes glb() const {
         Json complete = document;
-        if (!data.empty()) {
-            complete["buffers"].push_back({{"byteLength", data.size()}});
-        }
+        if (!data.empty()) complete["buffers"].push_back({{"byteLength", data.size()}});
         const std::string json = complete.dump();
 
         Bytes chunks;
         append_chunk(chunks, 0x4E4F534A, to_bytes(json), ' ');
-        if (!data.empty()) {
-            append_chunk(chunks, 0x004E4942, data, 0);
-        }
+        if (!data.empty()) append_chunk(chunks, 0x004E4942, data, 0);
         Bytes file;
         for (const std::size_t word : {std::size_t{0x46546C67}, std::size_t{2}, 12 + chunks.size()}) {
             append_u32(file, word);
@@ -191,9 +185,7 @@ struct Imported {
 
     [[nodiscard]] Entity find(const std::string& name) const {
         for (auto [entity, called] : world.view<Name>()) {
-            if (called.value == name) {
-                return entity;
-            }
+            if (called.value == name) return entity;
         }
         return {};
     }

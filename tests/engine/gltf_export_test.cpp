@@ -302,12 +302,8 @@ Stock any_stock() {
 }
 
 void equip(World& world, Entity entity, const Stock& stock) {
-    if (any_bool()) {
-        world.set(entity, MeshInstance{any_of(stock.meshes)});
-    }
-    if (any_bool()) {
-        world.set(entity, any_camera());
-    }
+    if (any_bool()) world.set(entity, MeshInstance{any_of(stock.meshes)});
+    if (any_bool()) world.set(entity, any_camera());
     switch (*rc::gen::inRange(0, 4)) {
         case 0:
             world.set(entity, PointLight{any_colour(), any_positive(), any_range(), any_bool()});

@@ -101,7 +101,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph access: an update finds the content of th
     const auto step = graph.import_value<int>("step");
     std::vector<int> found;
     const auto sum = graph.add("sum", [&](Pass& pass) {
-        pass.remembers();
+        pass.keeps_state();
         pass.read(step);
         const auto out = pass.update(graph.value<int>("sum"));
         pass.run([&found, step, out](Execution& run) {

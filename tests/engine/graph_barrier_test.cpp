@@ -26,27 +26,13 @@ struct Event {
 /// The barrier bit that belongs to an access: OpenGL 4.5, section 7.13.2.
 Barrier bit_of(ResourceKind kind, Usage usage) {
     const bool texture = kind == ResourceKind::texture;
-    if (usage == Usage::sampled) {
-        return Barrier::texture_fetch;
-    }
-    if (usage == Usage::uniform) {
-        return Barrier::uniform;
-    }
-    if (usage == Usage::vertex) {
-        return Barrier::vertex_attrib;
-    }
-    if (usage == Usage::index) {
-        return Barrier::element;
-    }
-    if (usage == Usage::indirect) {
-        return Barrier::command;
-    }
-    if (usage == Usage::storage) {
-        return texture ? Barrier::image_access : Barrier::storage;
-    }
-    if (usage == Usage::copy) {
-        return texture ? Barrier::texture_update : Barrier::buffer_update;
-    }
+    if (usage == Usage::sampled) return Barrier::texture_fetch;
+    if (usage == Usage::uniform) return Barrier::uniform;
+    if (usage == Usage::vertex) return Barrier::vertex_attrib;
+    if (usage == Usage::index) return Barrier::element;
+    if (usage == Usage::indirect) return Barrier::command;
+    if (usage == Usage::storage) return texture ? Barrier::image_access : Barrier::storage;
+    if (usage == Usage::copy) return texture ? Barrier::texture_update : Barrier::buffer_update;
     return Barrier::framebuffer;
 }
 
@@ -55,7 +41,7 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
     std::uint32_t index = 0;
     for (const random_graph::Resource& resource : graph.resources) {
         first_object.push_back(compiled.plan().object[index]);
-        index += resource.remembered ? 2 : 1;
+        index += resource.has_history ? 2 : 1;
     }
     std::vector<Event> events;
     const std::size_t count = compiled.plan().order.size();
@@ -64,10 +50,8 @@ std::vector<Event> unroll(const Graph& graph, const CompiledGraph& compiled, std
             for (const random_graph::Access& access :
                  graph.passes[compiled.plan().order[position]].accesses) {
                 const random_graph::Resource& resource = graph.resources[access.resource];
-                if (resource.kind == ResourceKind::value) {
-                    continue;
-                }
-                const std::size_t turn = resource.remembered ? (frame + (access.previous ? 1 : 0)) % 2 : 0;
+                if (resource.kind == ResourceKind::value) continue;
+                const std::size_t turn = resource.has_history ? (frame + (access.previous ? 1 : 0)) % 2 : 0;
                 events.push_back({frame * count + position,
                                   first_object[access.resource] + static_cast<std::uint32_t>(turn),
                                   bit_of(resource.kind, access.usage), access.write,
@@ -98,14 +82,10 @@ TEST_CASE("graph: exactly those barriers are planned that some pair of accesses 
                 std::set<std::size_t> between;
                 for (std::size_t time = early.time + 1; time <= late.time; ++time) {
                     const std::size_t position = time % barriers.size();
-                    if ((barriers[position] & late.bit) == late.bit) {
-                        between.insert(position);
-                    }
+                    if ((barriers[position] & late.bit) == late.bit) between.insert(position);
                 }
                 RC_ASSERT(!between.empty());
-                if (between.size() == 1) {
-                    needed[*between.begin()] = needed[*between.begin()] | late.bit;
-                }
+                if (between.size() == 1) needed[*between.begin()] = needed[*between.begin()] | late.bit;
             }
         }
         RC_ASSERT(needed == barriers);

@@ -81,9 +81,7 @@ TEST_CASE("graph: running only the dirty passes gives the same results as runnin
 /// reads some results.
 Graph varied(Graph graph) {
     for (random_graph::Pass& pass : graph.passes) {
-        if (random_graph::one_in(6)) {
-            pass.side_effect = !pass.side_effect;
-        }
+        if (random_graph::one_in(6)) pass.side_effect = !pass.side_effect;
     }
     random_graph::Pass reader{.accesses = {}, .side_effect = true};
     for (std::size_t index = 0; index < graph.resources.size(); ++index) {
@@ -112,9 +110,7 @@ TEST_CASE("graph: switching between graphs that differ a little gives the same r
                 machine.provide(host);
                 (void)machine.run();
                 machine.check(meaning(graph, machine.runtime().graph()->plan().order, host, nullptr));
-                if (edits) {
-                    edit(host);
-                }
+                if (edits) edit(host);
             }
         }
     }));

@@ -216,13 +216,9 @@ TEST_CASE("graph error: a pass reads what it overwrites, in either order of decl
         FrameGraph graph;
         const TextureHandle image = add_draw(graph, "draw", graph.texture("image", colour));
         graph.add("loop", [&](Pass& pass) {
-            if (read_first) {
-                pass.read(image, Usage::sampled);
-            }
+            if (read_first) pass.read(image, Usage::sampled);
             (void)pass.write(image, Usage::colour_target);
-            if (!read_first) {
-                pass.read(image, Usage::sampled);
-            }
+            if (!read_first) pass.read(image, Usage::sampled);
             pass.side_effect();
         });
         CHECK(error_of(graph) == CompileError{ErrorCode::feedback,

@@ -16,9 +16,7 @@ inline constexpr TextureDesc colour{{64, 32}, Format::rgba16f};
 inline std::string ran(const FrameRecord& record) {
     std::string names;
     for (const PassRecord& pass : record.passes) {
-        if (pass.ran) {
-            names += (names.empty() ? "" : " ") + std::string(pass.name);
-        }
+        if (pass.ran) names += (names.empty() ? "" : " ") + std::string(pass.name);
     }
     return names;
 }

@@ -23,13 +23,9 @@ inline Content mix(Content hash, Content value) {
 template <class ContentOf>
 Content evaluate(const Graph& graph, std::size_t pass, int number, ContentOf content_of) {
     Content hash = mix(1, pass);
-    if (graph.passes[pass].reads_world) {
-        hash = mix(hash, static_cast<Content>(number));
-    }
+    if (graph.passes[pass].reads_world) hash = mix(hash, static_cast<Content>(number));
     for (const Access& access : graph.passes[pass].accesses) {
-        if (!access.write || access.version > 1) {
-            hash = mix(hash, content_of(access));
-        }
+        if (!access.write || access.version > 1) hash = mix(hash, content_of(access));
     }
     return hash;
 }
@@ -62,16 +58,12 @@ inline Meaning meaning(const Graph& graph, const std::vector<std::uint32_t>& ord
     }
     for (const std::uint32_t pass : order) {
         const Content hash = evaluate(graph, pass, host.number, [&](const Access& access) {
-            if (access.previous) {
-                return before ? before->versions[access.resource].back() : 0;
-            }
+            if (access.previous) return before ? before->versions[access.resource].back() : 0;
             return now.versions[access.resource][access.version - (access.write ? 1 : 0)];
         });
         now.passes[pass] = hash;
         for (const Access& access : graph.passes[pass].accesses) {
-            if (!access.write) {
-                continue;
-            }
+            if (!access.write) continue;
             now.versions[access.resource][access.version] =
                 result(graph.resources[access.resource], access.resource, hash);
         }
@@ -112,17 +104,13 @@ class Machine {
         world_.set(entity_, Number{host.number});
         for (std::size_t index = 0; index < graph_->resources.size(); ++index) {
             const Resource& resource = graph_->resources[index];
-            if (resource.lifetime != Lifetime::imported) {
-                continue;
-            }
+            if (resource.lifetime != Lifetime::imported) continue;
             if (resource.kind == ResourceKind::value) {
                 runtime_.set(ValueHandle<int>{handles_.newest[index]}, static_cast<int>(host.imports[index]));
                 continue;
             }
             RecordingBackend::Object& object = backend_.objects.at(imported_[index]);
-            if (object.content == host.imports[index] && bound_) {
-                continue;
-            }
+            if (object.content == host.imports[index] && bound_) continue;
             object.content = host.imports[index];
             if (resource.kind == ResourceKind::texture) {
                 runtime_.bind(TextureHandle{handles_.newest[index]}, imported_[index], {});
@@ -162,9 +150,7 @@ class Machine {
     void compute(Execution& run, std::size_t pass, const Handles& handles) {
         const Content hash = evaluate(*graph_, pass, run.world().get<Number>(entity_).value,
                                       [&](const Access& access) -> Content {
-                                          if (access.previous) {
-                                              return previous(run, access, handles);
-                                          }
+                                          if (access.previous) return previous(run, access, handles);
                                           return read(run, access.resource, handles.newest[access.resource]);
                                       });
         for (const Access& access : graph_->passes[pass].accesses) {
@@ -174,9 +160,7 @@ class Machine {
                       content + (pass == sabotaged_ ? 10 : 0));
             }
         }
-        if (graph_->passes[pass].side_effect) {
-            seen_[pass] = hash;
-        }
+        if (graph_->passes[pass].side_effect) seen_[pass] = hash;
     }
 
     ObjectId object(Execution& run, std::size_t resource, ResourceHandle handle) const {
@@ -218,13 +202,9 @@ class Machine {
 };
 
 inline void edit(Host& host) {
-    if (one_in(3)) {
-        host.number = static_cast<int>(choose(3));
-    }
+    if (one_in(3)) host.number = static_cast<int>(choose(3));
     for (Content& import : host.imports) {
-        if (one_in(3)) {
-            import = 1 + choose(4);
-        }
+        if (one_in(3)) import = 1 + choose(4);
     }
 }
 

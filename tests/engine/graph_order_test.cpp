@@ -19,15 +19,11 @@ using Precedence = std::vector<std::vector<bool>>;
 bool must_precede(const Graph& graph, std::size_t a, std::size_t b) {
     for (const random_graph::Access& first : graph.passes[a].accesses) {
         for (const random_graph::Access& second : graph.passes[b].accesses) {
-            if (a == b || first.resource != second.resource || first.previous || second.previous) {
-                continue;
-            }
+            if (a == b || first.resource != second.resource || first.previous || second.previous) continue;
             const bool hands_over = first.write && !second.write && first.version == second.version;
             const bool reads_before = !first.write && second.write && second.version == first.version + 1;
             const bool writes_before = first.write && second.write && second.version == first.version + 1;
-            if (hands_over || reads_before || writes_before) {
-                return true;
-            }
+            if (hands_over || reads_before || writes_before) return true;
         }
     }
     return false;
@@ -44,9 +40,7 @@ Precedence precedence(const Graph& graph) {
     for (std::size_t via = 0; via < count; ++via) {
         for (std::size_t a = 0; a < count; ++a) {
             for (std::size_t b = 0; b < count; ++b) {
-                if (precedes[a][via] && precedes[via][b]) {
-                    precedes[a][b] = true;
-                }
+                if (precedes[a][via] && precedes[via][b]) precedes[a][b] = true;
             }
         }
     }
@@ -57,13 +51,9 @@ Precedence precedence(const Graph& graph) {
 bool feeds(const Graph& graph, std::size_t writer, std::size_t reader) {
     for (const random_graph::Access& made : graph.passes[writer].accesses) {
         for (const random_graph::Access& used : graph.passes[reader].accesses) {
-            if (!made.write || made.resource != used.resource) {
-                continue;
-            }
+            if (!made.write || made.resource != used.resource) continue;
             const bool last = made.version == graph.resources[made.resource].versions;
-            if (used.previous ? last : made.version == used.version - (used.write ? 1 : 0)) {
-                return true;
-            }
+            if (used.previous ? last : made.version == used.version - (used.write ? 1 : 0)) return true;
         }
     }
     return false;
@@ -75,18 +65,14 @@ std::vector<bool> needed(const Graph& graph) {
         needed[pass] = graph.passes[pass].side_effect;
         for (const random_graph::Access& access : graph.passes[pass].accesses) {
             const bool imported = graph.resources[access.resource].lifetime == Lifetime::imported;
-            if (access.write && imported) {
-                needed[pass] = true;
-            }
+            if (access.write && imported) needed[pass] = true;
         }
     }
     for (bool grew = true; grew;) {
         grew = false;
         for (std::size_t writer = 0; writer < needed.size(); ++writer) {
             for (std::size_t reader = 0; reader < needed.size() && !needed[writer]; ++reader) {
-                if (needed[reader] && feeds(graph, writer, reader)) {
-                    grew = needed[writer] = true;
-                }
+                if (needed[reader] && feeds(graph, writer, reader)) grew = needed[writer] = true;
             }
         }
     }
@@ -116,9 +102,7 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
     for (std::size_t position = 0; position < compiled.plan().order.size(); ++position) {
         for (const random_graph::Access& access : graph.passes[compiled.plan().order[position]].accesses) {
             Use& use = uses[access.resource];
-            if (!use.used) {
-                use = {true, position, position};
-            }
+            if (!use.used) use = {true, position, position};
             use.last = position;
         }
     }
@@ -127,25 +111,17 @@ void check_objects(const Graph& graph, const CompiledGraph& compiled) {
     std::uint32_t index = 0;
     for (const random_graph::Resource& resource : graph.resources) {
         object.push_back(compiled.plan().object[index]);
-        index += resource.remembered ? 2 : 1;
+        index += resource.has_history ? 2 : 1;
     }
     for (std::size_t a = 0; a < uses.size(); ++a) {
         RC_ASSERT(uses[a].used == (object[a] != detail::none));
         for (std::size_t b = a + 1; b < uses.size(); ++b) {
-            if (!uses[a].used || !uses[b].used) {
-                continue;
-            }
+            if (!uses[a].used || !uses[b].used) continue;
             const random_graph::Resource& one = graph.resources[a];
             const random_graph::Resource& other = graph.resources[b];
-            if (one.remembered) {
-                RC_ASSERT(object[b] != object[a] + 1);
-            }
-            if (other.remembered) {
-                RC_ASSERT(object[a] != object[b] + 1);
-            }
-            if (object[a] != object[b]) {
-                continue;
-            }
+            if (one.has_history) RC_ASSERT(object[b] != object[a] + 1);
+            if (other.has_history) RC_ASSERT(object[a] != object[b] + 1);
+            if (object[a] != object[b]) continue;
             RC_ASSERT(one.lifetime == Lifetime::transient);
             RC_ASSERT(other.lifetime == Lifetime::transient);
             RC_ASSERT(one.kind == other.kind);
@@ -176,9 +152,7 @@ double seconds_to_compile(std::size_t count, std::size_t reads) {
             for (std::size_t back = 1; back <= std::min(reads, index); ++back) {
                 pass.read(made[index - back], Usage::sampled);
             }
-            if (index + 1 == count) {
-                pass.side_effect();
-            }
+            if (index + 1 == count) pass.side_effect();
             return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::storage);
         }));
     }

@@ -25,7 +25,7 @@ struct Resource {
     ResourceKind kind = ResourceKind::texture;
     Lifetime lifetime = Lifetime::transient;
     bool deep = false;  // selects one of two descriptions
-    bool remembered = false;
+    bool has_history = false;
     std::uint32_t versions = 0;
 };
 
@@ -92,21 +92,15 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
         made.kind = static_cast<ResourceKind>(choose(3));
         made.deep = made.kind != ResourceKind::value && one_in(2);
         made.lifetime = made.kind == ResourceKind::value ? Lifetime::persistent : Lifetime::transient;
-        if (one_in(5)) {
-            made.lifetime = one_in(2) ? Lifetime::imported : Lifetime::persistent;
-        }
+        if (one_in(5)) made.lifetime = one_in(2) ? Lifetime::imported : Lifetime::persistent;
         graph.resources.push_back(made);
     }
     Resource& resource = graph.resources[access.resource];
     const bool gpu = resource.kind != ResourceKind::value;
     const bool imported = resource.lifetime == Lifetime::imported;
-    if (imported && !gpu) {
-        access.write = false;
-    }
+    if (imported && !gpu) access.write = false;
     for (const Access& other : pass.accesses) {  // no feedback, and one access per resource
-        if (other.resource == access.resource) {
-            return;
-        }
+        if (other.resource == access.resource) return;
     }
     if (access.write) {
         access.version = ++resource.versions;
@@ -114,13 +108,11 @@ inline void add_access(Graph& graph, Pass& pass, const Options& options) {
     } else {
         const bool texture = resource.kind == ResourceKind::texture;
         access.previous = options.histories && texture && !imported && resource.versions > 0 && one_in(3);
-        if (resource.versions == 0 && !imported) {
-            return;
-        }
+        if (resource.versions == 0 && !imported) return;
         access.version = access.previous ? 0 : resource.versions;
         access.usage = gpu ? read_usage(resource.kind) : Usage{};
         if (access.previous) {
-            resource.remembered = true;
+            resource.has_history = true;
             resource.lifetime = Lifetime::persistent;
         }
     }
@@ -166,9 +158,7 @@ inline ResourceHandle declare(FrameGraph& frame, const Resource& resource, const
         case ResourceKind::value:
             break;
     }
-    if (resource.lifetime == Lifetime::imported) {
-        return frame.import_value<int>(name);
-    }
+    if (resource.lifetime == Lifetime::imported) return frame.import_value<int>(name);
     return frame.value<int>(name);
 }
 
@@ -180,21 +170,15 @@ inline void declare(candela::Pass& pass, const Resource& resource, const Access&
     const ValueHandle<int> value{handle};
     switch (resource.kind) {
         case ResourceKind::texture:
-            if (!access.write) {
-                return pass.read(texture, access.usage);
-            }
+            if (!access.write) return pass.read(texture, access.usage);
             handle = pass.write(texture, access.usage);
             return;
         case ResourceKind::buffer:
-            if (!access.write) {
-                return pass.read(buffer, access.usage);
-            }
+            if (!access.write) return pass.read(buffer, access.usage);
             handle = pass.write(buffer, access.usage);
             return;
         case ResourceKind::value:
-            if (!access.write) {
-                return pass.read(value);
-            }
+            if (!access.write) return pass.read(value);
             handle = pass.write(value);
     }
 }
@@ -207,9 +191,7 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
         const Resource& resource = graph.resources[index];
         const ResourceHandle handle = declare(frame, resource, resource_name(index));
         handles.newest.push_back(handle);
-        if (!resource.remembered) {
-            continue;
-        }
+        if (!resource.has_history) continue;
         handles.previous[index] = frame.history(TextureHandle{handle});
     }
     for (std::size_t index = 0; index < graph.passes.size(); ++index) {
@@ -218,12 +200,8 @@ FrameGraph declare(const Graph& graph, Handles& handles, MakeRun make_run) {
             for (const Access& access : pass.accesses) {
                 declare(declared, graph.resources[access.resource], access, handles);
             }
-            if (pass.side_effect) {
-                declared.side_effect();
-            }
-            if (pass.reads_world) {
-                declared.read<Number>();
-            }
+            if (pass.side_effect) declared.side_effect();
+            if (pass.reads_world) declared.read<Number>();
             declared.run(make_run(index, handles));
         });
     }

@@ -298,9 +298,7 @@ TEST_CASE_FIXTURE(GraphFixture, "graph run: the runtime still works after a pass
         pass.read(a, Usage::sampled);
         pass.read(knob);
         pass.run([&](Execution&) {
-            if (fail) {
-                throw std::runtime_error("out of luck");
-            }
+            if (fail) throw std::runtime_error("out of luck");
         });
         return pass.write(texture("b", Lifetime::persistent), Usage::colour_target);
     });

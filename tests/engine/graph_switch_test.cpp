@@ -82,9 +82,7 @@ Declared declare(const Configuration& configuration) {
         pass.read(lit, Usage::sampled);
         pass.read(handles.exposure);
         (void)pass.write(handles.target, Usage::colour_target);
-        if (configuration.bad) {
-            pass.read(graph.value<int>("never set"));
-        }
+        if (configuration.bad) pass.read(graph.value<int>("never set"));
     });
     return declared;
 }
@@ -137,9 +135,7 @@ TEST_CASE_FIXTURE(Fixture,
         FrameGraph graph;
         const auto fill = [&](std::string_view name, std::optional<TextureHandle> source) {
             return graph.add(name, [&](Pass& pass) {
-                if (source) {
-                    pass.read(*source, Usage::sampled);
-                }
+                if (source) pass.read(*source, Usage::sampled);
                 return pass.write(graph.texture(name, {{8, 8}}), Usage::storage);
             });
         };
@@ -149,9 +145,7 @@ TEST_CASE_FIXTURE(Fixture,
         graph.add("show", [&](Pass& pass) {
             pass.side_effect();
             pass.read(third, Usage::sampled);
-            if (looks) {
-                pass.read(first, Usage::sampled);
-            }
+            if (looks) pass.read(first, Usage::sampled);
         });
         runtime.switch_to(compile(std::move(graph)).take());
     };
@@ -299,12 +293,8 @@ TEST_CASE("graph memory: bytes saved by sharing and bytes in the free pool are r
         TextureHandle last;
         for (std::size_t index = 0; index < length; ++index) {
             last = graph.add("draw " + std::to_string(index), [&](Pass& pass) {
-                if (index > 0) {
-                    pass.read(last, Usage::sampled);
-                }
-                if (index + 1 == length) {
-                    pass.side_effect();
-                }
+                if (index > 0) pass.read(last, Usage::sampled);
+                if (index + 1 == length) pass.side_effect();
                 return pass.write(graph.texture("image", colour), Usage::colour_target);
             });
         }

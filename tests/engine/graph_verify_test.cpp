@@ -25,9 +25,7 @@ struct Light {
 std::string verified(const FrameRecord& record) {
     std::string names;
     for (const PassRecord& pass : record.passes) {
-        if (pass.verified) {
-            names += (names.empty() ? "" : " ") + std::string(pass.name);
-        }
+        if (pass.verified) names += (names.empty() ? "" : " ") + std::string(pass.name);
     }
     return names;
 }
@@ -236,7 +234,7 @@ TEST_CASE_FIXTURE(VerifyFixture,
         return written;
     });
     const auto count = graph.add("count", [&](Pass& pass) {
-        pass.remembers();
+        pass.keeps_state();
         pass.read(knob);
         const auto written = pass.update(graph.value<int>("count"));
         pass.run([=](Execution& run) {

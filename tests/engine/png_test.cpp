@@ -57,9 +57,7 @@ std::vector<unsigned char> random_png(const Kind& kind) {
         }
         const int colours = 1 << kind.depth;
         png_set_PLTE(png, info, palette.data(), colours);
-        if (kind.transparent) {
-            png_set_tRNS(png, info, alphas.data(), colours / 2, nullptr);
-        }
+        if (kind.transparent) png_set_tRNS(png, info, alphas.data(), colours / 2, nullptr);
     } else if (kind.transparent) {
         const png_uint_16 one = kind.depth == 16 ? 0x0101 : 1;
         const png_color_16 colour{.index = 0, .red = one, .green = one, .blue = one, .gray = one};

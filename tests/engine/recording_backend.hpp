@@ -52,9 +52,7 @@ class RecordingBackend final : public Backend {
         log.push_back("begin " + std::string(name));
         targets = {};
         bound.clear();
-        if (given) {
-            targets = {{given->colour.begin(), given->colour.end()}, given->depth, given->size};
-        }
+        if (given) targets = {{given->colour.begin(), given->colour.end()}, given->depth, given->size};
         ++open_passes;
     }
     void end_pass() override {
@@ -80,9 +78,7 @@ class RecordingBackend final : public Backend {
 
  private:
     ObjectId create(Object object) {
-        if (creations_left == 0) {
-            throw std::runtime_error("out of memory");
-        }
+        if (creations_left == 0) throw std::runtime_error("out of memory");
         --creations_left;
         ++created;
         objects.emplace(next_, std::move(object));
@@ -104,9 +100,7 @@ class RecordingBackend final : public Backend {
         if (found != objects.end() && found->second.texture != texture) {
             misuse = fmt::format("object {} is bound as what it is not", id);
         }
-        if (open_passes == 0) {
-            misuse = fmt::format("object {} is bound outside of a pass", id);
-        }
+        if (open_passes == 0) misuse = fmt::format("object {} is bound outside of a pass", id);
         bound.emplace_back(id, binding);
     }
 

@@ -141,9 +141,7 @@ TEST_SUITE("Cornell box") {
             }
             for (const WorldTriangle& triangle : triangles) {
                 const glm::vec3 outwards = (triangle.a + triangle.b + triangle.c) / 3.0F - centre;
-                if (block) {
-                    CHECK(glm::dot(triangle.normal, outwards) > 0.0F);
-                }
+                if (block) CHECK(glm::dot(triangle.normal, outwards) > 0.0F);
             }
         }
         // Five walls of 2 m × 2 m; blocks of base 0.6 m × 0.6 m, 0.6 m and 1.2 m high.

@@ -34,9 +34,7 @@ std::vector<glm::vec2> texture_coordinates(const std::vector<T>& values, int com
     GltfBuilder file = right_triangle();
     const std::size_t accessor = file.add_accessor(values, component_type, "VEC2", 2);
     // The rows of a vertex attribute are aligned to 4 bytes.
-    if (sizeof(T) * 2 < 4) {
-        file.document["bufferViews"].back()["byteStride"] = 4;
-    }
+    if (sizeof(T) * 2 < 4) file.document["bufferViews"].back()["byteStride"] = 4;
     file.document["accessors"].back()["normalized"] = normalised;
     file.document["accessors"].back()["count"] = 3;
     file.primitive()["attributes"]["TEXCOORD_0"] = accessor;

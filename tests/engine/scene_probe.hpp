@@ -26,9 +26,7 @@ struct Loaded {
     [[nodiscard]] std::vector<Entity> called(const std::string& name) const {
         std::vector<Entity> found;
         for (auto [entity, is] : world.view<Name>()) {
-            if (is.value == name) {
-                found.push_back(entity);
-            }
+            if (is.value == name) found.push_back(entity);
         }
         return found;
     }
@@ -95,9 +93,7 @@ struct Target {
     /// Whether the first hit along the ray is on the front of a triangle.
     [[nodiscard]] bool shows_front(const glm::vec3& from, const glm::vec3& direction) const {
         const std::optional<Hit> hit = first(from, direction);
-        if (!hit) {
-            return false;
-        }
+        if (!hit) return false;
         const Triangle& triangle = triangles[hit->triangle];
         const glm::vec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
         return glm::dot(normal, direction) < 0.0F;

@@ -36,9 +36,7 @@ fs::path shipped(const std::string& name) {
 std::vector<fs::path> shipped_files() {
     std::vector<fs::path> files;
     for (const fs::directory_entry& file : fs::directory_iterator(scenes())) {
-        if (file.path().extension() == ".gltf") {
-            files.push_back(file.path());
-        }
+        if (file.path().extension() == ".gltf") files.push_back(file.path());
     }
     return files;
 }
@@ -130,9 +128,7 @@ bool normals_agree(const Primitive& primitive) {
     for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
         const Triangle& t = triangles[i / 3];
         const glm::vec3 normal = primitive.vertices[primitive.indices[i]].normal;
-        if (glm::dot(glm::cross(t.b - t.a, t.c - t.a), normal) <= 0.0F) {
-            return false;
-        }
+        if (glm::dot(glm::cross(t.b - t.a, t.c - t.a), normal) <= 0.0F) return false;
     }
     return true;
 }

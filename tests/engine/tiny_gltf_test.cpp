@@ -20,9 +20,7 @@ std::vector<fs::path> shipped_scenes() {
     std::vector<fs::path> files;
     for (const fs::directory_entry& file : fs::directory_iterator(
              fs::path(__FILE__).parent_path().parent_path().parent_path() / "sandbox/scenes")) {
-        if (file.path().extension() == ".gltf") {
-            files.push_back(file.path());
-        }
+        if (file.path().extension() == ".gltf") files.push_back(file.path());
     }
     return files;
 }
@@ -79,9 +77,7 @@ void compare_light(const World& world, Entity entity, const tinygltf::Light& exp
     const auto compare_common = [&](const auto& light) {
         CHECK(light.colour == to_vector(expected.color, glm::vec3(1.0F)));
         CHECK(light.intensity == static_cast<float>(expected.intensity));
-        if (expected.range > 0.0) {
-            CHECK(light.range == static_cast<float>(expected.range));
-        }
+        if (expected.range > 0.0) CHECK(light.range == static_cast<float>(expected.range));
     };
     if (expected.type == "point") {
         compare_common(world.get<PointLight>(entity));

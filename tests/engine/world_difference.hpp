@@ -51,9 +51,7 @@ class WorldComparison {
     }
 
     void expect(bool same, std::string_view what) {
-        if (!same && found_.empty()) {
-            found_ = fmt::format("entity \"{}\": {}", at_, what);
-        }
+        if (!same && found_.empty()) found_ = fmt::format("entity \"{}\": {}", at_, what);
     }
 
     /// The entity's place in the sorted list; its length for the null entity.
@@ -101,9 +99,7 @@ class WorldComparison {
 
     void compare(const Transform* a, const Transform* b) {
         expect(!a == !b, "whether it has a transform");
-        if (!a || !b) {
-            return;
-        }
+        if (!a || !b) return;
         expect(a->translation == b->translation, "its translation");
         expect(a->rotation == b->rotation, "its rotation");
         expect(a->scale == b->scale, "its scale");
@@ -112,9 +108,7 @@ class WorldComparison {
 
     void compare(const Environment* a, const Environment* b) {
         expect(!a == !b, "whether it has an environment");
-        if (!a || !b) {
-            return;
-        }
+        if (!a || !b) return;
         expect(a->radiance == b->radiance && a->rotation == b->rotation, "its environment");
         expect(!a->picture == !b->picture, "whether its environment has a picture");
         if (a->picture && b->picture) {
@@ -129,14 +123,10 @@ class WorldComparison {
     void compare_shared(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b,
                         std::map<const T*, const T*>& known, const char* what) {
         expect(!a == !b, fmt::format("whether it has {}", what));
-        if (!a || !b) {
-            return;
-        }
+        if (!a || !b) return;
         const auto [pair, is_new] = known.emplace(a.get(), b.get());
         expect(pair->second == b.get(), fmt::format("what shares {}", what));
-        if (is_new) {
-            compare(*a, *b);
-        }
+        if (is_new) compare(*a, *b);
     }
 
     void compare(const Mesh& a, const Mesh& b) {

@@ -299,9 +299,7 @@ void check_contents(const World& world, const Model& model, const Column<C>& col
     RC_ASSERT(column_of<C>(world) == column);
     RC_ASSERT(world.count<C>() == column.size());
     for (const auto& [entity, alive] : model.alive) {
-        if (alive) {
-            RC_ASSERT(world.has<C>(entity) == column.contains(entity));
-        }
+        if (alive) RC_ASSERT(world.has<C>(entity) == column.contains(entity));
     }
 }
 
@@ -392,9 +390,7 @@ bool refused(const Edit& edit, const Model& model) {
 // An entity that exists or existed. The value is small, so that equal values are frequent.
 Edit make_edit(std::uint8_t action, std::uint8_t pick, std::uint8_t value, const Model& model) {
     const auto count = static_cast<std::uint8_t>(Action::count);
-    if (model.alive.empty()) {
-        return {Action::create, {}, 0};
-    }
+    if (model.alive.empty()) return {Action::create, {}, 0};
     const auto entity =
         std::next(model.alive.begin(), pick % static_cast<std::ptrdiff_t>(model.alive.size()));
     return {static_cast<Action>(action % count), entity->first, value % 3};

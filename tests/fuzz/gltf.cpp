@@ -38,14 +38,10 @@ void check_imported(const World& world, const ImportReport& report) {
                       "parents come before their children");
         seen.insert(entity);
         const auto* const instance = world.find<MeshInstance>(entity);
-        if (!instance) {
-            continue;
-        }
+        if (!instance) continue;
         for (const Primitive& primitive : instance->mesh->primitives) {
             triangles += primitive.indices.size() / 3;
-            if (checked.insert(instance->mesh.get()).second) {
-                check_primitive(primitive);
-            }
+            if (checked.insert(instance->mesh.get()).second) check_primitive(primitive);
         }
     }
     fuzz::require(triangles == report.triangles, "the report counts the triangles");

@@ -26,9 +26,7 @@ class Choices {
     explicit Choices(std::span<const std::uint8_t> bytes) : left_(bytes) {}
 
     std::size_t operator()(std::size_t count) {
-        if (left_.empty()) {
-            return 0;
-        }
+        if (left_.empty()) return 0;
         const std::size_t byte = left_.front();
         left_ = left_.subspan(1);
         return byte % count;
@@ -116,9 +114,7 @@ class Declarer {
         for (std::size_t accesses = choices_(4); accesses > 0; --accesses) {
             std::visit([&](auto handle) { access(pass, handle); }, any_handle());
         }
-        if (choices_(4) == 0) {
-            pass.side_effect();
-        }
+        if (choices_(4) == 0) pass.side_effect();
         if (choices_(8) == 0) {
             graph_.add(name("p"), [](Pass&) {});  // nested
         }

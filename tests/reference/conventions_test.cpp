@@ -129,8 +129,9 @@ TEST_SUITE("reference: conventions") {
             MeshInstance{square(0.3F, made_of({0, 0, 0, 0.9F}, AlphaMode::blend, true))});
         const Estimate with = traced(scene, 16, 3);
         std::size_t same = 0;
-        for (std::size_t i = 0; i < with.hit.size(); ++i)
+        for (std::size_t i = 0; i < with.hit.size(); ++i) {
             same += with.indirect.pixels[i] == without.indirect.pixels[i] ? 1 : 0;
+        }
         // All pixels except those that see the pane, which covers about a tenth of the picture.
         CHECK(same > with.hit.size() * 3 / 4);
         CHECK(same < with.hit.size());
@@ -151,8 +152,9 @@ TEST_SUITE("reference: conventions") {
         Scene scene = lit_ground();
         const Mesh flat = *square(0.5F, diffuse(glm::vec3(0.5F)));
         Mesh tilted = flat;
-        for (Vertex& vertex : tilted.primitives[0].vertices)
+        for (Vertex& vertex : tilted.primitives[0].vertices) {
             vertex.normal = glm::vec3(0, std::cos(1.0F), std::sin(1.0F));
+        }
         add(scene.world, Transform{.translation = {0, 1, 0}},
             MeshInstance{std::make_shared<const Mesh>(std::move(tilted))});
         CHECK(seen(scene) == doctest::Approx(0.5F * std::cos(1.0F)));

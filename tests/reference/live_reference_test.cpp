@@ -44,8 +44,9 @@ double processor_time_in(std::chrono::milliseconds period) {
 /// Whether the process uses next to no processor time within five seconds: threads may finish a pixel first,
 /// which a sanitizer or other processes make slow. A thread that waits actively never lets this be true.
 bool becomes_idle() {
-    for (int attempt = 0; attempt < 25; ++attempt)
+    for (int attempt = 0; attempt < 25; ++attempt) {
         if (processor_time_in(200ms) < 0.01) return true;
+    }
     return false;
 }
 
@@ -304,8 +305,9 @@ TEST_SUITE("reference: live") {
         CHECK(seconds_of([&] { live.start(scene, request); }) < 0.5);
         const auto pictures = live.wait_for_pictures(expected.size());
         REQUIRE(pictures.size() == expected.size());
-        for (std::size_t i = 0; i < expected.size(); ++i)
+        for (std::size_t i = 0; i < expected.size(); ++i) {
             CHECK(pictures[i].radiance.pixels == expected[i].radiance.pixels);
+        }
     }
 
     TEST_CASE("after a stop there is no picture, and stopping takes no time") {

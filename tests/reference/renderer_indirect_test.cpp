@@ -78,10 +78,11 @@ class RendererIndirect : public RenderFixture {
             CAPTURE(bound);
             std::array<double, vpl_counts.size()> errors{};
             for (std::size_t i = 0; i < errors.size(); ++i) {
-                for (std::uint32_t seed = 0; seed < seeds; ++seed)
+                for (std::uint32_t seed = 0; seed < seeds; ++seed) {
                     errors[i] +=
                         rel_mse(scene, truth, {VplPlacement::paths, vpl_counts[i], bounces, seed}, bound) /
                         seeds;
+                }
                 MESSAGE(vpl_counts[i], " VPLs: relMSE ", errors[i], ", of which the reference's noise ",
                         noise);
             }

@@ -92,9 +92,7 @@ TEST_SUITE("configuration") {
         const auto without_effect = [](const Configuration& configuration) {
             std::vector<std::string_view> paths;
             for_each_setting(configuration, [&](const Setting& setting, const auto& /*value*/) {
-                if (!setting.has_effect) {
-                    paths.push_back(setting.path);
-                }
+                if (!setting.has_effect) paths.push_back(setting.path);
             });
             return paths;
         };

@@ -212,8 +212,9 @@ TEST_SUITE("edge cases") {
             std::size_t off = 0;
             for (std::size_t i = 0; i < usual.pixels.size(); ++i) {
                 const glm::vec3 d = glm::abs(picture.pixels[i] - usual.pixels[i]);
-                if (d.r + d.g + d.b > 0.01F * (usual.pixels[i].r + usual.pixels[i].g + usual.pixels[i].b))
+                if (d.r + d.g + d.b > 0.01F * (usual.pixels[i].r + usual.pixels[i].g + usual.pixels[i].b)) {
                     ++off;
+                }
             }
             CHECK(off * 100 < usual.pixels.size());
         }

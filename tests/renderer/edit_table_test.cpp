@@ -81,15 +81,9 @@ std::string column_of(std::string_view pass, const Configuration& configuration)
             path == ShadingPath::clustered_forward || path == ShadingPath::clustered_deferred;
         return clusters ? "cluster-grid" : "tile-grid";
     }
-    if (pass.starts_with("light-tiles")) {
-        return path == ShadingPath::tiled_forward ? "tiles" : "bounded";
-    }
-    if (pass.starts_with("light-clusters")) {
-        return "clusters";
-    }
-    if (pass.starts_with("blended")) {
-        return "blended";
-    }
+    if (pass.starts_with("light-tiles")) return path == ShadingPath::tiled_forward ? "tiles" : "bounded";
+    if (pass.starts_with("light-clusters")) return "clusters";
+    if (pass.starts_with("blended")) return "blended";
     const auto found = columns.find(pass);
     return found == columns.end() ? std::string(pass) : found->second;
 }

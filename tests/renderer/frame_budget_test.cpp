@@ -198,9 +198,7 @@ TEST_SUITE("frame budget") {
                                        done.written != coarse.at(pass).written;
                     CHECK_MESSAGE((done.workload != Workload::other) == grows, pass);
                     CHECK((done.workload == Workload::pixels_vpls) == (pass == "vpl-gather"));
-                    if (grows) {
-                        of_pixels.insert(pass);
-                    }
+                    if (grows) of_pixels.insert(pass);
                 }
             }
         }

@@ -317,8 +317,9 @@ Configuration small_configuration(ShadingPath path) {
 /// A picture to tone-map.
 std::vector<glm::vec3> gradient() {
     std::vector<glm::vec3> pixels;
-    for (std::uint32_t i = 0; i < size.x * size.y; ++i)
+    for (std::uint32_t i = 0; i < size.x * size.y; ++i) {
         pixels.emplace_back(static_cast<float>(i), 1.0F, 0.5F);
+    }
     return pixels;
 }
 

@@ -37,9 +37,7 @@ class HostTexture {
         std::vector<float> channels;
         for (const glm::vec4& texel : texels) {
             channels.push_back(texel.x);
-            if (format == Format::rgba32f) {
-                channels.insert(channels.end(), {texel.y, texel.z, texel.w});
-            }
+            if (format == Format::rgba32f) channels.insert(channels.end(), {texel.y, texel.z, texel.w});
         }
         texture_.upload(std::as_bytes(std::span(channels)));
         device.gl().TextureParameteri(texture_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_LINEAR);

@@ -380,8 +380,9 @@ TEST_SUITE("inspection") {
             renderer.invalidate();
             std::vector<Picture> pictures;
             for (int frame = 0; frame < 8; ++frame) {
-                if (inspects && frame == 1)
+                if (inspects && frame == 1) {
                     REQUIRE(inspector.show(Inspection{.resource = "radiance"}).empty());
+                }
                 if (inspects && frame == 3) REQUIRE(inspector.show(Inspection{.resource = "depth"}).empty());
                 if (inspects && frame == 5) REQUIRE(inspector.show({}).empty());
                 if (inspects && frame == 7) REQUIRE(inspector.show(Inspection{.resource = "albedo"}).empty());

@@ -93,8 +93,9 @@ glm::vec3 lit_point(Random& random, const gpu::Light& light) {
 /// The cell in which a point is seen, in double precision; nullopt outside the picture.
 std::optional<std::uint32_t> cell_of(const CameraView& view, const CellGrid& grid, glm::dvec3 point) {
     const glm::dvec4 clip = glm::dmat4(view.clip_from_world) * glm::dvec4(point, 1.0);
-    if (clip.w <= 0.0 || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w || clip.z > clip.w)
+    if (clip.w <= 0.0 || std::abs(clip.x) >= clip.w || std::abs(clip.y) >= clip.w || clip.z > clip.w) {
         return {};
+    }
     const glm::dvec2 pixel = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(grid.size);
     const glm::uvec2 tile = glm::uvec2(pixel) / grid.tile_size;
     const double depth = -(glm::dmat4(view.view_from_world) * glm::dvec4(point, 1.0)).z;

@@ -100,9 +100,7 @@ TEST_SUITE("refinement") {
             CAPTURE(set);
             CHECK(renderer.report().refined == set + 1);
             CHECK(is_sane(mean));
-            if (set == 0) {
-                CHECK(mean == pictures.front());
-            }
+            if (set == 0) CHECK(mean == pictures.front());
             // A step rounds three times, each time by at most 2⁻²⁴ of the largest value of the sets, which is
             // within an order of magnitude of the mean; 30 roundings are 1.8e-6 of it.
             const Picture expected = average(pictures);

@@ -58,9 +58,7 @@ Indices subdivide(std::vector<glm::vec3>& corners, const Indices& triangles) {
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
         const auto [found, is_new] =
             middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(corners.size()));
-        if (is_new) {
-            corners.push_back(glm::normalize(corners[a] + corners[b]));
-        }
+        if (is_new) corners.push_back(glm::normalize(corners[a] + corners[b]));
         return found->second;
     };
     Indices finer;
@@ -324,8 +322,9 @@ Picture RenderFixture::fresh_picture(const Scene& scene, glm::uvec2 size) {
 }
 
 Picture RenderFixture::from_scratch(const Scene& scene, glm::uvec2 size) {
-    if (!other_)
+    if (!other_) {
         other_ = std::make_unique<Renderer>(context->get_proc(), RendererOptions{.debug_output = true});
+    }
     REQUIRE(other_->configure(renderer.configuration()).empty());
     other_->invalidate();
     const RenderTarget target(device, size);

@@ -114,8 +114,9 @@ TEST_SUITE("sky") {
             const double share = 1.0 - 0.5 * (1.0 - d / std::hypot(d, height));
             double last = static_cast<double>(render(scene.world, camera, {1, 1}).at(0, 0).r);
             const double first_error = std::abs(last / (0.5 * share) - 1.0);
-            for (int frame = 1; frame < 64; ++frame)
+            for (int frame = 1; frame < 64; ++frame) {
                 last = static_cast<double>(render(scene.world, camera, {1, 1}).at(0, 0).r);
+            }
             return std::array{first_error, std::abs(last / (0.5 * share) - 1.0)};
         };
         for (const float distance : {0.05F, 0.5F, 2.0F}) {
@@ -213,15 +214,17 @@ TEST_SUITE("sky") {
             for (std::uint32_t y = 0; y < height; ++y) {
                 const double solid_angle =
                     2.0 * pi / width * (std::cos(pi * y / height) - std::cos(pi * (y + 1) / height));
-                for (std::uint32_t x = 0; x < width; ++x)
+                for (std::uint32_t x = 0; x < width; ++x) {
                     expected += solid_angle * glm::dvec3(picture.texels[y * width + x]);
+                }
             }
             glm::dvec3 found(0.0);
             for (const SkySun& sun : split.suns) found += glm::dvec3(sun.light);
             for (const SkyPatch& patch : split.patches) {
                 for (std::uint32_t y = patch.first.y; y < patch.last.y; ++y) {
-                    for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x)
+                    for (std::uint32_t x = patch.first.x; x < patch.last.x; ++x) {
                         found += glm::dvec3(split.grid->at(x, y).light);
+                    }
                 }
             }
             // Sums of floats.
@@ -295,9 +298,10 @@ TEST_SUITE("sky") {
         renderer.invalidate();
         const Picture picture = render(turned, size);
         std::size_t different = 0;
-        for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
             different +=
                 std::abs(picture.pixels[i].r - expected.pixels[i].r) > 1e-3F * expected.pixels[i].r ? 1 : 0;
+        }
         CHECK(mean(expected) > 0.0);
         CHECK(different <= 2);  // pixels on the shadow's edge
     }

@@ -31,8 +31,9 @@ std::shared_ptr<const Mesh> painted(const Mesh& mesh) {
 
 Scene painted(Scene scene) {
     std::vector<std::pair<Entity, std::shared_ptr<const Mesh>>> meshes;
-    for (auto [entity, instance] : scene.world.view<MeshInstance>())
+    for (auto [entity, instance] : scene.world.view<MeshInstance>()) {
         meshes.emplace_back(entity, instance.mesh);
+    }
     for (const auto& [entity, mesh] : meshes) scene.world.set(entity, MeshInstance{painted(*mesh)});
     return scene;
 }
@@ -71,8 +72,9 @@ TEST_SUITE("vertex colours") {
             mesh = *instance.mesh;
             ground_entity = entity;
         }
-        for (Vertex& vertex : mesh.primitives.at(0).vertices)
+        for (Vertex& vertex : mesh.primitives.at(0).vertices) {
             vertex.colour = stored({vertex.position.x > 0.0F ? 1.0F : 0.0F, 1.0F, 0.5F, 1.0F});
+        }
         scene.world.set(ground_entity, MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
         add(scene.world, looking({0, 2, 0}, {0, 0, 0}, {0, 0, 1}), DirectionalLight{.illuminance = 2.0F});
         configure(direct_only());
@@ -92,8 +94,9 @@ TEST_SUITE("vertex colours") {
         Material material = *diffuse(glm::vec3(0.9F), true);
         material.alpha_mode = AlphaMode::mask;
         Mesh mesh = *square(1.0F, std::make_shared<const Material>(material));
-        for (Vertex& vertex : mesh.primitives.at(0).vertices)
+        for (Vertex& vertex : mesh.primitives.at(0).vertices) {
             vertex.colour = stored({1.0F, 1.0F, 1.0F, 0.4F});
+        }
         add(covered.world, at({0.0F, 0.5F, 0.0F}),
             MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
         Configuration configuration = linear_configuration();

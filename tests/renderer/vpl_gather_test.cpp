@@ -88,8 +88,9 @@ TEST_SUITE("interleaved gathering") {
             for (std::size_t share = 0; share < classes; ++share) {
                 std::map<std::pair<std::uint32_t, std::uint32_t>, double> found;
                 const std::size_t last = (share + 1) * order.size() / classes;
-                for (std::size_t i = share * order.size() / classes; i < last; ++i)
+                for (std::size_t i = share * order.size() / classes; i < last; ++i) {
                     ++found[group_of[order[i]]];
+                }
                 for (const auto& entry : sizes) {
                     const auto& group = entry.first;
                     const double size = entry.second;

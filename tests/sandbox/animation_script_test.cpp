@@ -273,12 +273,14 @@ TEST_SUITE("animation script") {
         const int last = door.animation.script().frames - 1;
         // The scene file has seven decimals.
         const glm::mat4 open = world_matrix(untouched.world, leaf);
-        for (int column = 0; column < 4; ++column)
+        for (int column = 0; column < 4; ++column) {
             CHECK(glm::distance(door.matrix("door", last)[column], open[column]) < 1e-6F);
+        }
         // The closed door is in the plane of the wall, along the world's +Z, and then opens steadily.
         CHECK(glm::vec3(door.matrix("door", 0)[2]) == glm::vec3(0.0F, 0.0F, 1.0F));
-        for (int frame = 0; frame < last; ++frame)
+        for (int frame = 0; frame < last; ++frame) {
             CHECK(door.matrix("door", frame + 1)[2].z <= door.matrix("door", frame)[2].z);
+        }
     }
 
     TEST_CASE("shipped: lights are switched off one after the other, then on again") {

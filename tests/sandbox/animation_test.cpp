@@ -92,8 +92,9 @@ Script everything(bool loop) {
 }
 
 void check_equal(const Stage& a, const Stage& b) {
-    for (const Entity entity : {a.arm, a.lamp, a.sun, a.camera})
+    for (const Entity entity : {a.arm, a.lamp, a.sun, a.camera}) {
         CHECK(a.world.get<Transform>(entity) == b.world.get<Transform>(entity));
+    }
     CHECK(a.world.get<PointLight>(a.lamp) == b.world.get<PointLight>(b.lamp));
     CHECK(a.world.get<DirectionalLight>(a.sun) == b.world.get<DirectionalLight>(b.sun));
 }
@@ -116,8 +117,9 @@ TEST_SUITE("animation") {
     TEST_CASE("at a key the value is exactly that of the key, with every interpolation") {
         for (const auto interpolation : {Interpolation::linear, Interpolation::step, Interpolation::smooth}) {
             const Track track = moving(interpolation);
-            for (const auto& key : track.translation)
+            for (const auto& key : track.translation) {
                 CHECK(pose_at(track, key.frame).translation == key.value);
+            }
         }
         const Track door = turning(0.1F, 123.4F);
         for (const auto& key : door.rotation) CHECK(pose_at(door, key.frame).rotation == key.value);
@@ -126,16 +128,18 @@ TEST_SUITE("animation") {
     TEST_CASE("before the first key and after the last one a value is constant") {
         const Track track = moving(Interpolation::linear);
         for (const int frame : {0, 9, 10}) CHECK(pose_at(track, frame).translation == glm::vec3(1, 2, 3));
-        for (const int frame : {24, 25, 1000000})
+        for (const int frame : {24, 25, 1000000}) {
             CHECK(pose_at(track, frame).translation == glm::vec3(3, 0, -1));
+        }
     }
 
     TEST_CASE("between keys values are interpolated linearly, in steps, or smoothly") {
         // The values of the keys and the fractions 1/2 and 1/4 between them are exact in binary.
         CHECK(pose_at(moving(Interpolation::linear), 15).translation == glm::vec3(2, 2, 1));
         CHECK(pose_at(moving(Interpolation::linear), 21).translation == glm::vec3(3, 1.5, -1));
-        for (const int frame : {11, 15, 19})
+        for (const int frame : {11, 15, 19}) {
             CHECK(pose_at(moving(Interpolation::step), frame).translation == glm::vec3(1, 2, 3));
+        }
         // 3t² - 2t³: 1/2 at t = 1/2, 5/32 at t = 1/4.
         CHECK(pose_at(moving(Interpolation::smooth), 15).translation == glm::vec3(2, 2, 1));
         CHECK(pose_at(moving(Interpolation::smooth), 21).translation ==

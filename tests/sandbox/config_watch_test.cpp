@@ -82,8 +82,9 @@ TEST_SUITE("config watch") {
 
     TEST_CASE("without a file nothing is watched") {
         ConfigWatch watch{Options{}};
-        for (int second = 0; second < 5; ++second)
+        for (int second = 0; second < 5; ++second) {
             CHECK_FALSE(watch.poll(SaveWatch::Clock::time_point(std::chrono::seconds(second))));
+        }
     }
 
     TEST_CASE("a saved file is read once, however it was saved, and flags still override it") {
@@ -162,8 +163,9 @@ TEST_SUITE("config watch") {
         REQUIRE(saved);
         CHECK_FALSE(saved->configuration);
         REQUIRE(saved->errors.size() == 1);
-        for (const std::string& word : {file.name(), std::string("path"), std::string("colour")})
+        for (const std::string& word : {file.name(), std::string("path"), std::string("colour")}) {
             CHECK_MESSAGE(saved->errors[0].find(word) != std::string::npos, word);
+        }
         for (int i = 0; i < 3; ++i) CHECK_FALSE(file.look());
         file.touch();
         CHECK(file.settle());

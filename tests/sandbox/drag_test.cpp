@@ -144,8 +144,9 @@ TEST_SUITE("drag") {
         scene.follow(drag, scene.seen(centre + 2.0F * glm::vec3(std::sin(0.6F), 0.0F, std::cos(0.6F))));
         const glm::mat3 expected = glm::mat3(glm::rotate(glm::mat4(1.0F), 0.6F, glm::vec3(0, 1, 0))) * before;
         const glm::mat3 now(world_matrix(scene.world, box));
-        for (const int column : {0, 1, 2})
+        for (const int column : {0, 1, 2}) {
             CHECK(glm::distance(now[column], expected[column]) < tolerance_world);
+        }
         CHECK(glm::distance(position_of(scene.world, box), centre) < tolerance_world);
     }
 

@@ -19,8 +19,9 @@ namespace candela::sandbox {
 inline void add_side(Primitive& primitive, const glm::vec3& at, const glm::vec3& side, const glm::vec3& up) {
     const auto first = static_cast<std::uint32_t>(primitive.vertices.size());
     const glm::vec3 normal = glm::normalize(glm::cross(side, up));
-    for (const glm::vec3& corner : {at, at + side, at + side + up, at + up})
+    for (const glm::vec3& corner : {at, at + side, at + side + up, at + up}) {
         primitive.vertices.push_back({corner, normal, {}});
+    }
     for (const std::uint32_t corner : {0U, 1U, 2U, 0U, 2U, 3U}) primitive.indices.push_back(first + corner);
 }
 

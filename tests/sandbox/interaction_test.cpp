@@ -291,8 +291,9 @@ TEST_SUITE("interaction") {
         "what is the app's is returned, presets with their number, repeats only where they are useful") {
         User user;
         CHECK(user.key(GLFW_KEY_Q, GLFW_MOD_CONTROL) == Command{Action::quit});
-        for (int number = 1; number <= 4; ++number)
+        for (int number = 1; number <= 4; ++number) {
             CHECK(user.key(GLFW_KEY_0 + number) == Command{Action::preset, number});
+        }
         CHECK(user.key(GLFW_KEY_SPACE) == Command{Action::play_pause});
         CHECK(user.key(GLFW_KEY_PERIOD) == Command{Action::step_frame});
         CHECK(user.key(GLFW_KEY_P, 0, true) == Command{Action::next_path});

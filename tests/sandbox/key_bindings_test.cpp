@@ -13,8 +13,9 @@ namespace candela::sandbox {
 TEST_SUITE("key bindings") {
     TEST_CASE("no key does two things") {
         std::set<std::pair<int, int>> seen;
-        for (const KeyBinding& binding : key_bindings())
+        for (const KeyBinding& binding : key_bindings()) {
             CHECK_MESSAGE(seen.insert({binding.key, binding.modifiers}).second, binding.keys);
+        }
         for (const KeyBinding& binding : key_bindings()) {
             if (binding.action != Action::fly) continue;
             CHECK_FALSE(seen.contains({binding.key, GLFW_MOD_SHIFT}));  // which makes flying faster
@@ -28,8 +29,9 @@ TEST_SUITE("key bindings") {
             if (first) CHECK_FALSE(binding.help.empty());
             CHECK(binding.help.empty() == binding.keys.empty());
         }
-        for (int action = 0; action <= static_cast<int>(Action::quit); ++action)
+        for (int action = 0; action <= static_cast<int>(Action::quit); ++action) {
             CHECK_MESSAGE(seen.contains(static_cast<Action>(action)), action);
+        }
     }
 
     TEST_CASE("modifiers must match, locks do not matter") {

@@ -18,8 +18,9 @@ TEST_SUITE("numbered file") {
         CHECK(next(".png") == "candela-001.png");
         for (const char* other : {"candela-007.json", "candela-.png", "candela-x8.png", "candela-9x.png",
                                   "my-candela-010.png", "candela-011.png.part", "candela.png",
-                                  "candela-99999999999999.png", "candela-2147483647.png", "candela--3.png"})
+                                  "candela-99999999999999.png", "candela-2147483647.png", "candela--3.png"}) {
             touch(other);
+        }
         CHECK(next(".png") == "candela-001.png");
         touch("candela-001.png");
         touch("candela-003.png");

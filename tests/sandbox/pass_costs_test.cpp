@@ -36,8 +36,9 @@ TEST_SUITE("pass costs") {
 
     TEST_CASE("only the last runs are kept") {
         PassCosts costs;
-        for (std::size_t i = 0; i < 2 * PassCosts::kept; ++i)
+        for (std::size_t i = 0; i < 2 * PassCosts::kept; ++i) {
             costs.add(frame_of({{"gather", true, static_cast<double>(i), 0.0}}));
+        }
         const PassCost& gather = costs.passes().front();
         CHECK(gather.history.size() == PassCosts::kept);
         CHECK(gather.history.front() == static_cast<float>(PassCosts::kept));

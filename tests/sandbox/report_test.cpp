@@ -132,8 +132,9 @@ TEST_SUITE("report") {
         const RunReport run = some_run();
         const std::string table = to_table(run.frames[0], run.state);
         for (const char* word :
-             {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "120 paths", "36"})
+             {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "120 paths", "36"}) {
             CHECK_MESSAGE(table.find(word) != std::string::npos, word);
+        }
     }
 }
 

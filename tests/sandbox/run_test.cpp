@@ -116,8 +116,9 @@ TEST_SUITE("session") {
             options.frames = 3;
             options.out = folder / "again%d.pfm";
             REQUIRE(run(options) == 0);
-            for (const int index : {0, 1, 2})
+            for (const int index : {0, 1, 2}) {
                 CHECK(first(index) == read_pfm(numbered(*options.out, index)).pixels);
+            }
         }
     }
 

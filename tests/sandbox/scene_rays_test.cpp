@@ -128,13 +128,15 @@ TEST_SUITE("scene rays") {
         const Entity parent = add_skewing_parent(world);
         const auto mesh = [&] {
             Primitive primitive;
-            for (int i = 0; i < 40; ++i)
+            for (int i = 0; i < 40; ++i) {
                 add_side(primitive, random_direction(random), random_direction(random),
                          random_direction(random));
+            }
             return mesh_of(std::move(primitive), true);
         }();
-        for (int i = 0; i < 20; ++i)
+        for (int i = 0; i < 20; ++i) {
             add_mesh(world, mesh, {.translation = 3.0F * random_direction(random), .parent = parent});
+        }
         add_mesh(world, mesh, {.scale = {1.0F, 0.0F, 1.0F}, .parent = parent});  // flat: not found
         SceneRays rays;
         rays.update_and_wait(world);
@@ -157,9 +159,10 @@ TEST_SUITE("scene rays") {
         World world;
         Primitive primitive;
         std::mt19937 random(1);
-        for (int i = 0; i < 200'000; ++i)
+        for (int i = 0; i < 200'000; ++i) {
             add_side(primitive, 10.0F * random_direction(random), 0.1F * random_direction(random),
                      0.1F * random_direction(random));
+        }
         add_mesh(world, mesh_of(std::move(primitive)));
         const auto hits = [&](const SceneRays& rays) {
             int found = 0;

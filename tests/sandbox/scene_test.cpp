@@ -32,8 +32,9 @@ void add_triangle(World& world, float size) {
     const auto mesh = std::make_shared<Mesh>();
     mesh->primitives.emplace_back();
     for (const glm::vec3 corner :
-         {glm::vec3(0.0F), glm::vec3(size, 0.0F, 0.0F), glm::vec3(0.0F, 2.0F * size, 0.0F)})
+         {glm::vec3(0.0F), glm::vec3(size, 0.0F, 0.0F), glm::vec3(0.0F, 2.0F * size, 0.0F)}) {
         mesh->primitives[0].vertices.push_back({corner, {0.0F, 0.0F, 1.0F}, {}});
+    }
     const Entity entity = world.create();
     world.set(entity, Transform{.scale = {3.0F, 1.0F, 1.0F}});
     world.set(entity, MeshInstance{mesh});

@@ -54,8 +54,9 @@ glm::quat any_rotation() {
 template <class T>
 Keys<T> any_keys(T (*any_value)(), int frames) {
     Keys<T> keys;
-    for (int frame = *rc::gen::inRange(0, 3); frame <= frames; frame += *rc::gen::inRange(1, 5))
+    for (int frame = *rc::gen::inRange(0, 3); frame <= frames; frame += *rc::gen::inRange(1, 5)) {
         keys.push_back({frame, any_value()});
+    }
     return any_flag() ? keys : Keys<T>();
 }
 

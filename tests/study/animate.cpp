@@ -29,9 +29,7 @@ struct Play {
 Play load_play(const AnimateStudy& study) {
     sandbox::Script script = sandbox::load_script(study.script);
     const auto file = sandbox::scene_of(script);
-    if (!file) {
-        throw std::invalid_argument(fmt::format("{}: names no scene", script.path.string()));
-    }
+    if (!file) throw std::invalid_argument(fmt::format("{}: names no scene", script.path.string()));
     World world = sandbox::load_scene(*file).world;
     sandbox::Animation animation(script, world);
     const int frames = study.frames > 0 ? study.frames : script.frames;
@@ -57,9 +55,7 @@ Reference reference_of(const Play& play, const std::string& hash, const AnimateS
                           .bounces = study.bounces,
                           .seed = study.seed};
     const std::filesystem::path folder = study.references / hash;
-    if (holds(folder, request)) {
-        return read_reference(folder);
-    }
+    if (holds(folder, request)) return read_reference(folder);
     Reference traced = trace_request(play.world, request);
     write_reference(folder, play.scene.filename().string(), traced);
     return traced;

@@ -12,9 +12,7 @@ namespace candela::study {
 
 Entity first_camera(const World& world) {
     const std::vector<Entity> cameras = sandbox::cameras(world);
-    if (cameras.empty()) {
-        throw std::invalid_argument("the scene has no camera");
-    }
+    if (cameras.empty()) throw std::invalid_argument("the scene has no camera");
     return cameras.front();
 }
 
@@ -31,9 +29,7 @@ Bench::Bench(const gl::GetProc& get_proc, const World& world, glm::uvec2 size)
 void Bench::configure(Configuration configuration) {
     configuration.tone_map.enabled = false;
     const std::vector<std::string> errors = renderer_.configure(configuration);
-    if (!errors.empty()) {
-        throw std::invalid_argument(fmt::format("{}", fmt::join(errors, "; ")));
-    }
+    if (!errors.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(errors, "; ")));
 }
 
 double Bench::frame(glm::vec2 jitter) {

@@ -88,9 +88,7 @@ FrameGraph declare(const Plans& plans, std::vector<TextureHandle>& made, bool al
             for (const std::size_t read : plans.reads[index]) {
                 pass.read(made[read], Usage::sampled);
             }
-            if (all_run || plans.unread[index]) {
-                pass.side_effect();
-            }
+            if (all_run || plans.unread[index]) pass.side_effect();
             pass.run([index, ran](Execution&) mutable { benchmark::DoNotOptimize(ran += index); });
             return pass.write(graph.texture("result", {{64, 64}, Format::rgba16f}), Usage::colour_target);
         });
@@ -162,9 +160,7 @@ BENCHMARK_CAPTURE(run_idle_passes, diamonds, diamonds)->Apply(sizes);
 
 int candela::study::graph(int count, char** arguments) {
     benchmark::Initialize(&count, arguments);
-    if (benchmark::ReportUnrecognizedArguments(count, arguments)) {
-        return 2;
-    }
+    if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     return 0;

@@ -27,12 +27,8 @@ void print_line(const Json& json) {
 Json read_json(const std::filesystem::path& path) {
     std::ifstream file(path);
     Json json = Json::parse(file, nullptr, false);
-    if (!file.is_open()) {
-        throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
-    }
-    if (json.is_discarded()) {
-        throw std::runtime_error(fmt::format("{}: is not valid JSON", path.string()));
-    }
+    if (!file.is_open()) throw std::runtime_error(fmt::format("{}: cannot be read", path.string()));
+    if (json.is_discarded()) throw std::runtime_error(fmt::format("{}: is not valid JSON", path.string()));
     return json;
 }
 

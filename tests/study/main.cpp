@@ -24,9 +24,7 @@ void add_scene(CLI::App& part, std::filesystem::path& scene) {
 
 ShadingPath path_named(const std::string& name) {
     for (const ShadingPath path : all_shading_paths) {
-        if (to_string(path) == name) {
-            return path;
-        }
+        if (to_string(path) == name) return path;
     }
     throw std::invalid_argument(fmt::format("--paths: '{}' is no shading path", name));
 }
@@ -93,9 +91,7 @@ void add_paths(CLI::App& app, int& status) {
     part.add_option("--paths", *names, "in this order; default: all")->delimiter(',');
     part.add_option("--csv", study->csv, "append the figures to this file");
     part.callback([=, &status] {
-        if (!names->empty()) {
-            study->paths = paths_named(*names);
-        }
+        if (!names->empty()) study->paths = paths_named(*names);
         status = paths(*study);
     });
 }

@@ -132,9 +132,7 @@ class DirectLights {
         const Configuration key = direct_part(configuration, emission_);
         const auto known =
             std::find_if(known_.begin(), known_.end(), [&](const auto& each) { return each.first == key; });
-        if (known != known_.end()) {
-            return known->second;
-        }
+        if (known != known_.end()) return known->second;
         Bench bench = make_bench();
         return known_.emplace_back(key, render_direct(bench, key)).second;
     }
@@ -164,9 +162,7 @@ Seeds measure_seeds(Bench& bench, Configuration configuration, const std::vector
         result.indirect.push_back(measure(indirect, truth.indirect, truth.hit));
         result.total.push_back(measure(total, truth.total, truth.hit));
         result.flip.push_back(flip(total, truth.total, truth.hit).mean);
-        if (result.first.pixels.empty()) {
-            result.first = std::move(total);
-        }
+        if (result.first.pixels.empty()) result.first = std::move(total);
     }
     return result;
 }
@@ -224,9 +220,7 @@ Json to_json(const EnergyAccount& flux) {
 }
 
 Json to_json(const std::optional<VplReport>& vpls) {
-    if (!vpls) {
-        return nullptr;
-    }
+    if (!vpls) return nullptr;
     return {{"requested", vpls->requested},
             {"alive", vpls->alive},
             {"paths", vpls->paths},

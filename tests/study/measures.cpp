@@ -25,9 +25,10 @@ double channel_sum(glm::dvec3 vector) {
 double largest_channel(const Picture& picture, std::span<const std::uint8_t> hit) {
     double largest = 0.0;
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        if (counts(hit, i))
+        if (counts(hit, i)) {
             largest =
                 std::max<double>({largest, picture.pixels[i].r, picture.pixels[i].g, picture.pixels[i].b});
+        }
     }
     return largest;
 }

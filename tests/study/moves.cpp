@@ -71,9 +71,7 @@ void play_round(Bench& bench, int round, Figures& figures) {
     bench.frame({});
     const Share before_shading = share_of(bench.renderer(), is_before_shading);
     // The first round compiles shaders and uploads the scene, and does not count.
-    if (round == 0) {
-        return;
-    }
+    if (round == 0) return;
     figures.still.push_back(still_ms / before_shading.ms);
     figures.camera.push_back(camera.ms);
     figures.camera_passes = std::max(figures.camera_passes, camera.passes);

@@ -31,9 +31,7 @@ Sample sample(Bench& bench, int round) {
     for (const FrameReport& frame : bench.renderer().take_frames(true)) {
         sample.lists = 0.0;
         for (const PassReport& pass : frame.passes) {
-            if (builds_lists(pass.name)) {
-                sample.lists += std::max(pass.cpu_ms, pass.gpu_ms);
-            }
+            if (builds_lists(pass.name)) sample.lists += std::max(pass.cpu_ms, pass.gpu_ms);
         }
     }
     return sample;
@@ -75,18 +73,14 @@ void print(const PathStudy& study, std::vector<Candidate>& candidates) {
 void append_csv(const PathStudy& study, std::vector<Candidate>& candidates) {
     const bool is_new = !std::filesystem::exists(study.csv);
     std::ofstream file(study.csv, std::ios::app);
-    if (is_new) {
-        file << "scene,lights,path,frame_ms,ratio,lists_share,list_mean\n";
-    }
+    if (is_new) file << "scene,lights,path,frame_ms,ratio,lists_share,list_mean\n";
     for (Candidate& candidate : candidates) {
         const LightReport lights = candidate.bench->renderer().report().lights;
         file << fmt::format("{},{},{},{:.3f},{:.4f},{:.4f},{:.2f}\n", study.scene.stem().string(),
                             lights.count, to_string(candidate.path), median(candidate.frame),
                             median(candidate.ratio), median(candidate.lists), lights.tile_mean);
     }
-    if (!file) {
-        throw std::runtime_error(fmt::format("{}: cannot be written", study.csv.string()));
-    }
+    if (!file) throw std::runtime_error(fmt::format("{}: cannot be written", study.csv.string()));
 }
 
 }  // namespace
@@ -108,18 +102,14 @@ int paths(const PathStudy& study) {
         for (Candidate& candidate : candidates) {
             const Sample now = sample(*candidate.bench, round);
             first = first > 0.0 ? first : now.frame;
-            if (round == 0) {
-                continue;
-            }
+            if (round == 0) continue;
             candidate.frame.push_back(now.frame);
             candidate.ratio.push_back(now.frame / first);
             candidate.lists.push_back(now.lists / now.frame);
         }
     }
     print(study, candidates);
-    if (!study.csv.empty()) {
-        append_csv(study, candidates);
-    }
+    if (!study.csv.empty()) append_csv(study, candidates);
     return 0;
 }
 

@@ -27,9 +27,7 @@ void require_known_members(const Json& point) {
 /// Ids are used in file names.
 std::string id_of(const Json& point) {
     const auto found = point.find("id");
-    if (found == point.end() || !found->is_string()) {
-        fail("\"id\" is not a text");
-    }
+    if (found == point.end() || !found->is_string()) fail("\"id\" is not a text");
     auto id = found->get<std::string>();
     if (id.empty() || id.front() == '.' || id.find('/') != id.npos) {
         fail("\"id\" is empty, begins with a point or has a slash in it");
@@ -39,9 +37,7 @@ std::string id_of(const Json& point) {
 
 std::string request_of(const Json& point) {
     const Json config = point.value("config", Json::object());
-    if (!config.is_object()) {
-        fail("\"config\" is not an object");
-    }
+    if (!config.is_object()) fail("\"config\" is not an object");
     return config.dump();
 }
 
@@ -60,16 +56,12 @@ std::vector<std::uint32_t> seeds_of(const Json& point) {
 
 bool fresh_seeds_of(const Json& point) {
     const Json fresh = point.value("fresh_seeds", Json(false));
-    if (!fresh.is_boolean()) {
-        fail("\"fresh_seeds\" is neither true nor false");
-    }
+    if (!fresh.is_boolean()) fail("\"fresh_seeds\" is neither true nor false");
     return fresh.get<bool>();
 }
 
 Point read_point(const Json& point) {
-    if (!point.is_object()) {
-        fail("is not an object");
-    }
+    if (!point.is_object()) fail("is not an object");
     require_known_members(point);
     return {id_of(point), request_of(point), seeds_of(point), fresh_seeds_of(point)};
 }
@@ -77,9 +69,7 @@ Point read_point(const Json& point) {
 }  // namespace
 
 std::vector<Point> read_points(const Json& json, std::string_view name) {
-    if (!json.is_array()) {
-        fail(fmt::format("{}: is not a list of points", name));
-    }
+    if (!json.is_array()) fail(fmt::format("{}: is not a list of points", name));
     std::vector<Point> points;
     points.reserve(json.size());
     std::set<std::string> ids;

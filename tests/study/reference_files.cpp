@@ -46,9 +46,7 @@ Json to_json(const Request& request) {
                  {"samples", request.samples},
                  {"bounces", nullptr},
                  {"seed", request.seed}};
-    if (request.bounces) {
-        json["bounces"] = *request.bounces;
-    }
+    if (request.bounces) json["bounces"] = *request.bounces;
     return json;
 }
 
@@ -59,9 +57,7 @@ Request request_from(const Json& json) {
                     .samples = json.at("samples"),
                     .bounces = std::nullopt,
                     .seed = json.at("seed")};
-    if (!json.at("bounces").is_null()) {
-        request.bounces = json.at("bounces").get<std::uint32_t>();
-    }
+    if (!json.at("bounces").is_null()) request.bounces = json.at("bounces").get<std::uint32_t>();
     return request;
 }
 
@@ -115,9 +111,7 @@ fs::path beside(const fs::path& folder, const char* suffix) {
 
 void swap_in(const fs::path& fresh, const fs::path& folder) {
     const fs::path old = beside(folder, "old");
-    if (fs::exists(folder)) {
-        fs::rename(folder, old);
-    }
+    if (fs::exists(folder)) fs::rename(folder, old);
     fs::rename(fresh, folder);
     fs::remove_all(old);
 }

@@ -8,9 +8,7 @@ namespace candela::study {
 
 Configuration configuration_of(const Point& point) {
     const ConfigurationResult result = read_configuration(point.request);
-    if (!result.configuration) {
-        throw std::invalid_argument(fmt::format("{}", fmt::join(result.errors, "; ")));
-    }
+    if (!result.configuration) throw std::invalid_argument(fmt::format("{}", fmt::join(result.errors, "; ")));
     Configuration configuration = *result.configuration;
     configuration.show = Show::total;
     configuration.vpls.seed = point.seeds.front();

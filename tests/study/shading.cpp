@@ -24,9 +24,7 @@ struct Candidate {
 void print_passes(std::string_view title, const Renderer& renderer) {
     fmt::print("{}:", title);
     for (const PassRecord& pass : renderer.last_passes()) {
-        if (pass.ran) {
-            fmt::print(" {}", pass.name);
-        }
+        if (pass.ran) fmt::print(" {}", pass.name);
     }
     fmt::print("\n");
 }

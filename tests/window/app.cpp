@@ -58,8 +58,9 @@ double mean(const Shot& shot) {
 int changed_pixels(const Shot& a, const Shot& b, int tolerance) {
     REQUIRE(a.pixels.size() == b.pixels.size());
     int changed = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         changed += std::abs(a.pixels[i] - b.pixels[i]) > tolerance ? 1 : 0;
+    }
     return changed;
 }
 

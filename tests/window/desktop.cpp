@@ -111,11 +111,13 @@ class DragSource {
         const Atom wanted = atom(display_, message);
         while (std::chrono::steady_clock::now() < deadline) {
             XEvent event{};
-            if (XCheckTypedWindowEvent(display_, window_, SelectionRequest, &event) == True)
+            if (XCheckTypedWindowEvent(display_, window_, SelectionRequest, &event) == True) {
                 answer(event.xselectionrequest);
+            }
             if (XCheckTypedWindowEvent(display_, window_, ClientMessage, &event) == True &&
-                event.xclient.message_type == wanted)
+                event.xclient.message_type == wanted) {
                 return event.xclient;
+            }
             std::this_thread::sleep_for(5ms);
         }
         FAIL("the window sends no ", message, " for ", uri_);

@@ -44,8 +44,9 @@ int range_of(const Shot& shot) {
 int sharpest_step(const Shot& shot) {
     int step = 0;
     for (int y = 0; y < shot.height; ++y) {
-        for (int x = 1; x < shot.width; ++x)
+        for (int x = 1; x < shot.width; ++x) {
             step = std::max(step, std::abs(shot.at(x, y) - shot.at(x - 1, y)));
+        }
     }
     return step;
 }
@@ -61,8 +62,9 @@ bool is_doubled(const Shot& shot, int left, int top) {
     for (int y = top; y + 1 < shot.height; y += 2) {
         for (int x = left; x + 1 < shot.width; x += 2) {
             const int first = shot.at(x, y);
-            if (shot.at(x + 1, y) != first || shot.at(x, y + 1) != first || shot.at(x + 1, y + 1) != first)
+            if (shot.at(x + 1, y) != first || shot.at(x, y + 1) != first || shot.at(x + 1, y + 1) != first) {
                 return false;
+            }
         }
     }
     return true;

@@ -53,36 +53,22 @@ class Timeline {
     template <class Need>
     void visit(const Access& access, std::uint32_t position, Need need) {
         const Resource& resource = declared_.resources[access.resource];
-        if (resource.kind == ResourceKind::value) {
-            return;
-        }
+        if (resource.kind == ResourceKind::value) return;
         const std::uint32_t object = object_of(access);
         const Time since = std::max(wrote_[object], incoherent(access) ? read_[object] : 0);
-        if (since != 0) {
-            need(position, now_, index_of(barrier_for(resource.kind, access.usage)), since);
-        }
+        if (since != 0) need(position, now_, index_of(barrier_for(resource.kind, access.usage)), since);
     }
 
     void note(const Access& access) {
-        if (declared_.resources[access.resource].kind == ResourceKind::value) {
-            return;
-        }
-        if (incoherent(access)) {
-            wrote_[object_of(access)] = now_;
-        }
-        if (!access.write) {
-            read_[object_of(access)] = now_;
-        }
+        if (declared_.resources[access.resource].kind == ResourceKind::value) return;
+        if (incoherent(access)) wrote_[object_of(access)] = now_;
+        if (!access.write) read_[object_of(access)] = now_;
     }
 
     [[nodiscard]] std::uint32_t object_of(const Access& access) const {
         const Resource& resource = declared_.resources[access.resource];
-        if (resource.history_of != none) {
-            return plan_.object[resource.history_of] + (frame_ + 1) % 2;
-        }
-        if (resource.history != none) {
-            return plan_.object[access.resource] + frame_ % 2;
-        }
+        if (resource.history_of != none) return plan_.object[resource.history_of] + (frame_ + 1) % 2;
+        if (resource.history != none) return plan_.object[access.resource] + frame_ % 2;
         return plan_.object[access.resource];
     }
 
@@ -124,9 +110,7 @@ Barrier barrier_for(ResourceKind kind, Usage usage) {
 
 std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan) {
     std::vector<Barrier> barriers(plan.order.size(), Barrier::none);
-    if (!any_incoherent(declared, plan)) {
-        return barriers;
-    }
+    if (!any_incoherent(declared, plan)) return barriers;
 
     // The object of a history is overwritten two frames after it was written, so after two frames every
     // hazard is known.
@@ -146,9 +130,7 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
     std::array<Bit, bit_count> bits;
     timeline.run_frame([&](std::uint32_t position, Time now, std::size_t index, Time since) {
         Bit& bit = bits[index];
-        if (bit.issued > since) {
-            return;
-        }
+        if (bit.issued > since) return;
         bit.issued = now;
         if (bit.first == none) {
             bit.first = position;
@@ -161,15 +143,11 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
     // Only the first barrier of a bit can be redundant: the last one of the previous frame may serve instead.
     timeline.run_frame([&](std::uint32_t position, Time, std::size_t index, Time since) {
         Bit& bit = bits[index];
-        if (bit.issued <= since) {
-            bit.due = std::min(bit.due, position);
-        }
+        if (bit.issued <= since) bit.due = std::min(bit.due, position);
     });
     for (std::size_t index = 0; index < bit_count; ++index) {
         const Bit& bit = bits[index];
-        if (bit.second == none || bit.due < bit.second) {
-            continue;
-        }
+        if (bit.second == none || bit.due < bit.second) continue;
         barriers[bit.first] =
             static_cast<Barrier>(static_cast<std::uint32_t>(barriers[bit.first]) & ~(1U << index));
     }

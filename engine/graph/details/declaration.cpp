@@ -75,16 +75,12 @@ ResourceHandle Declaration::add_resource(std::string_view name, ResourceKind kin
 }
 
 ResourceHandle Declaration::add_texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
-    if (textures.empty() || textures.back() != desc) {
-        textures.push_back(desc);
-    }
+    if (textures.empty() || textures.back() != desc) textures.push_back(desc);
     return add_resource(name, ResourceKind::texture, lifetime, textures.size() - 1);
 }
 
 ResourceHandle Declaration::add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime) {
-    if (buffers.empty() || buffers.back() != desc) {
-        buffers.push_back(desc);
-    }
+    if (buffers.empty() || buffers.back() != desc) buffers.push_back(desc);
     return add_resource(name, ResourceKind::buffer, lifetime, buffers.size() - 1);
 }
 
@@ -103,9 +99,7 @@ ResourceHandle Declaration::add_history(ResourceHandle of) {
         error(ErrorCode::wrong_usage, fmt::format("texture '{}' has no history: it {}", base.name, why));
         return {id, of.resource, of.version};
     }
-    if (base.history != none) {
-        return {id, base.history, 0};
-    }
+    if (base.history != none) return {id, base.history, 0};
 
     const auto previous = size_of(resources);
     resources[of.resource].lifetime = Lifetime::persistent;
@@ -121,15 +115,9 @@ ResourceHandle Declaration::add_history(ResourceHandle of) {
 
 /// Empty if the resource can have a history.
 std::string_view Declaration::why_no_history(const Resource& base) const {
-    if (base.lifetime == Lifetime::imported) {
-        return "is imported";
-    }
-    if (base.history_of != none) {
-        return "is a history itself";
-    }
-    if (base.updated) {
-        return "is updated in place";
-    }
+    if (base.lifetime == Lifetime::imported) return "is imported";
+    if (base.history_of != none) return "is a history itself";
+    if (base.updated) return "is updated in place";
     return base.first_part != none || base.part_of != none ? "has parts or is one" : "";
 }
 
@@ -140,9 +128,7 @@ ResourceHandle Declaration::add_part(ResourceHandle of, TexturePart part) {
     }
     const std::string_view whole = resources[of.resource].name;
     for (std::uint32_t at = resources[of.resource].first_part; at != none; at = resources[at].next_part) {
-        if (resources[at].part == part) {
-            return {id, at, 0};
-        }
+        if (resources[at].part == part) return {id, at, 0};
     }
     if (const std::string_view why = why_no_parts(resources[of.resource], part); !why.empty()) {
         error(ErrorCode::wrong_usage, fmt::format("texture '{}' has no {}: {}", whole, to_string(part), why));
@@ -164,28 +150,20 @@ ResourceHandle Declaration::add_part(ResourceHandle of, TexturePart part) {
 
 /// Empty if the texture can have the part.
 std::string_view Declaration::why_no_parts(const Resource& whole, TexturePart part) const {
-    if (whole.lifetime == Lifetime::imported) {
-        return "it is imported";
-    }
+    if (whole.lifetime == Lifetime::imported) return "it is imported";
     if (whole.history != none || whole.history_of != none || whole.part_of != none) {
         return "it has a history, is one, or is a part itself";
     }
-    if (whole.versions > 0 || whole.reader != none) {
-        return "a pass accesses it as a whole";
-    }
+    if (whole.versions > 0 || whole.reader != none) return "a pass accesses it as a whole";
     const TextureDesc& desc = texture(whole);
     const bool has_layer = part.layer == TexturePart::all_layers ||
                            (part.layer < desc.layers && desc.shape != TextureShape::flat);
-    if (part.mip >= desc.mips || !has_layer) {
-        return "there are fewer";
-    }
+    if (part.mip >= desc.mips || !has_layer) return "there are fewer";
     for (std::uint32_t at = whole.first_part; at != none; at = resources[at].next_part) {
         const TexturePart other = resources[at].part;
         const bool one_is_whole_mip =
             part.layer == TexturePart::all_layers || other.layer == TexturePart::all_layers;
-        if (part.mip == other.mip && one_is_whole_mip) {
-            return "it overlaps another part";
-        }
+        if (part.mip == other.mip && one_is_whole_mip) return "it overlaps another part";
     }
     return "";
 }
@@ -210,9 +188,7 @@ ResourceHandle Declaration::find(std::string_view name, ResourceKind kind) const
 
 /// Whether passes have written it; a texture with parts is written if all of them are. Never a history.
 bool Declaration::is_written(const Resource& resource) const {
-    if (resource.first_part == none) {
-        return resource.versions > 0;
-    }
+    if (resource.first_part == none) return resource.versions > 0;
     std::uint32_t part = resource.first_part;
     while (part != none && resources[part].versions > 0) {
         part = resources[part].next_part;
@@ -353,9 +329,7 @@ ResourceHandle Declaration::update(ResourceHandle handle, ResourceKind kind, Bin
 }
 
 void Declaration::check_binding(const Resource& resource, Binding binding, bool write) {
-    if (resource.kind == ResourceKind::value) {
-        return;
-    }
+    if (resource.kind == ResourceKind::value) return;
     const Usage usage = binding.usage;
     const std::string_view verb = write ? "writes" : "reads";
     if (!allowed(resource.kind, usage, write)) {
@@ -369,9 +343,7 @@ void Declaration::check_binding(const Resource& resource, Binding binding, bool 
             fmt::format("pass '{}' {} {} '{}' as {}, for which there are no binding points",
                         passes.back().name, verb, to_string(resource.kind), resource.name, to_string(usage)));
     }
-    if (resource.kind != ResourceKind::texture) {
-        return;
-    }
+    if (resource.kind != ResourceKind::texture) return;
     const Format format = texture(resource).format;
     if ((usage == Usage::colour_target && is_depth(format)) ||
         (usage == Usage::depth_target && !is_depth(format))) {
@@ -387,9 +359,7 @@ void Declaration::check_attachments() {
     for (const Access& access : accesses_of(pass_count() - 1)) {
         const Resource& resource = resources[access.resource];
         const bool is_target = access.usage == Usage::colour_target || access.usage == Usage::depth_target;
-        if (resource.kind != ResourceKind::texture || !is_target) {
-            continue;
-        }
+        if (resource.kind != ResourceKind::texture || !is_target) continue;
         if (access.usage == Usage::depth_target) {
             if (depth && depth != &resource) {
                 error(ErrorCode::attachment_mismatch,
@@ -399,12 +369,8 @@ void Declaration::check_attachments() {
             depth = &resource;
         }
         const TextureDesc& desc = texture(resource);
-        if (desc.shape != TextureShape::flat) {
-            continue;
-        }
-        if (!first) {
-            first = &resource;
-        }
+        if (desc.shape != TextureShape::flat) continue;
+        if (!first) first = &resource;
         const glm::uvec2 size = texture(*first).size;
         if (size != desc.size) {
             error(ErrorCode::attachment_mismatch,

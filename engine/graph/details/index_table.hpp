@@ -44,12 +44,8 @@ class IndexTable {
         const std::size_t mask = entries_.size() - 1;
         for (std::size_t at = hash & mask;; at = (at + 1) & mask) {
             Entry& entry = entries_[at];
-            if (entry.index == none) {
-                return entry;
-            }
-            if (entry.hash == static_cast<std::uint32_t>(hash) && same(entry.index)) {
-                return entry;
-            }
+            if (entry.index == none) return entry;
+            if (entry.hash == static_cast<std::uint32_t>(hash) && same(entry.index)) return entry;
         }
     }
 

@@ -34,12 +34,8 @@ class Objects {
 
     void give(std::uint32_t index) {
         const Resource& resource = declared_.resources[index];
-        if (resource.history_of != none) {
-            return give(resource.history_of);
-        }
-        if (plan_.object[index] != none) {
-            return;
-        }
+        if (resource.history_of != none) return give(resource.history_of);
+        if (plan_.object[index] != none) return;
         if (resource.part_of != none) {
             give(resource.part_of);  // first, as it must be created first
         }
@@ -48,18 +44,14 @@ class Objects {
             plan_.object[index] = free != none ? take(free) : create(index);
         } else {
             plan_.object[index] = create(index);
-            if (resource.history != none) {
-                plan_.object[resource.history] = create(resource.history);
-            }
+            if (resource.history != none) plan_.object[resource.history] = create(resource.history);
         }
     }
 
     void take_back(std::uint32_t index) {
         const Resource& resource = declared_.resources[index];
         const std::uint32_t object = plan_.object[index];
-        if (resource.lifetime != Lifetime::transient || next_[object] != in_use) {
-            return;
-        }
+        if (resource.lifetime != Lifetime::transient || next_[object] != in_use) return;
         std::uint32_t& free = free_list(resource);
         next_[object] = free;
         free = object;
@@ -102,9 +94,7 @@ void plan_lifetimes(const Declaration& declared, Plan& plan) {
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {
         for (const Access& access : declared.accesses_of(plan.order[position])) {
             Span& span = plan.lifetime[access.resource];
-            if (span.first == none) {
-                span.first = position;
-            }
+            if (span.first == none) span.first = position;
             span.last = position;
         }
     }
@@ -119,9 +109,7 @@ void plan_objects(const Declaration& declared, Plan& plan) {
             objects.give(access.resource);
         }
         for (const Access& access : accesses) {
-            if (plan.lifetime[access.resource].last == position) {
-                objects.take_back(access.resource);
-            }
+            if (plan.lifetime[access.resource].last == position) objects.take_back(access.resource);
         }
     }
 }

@@ -16,11 +16,9 @@ class Repetition {
           overwritten_(state.versions.size()) {
         for (std::uint32_t index = 0; index < again_.size(); ++index) {
             const Step& step = state.steps[index];
-            const bool once = step.side_effect || step.writes_import || step.remembers;
+            const bool once = step.side_effect || step.writes_import || step.keeps_state;
             again_[index] = step.has_run && !once;
-            if (!again_[index]) {
-                settle(step);
-            }
+            if (!again_[index]) settle(step);
         }
     }
 

@@ -44,14 +44,14 @@ class StateMaker {
         step.name = node.name;
         step.barrier = plan_.barrier[position];
         step.side_effect = node.side_effect;
-        step.remembers = node.remembers;
+        step.keeps_state = node.keeps_state;
         for (const Access& access : declared_.accesses_of(pass)) {
             const Resource& resource = declared_.resources[access.resource];
             if (access.write) {
                 add_output(step, access, position);
                 step.writes_import |= resource.lifetime == Lifetime::imported;
             }
-            step.remembers |= resource.history_of != none;
+            step.keeps_state |= resource.history_of != none;
             add_input(step, access, pass);
             add_target(step, access);
             add_bound(step, access);
@@ -65,28 +65,22 @@ class StateMaker {
     void add_output(Step& step, const Access& access, std::uint32_t position) {
         const Resource& resource = declared_.resources[access.resource];
         const std::uint32_t version = plan_.version(access.resource, access.version);
-        const bool turns_over = resource.history != none && access.version == 1;
+        const bool swaps_history = resource.history != none && access.version == 1;
         state_.versions[version].producer = position;
         state_.versions[version].present = false;
         step.outputs.push_back(
-            {version, plan_.object[access.resource], resource.kind == ResourceKind::value, turns_over});
+            {version, plan_.object[access.resource], resource.kind == ResourceKind::value, swaps_history});
     }
 
     void add_input(Step& step, const Access& access, std::uint32_t pass) const {
         const bool previous = declared_.resources[access.resource].history_of != none;
-        if (previous || (access.write && access.version == 1)) {
-            return;
-        }
+        if (previous || (access.write && access.version == 1)) return;
         const std::uint32_t version = plan_.version(access.resource, access.version - (access.write ? 1 : 0));
-        if (plan_.writer[version] != pass) {
-            step.inputs.push_back({version});
-        }
+        if (plan_.writer[version] != pass) step.inputs.push_back({version});
     }
 
     void add_target(Step& step, const Access& access) const {
-        if (declared_.resources[access.resource].kind != ResourceKind::texture) {
-            return;
-        }
+        if (declared_.resources[access.resource].kind != ResourceKind::texture) return;
         const bool depth = access.usage == Usage::depth_target;
         if (depth || access.usage == Usage::colour_target) {
             step.targets.push_back({plan_.object[access.resource], depth});
@@ -107,12 +101,8 @@ class StateMaker {
             Slot& slot = state_.slots[object];
             slot.kind = resource.kind;
             slot.owned = slot.kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
-            if (slot.kind == ResourceKind::texture) {
-                slot.texture = declared_.texture(resource);
-            }
-            if (slot.kind == ResourceKind::buffer) {
-                slot.buffer = declared_.buffer(resource);
-            }
+            if (slot.kind == ResourceKind::texture) slot.texture = declared_.texture(resource);
+            if (slot.kind == ResourceKind::buffer) slot.buffer = declared_.buffer(resource);
             slot.view = resource.part_of != none;
             if (slot.owned && resource.lifetime == Lifetime::persistent) {
                 const TextureDesc& whole =
@@ -122,9 +112,7 @@ class StateMaker {
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const bool imported = declared_.resources[index].lifetime == Lifetime::imported;
-            if (imported && plan_.object[index] != none) {
-                state_.imports.push_back(index);
-            }
+            if (imported && plan_.object[index] != none) state_.imports.push_back(index);
         }
     }
 
@@ -155,9 +143,7 @@ class StateTransfer {
         for (const auto& [slot, old_slot] : slot_pairs_) {
             const std::uint32_t old_version = old_.holds[old_slot];
             const std::uint32_t version = old_version == none ? none : new_version_[old_version];
-            if (version == none) {
-                continue;
-            }
+            if (version == none) continue;
             state_.holds[slot] = version;
             state_.versions[version].present = old_.versions[old_version].present;
         }
@@ -206,15 +192,11 @@ class StateTransfer {
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const Resource& resource = declared_.resources[index];
-            if (!known(resource) || plan_.object[index] == none) {
-                continue;
-            }
+            if (!known(resource) || plan_.object[index] == none) continue;
             const std::uint32_t old = table.find_index(hash(resource), [&](std::uint32_t other) {
                 return alike(resource, old_declared_.resources[other]);
             });
-            if (old != none) {
-                take_resource(index, old);
-            }
+            if (old != none) take_resource(index, old);
         }
     }
 
@@ -224,16 +206,10 @@ class StateTransfer {
         const std::uint32_t old_version = old_plan_.version(old, 0);
         const bool bound_anew =
             resource.lifetime == Lifetime::imported && resource.kind != ResourceKind::value;
-        if (resource.lifetime == Lifetime::imported) {
-            pair_versions(version, old_version);
-        }
-        if (bound_anew) {
-            return;
-        }
+        if (resource.lifetime == Lifetime::imported) pair_versions(version, old_version);
+        if (bound_anew) return;
         take_slot(plan_.object[index], old_plan_.object[old]);
-        if (resource.history != none) {
-            take_slot(plan_.object[index] + 1, old_plan_.object[old] + 1);
-        }
+        if (resource.history != none) take_slot(plan_.object[index] + 1, old_plan_.object[old] + 1);
     }
 
     void take_slot(std::uint32_t slot, std::uint32_t old_slot) {
@@ -261,9 +237,7 @@ class StateTransfer {
             const std::string_view name = state_.steps[index].name;
             const std::uint32_t old = table.find_index(
                 hash_of(name), [&](std::uint32_t other) { return old_.steps[other].name == name; });
-            if (old != none && same_pass(plan_.order[index], old_plan_.order[old])) {
-                take_record(index, old);
-            }
+            if (old != none && same_pass(plan_.order[index], old_plan_.order[old])) take_record(index, old);
         }
     }
 
@@ -312,12 +286,8 @@ class StateTransfer {
             !alike(resource, old_declared_.resources[b.resource])) {
             return false;
         }
-        if (resource.history_of != none) {
-            return true;
-        }
-        if (a.write && (a.version == 1 || b.version == 1)) {
-            return a.version == b.version;
-        }
+        if (resource.history_of != none) return true;
+        if (a.write && (a.version == 1 || b.version == 1)) return a.version == b.version;
         const std::uint32_t step_back = a.write ? 1 : 0;
         const std::uint32_t version = plan_.version(a.resource, a.version - step_back);
         const std::uint32_t old_version = old_plan_.version(b.resource, b.version - step_back);

@@ -77,16 +77,12 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
         const detail::PassNode& pass = graph.declared().passes[graph.plan().order[position]];
         passes.push_back({.name = pass.name, .tag = pass.tag});
     }
-    if (verifying_) {
-        state.contents.resize(state.versions.size());
-    }
+    if (verifying_) state.contents.resize(state.versions.size());
     std::vector<detail::Slot> unused = free_pool_;
     if (graph_) {
         const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, state_);
         for (std::size_t index = 0; index < taken.size(); ++index) {
-            if (!taken[index] && state_.slots[index].owned) {
-                unused.push_back(state_.slots[index]);
-            }
+            if (!taken[index] && state_.slots[index].owned) unused.push_back(state_.slots[index]);
         }
     }
     provide_objects(graph, state, unused);
@@ -98,9 +94,7 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     unused.erase(unused.begin(), pooled);
     std::erase_if(unused, [](const detail::Slot& slot) { return slot.object == 0; });
     // The planned barriers of the new graph do not cover the writes of the previous one.
-    if (graph_) {
-        pending_barriers_ = all_barriers;
-    }
+    if (graph_) pending_barriers_ = all_barriers;
     free_pool_ = std::move(unused);
     state_ = std::move(state);
     graph_ = std::move(graph);
@@ -117,13 +111,9 @@ void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& st
     try {
         for (std::uint32_t object = 0; object < state.slots.size(); ++object) {
             detail::Slot& slot = state.slots[object];
-            if (!slot.owned || slot.object != 0) {
-                continue;
-            }
+            if (!slot.owned || slot.object != 0) continue;
             available.provide(slot);
-            if (slot.object != 0) {
-                continue;
-            }
+            if (slot.object != 0) continue;
             const detail::Resource& resource = graph.declared().resources[graph.plan().owner[object]];
             if (slot.view) {
                 const detail::Slot& whole = state.slots[graph.plan().object[resource.part_of]];
@@ -147,9 +137,7 @@ void GraphRuntime::create(detail::Slot& slot, std::string_view name) {
 }
 
 void GraphRuntime::destroy(const detail::Slot& slot) {
-    if (!slot.owned || slot.object == 0) {
-        return;
-    }
+    if (!slot.owned || slot.object == 0) return;
     if (slot.kind == ResourceKind::texture) {
         backend_.destroy_texture(slot.object);
     } else {
@@ -160,9 +148,7 @@ void GraphRuntime::destroy(const detail::Slot& slot) {
 MemoryUse GraphRuntime::memory() const {
     MemoryUse use;
     const auto bytes = [](const detail::Slot& slot) {
-        if (slot.view) {
-            return std::uint64_t{0};
-        }
+        if (slot.view) return std::uint64_t{0};
         return slot.kind == ResourceKind::texture ? byte_size(slot.texture) : byte_size(slot.buffer);
     };
     const auto add = [&](const detail::Slot& slot) {
@@ -177,15 +163,11 @@ MemoryUse GraphRuntime::memory() const {
         add(slot);
         use.free_pool_bytes += bytes(slot);
     }
-    if (!graph_) {
-        return use;
-    }
+    if (!graph_) return use;
     for (std::uint32_t index = 0; index < graph_->declared().resources.size(); ++index) {
         const detail::Resource& resource = graph_->declared().resources[index];
         const std::uint32_t object = graph_->plan().object[index];
-        if (resource.lifetime != Lifetime::transient || object == detail::none) {
-            continue;
-        }
+        if (resource.lifetime != Lifetime::transient || object == detail::none) continue;
         if (graph_->plan().owner[object] != index) {
             use.shared_by_aliasing_bytes += bytes(state_.slots[object]);
         }

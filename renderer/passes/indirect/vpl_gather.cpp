@@ -36,9 +36,7 @@ void gather(const Gpu& gpu, const gl::Program& program, glm::uvec2 size, std::ui
 }  // namespace
 
 std::uint32_t interleaving(Interleave interleave, std::uint32_t vpl_count, glm::uvec2 size) {
-    if (interleave != Interleave::automatic) {
-        return 1U << (static_cast<std::uint32_t>(interleave) - 1U);
-    }
+    if (interleave != Interleave::automatic) return 1U << (static_cast<std::uint32_t>(interleave) - 1U);
     std::uint32_t n = 8;
     while (n > 1 && (vpl_count < least_share * n * n || size.y < least_rows * n)) {
         n /= 2;

@@ -13,19 +13,11 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
     std::vector<std::string> words;
     if (const auto* const lit = std::get_if<LitSurfels>(&light.vpls.records)) {
         words.emplace_back("SURFELS");
-        if (lit->emitters) {
-            words.emplace_back("EMITTERS");
-        }
-        if (lit->sky) {
-            words.emplace_back("SKY");
-        }
+        if (lit->emitters) words.emplace_back("EMITTERS");
+        if (lit->sky) words.emplace_back("SKY");
     }
-    if (light.maps) {
-        words.emplace_back("VPL_VISIBILITY_MAPS");
-    }
-    if (light.rays && !light.maps) {
-        words.emplace_back("VPL_VISIBILITY_RAYS");
-    }
+    if (light.maps) words.emplace_back("VPL_VISIBILITY_MAPS");
+    if (light.rays && !light.maps) words.emplace_back("VPL_VISIBILITY_RAYS");
     return words;
 }
 
@@ -38,12 +30,8 @@ void read_records(Pass& pass, const TracedVpls& traced) {
 void read_records(Pass& pass, const LitSurfels& lit) {
     pass.read(lit.surfels, {Usage::storage, BINDING_LIT_SURFELS});
     pass.read(lit.points, {Usage::storage, BINDING_LIT_POINTS});
-    if (lit.emitters) {
-        pass.read(*lit.emitters, {Usage::storage, BINDING_LIT_EMITTERS});
-    }
-    if (lit.sky) {
-        pass.read(lit.sky->patches, {Usage::uniform, UNIFORMS_SKY});
-    }
+    if (lit.emitters) pass.read(*lit.emitters, {Usage::storage, BINDING_LIT_EMITTERS});
+    if (lit.sky) pass.read(lit.sky->patches, {Usage::uniform, UNIFORMS_SKY});
 }
 
 }  // namespace
@@ -52,12 +40,8 @@ void read_vpl_light(Pass& pass, const VplLight& light) {
     pass.read(light.vpls.counts);
     std::visit([&](const auto& records) { read_records(pass, records); }, light.vpls.records);
     read_vpl_constants(pass, light.common);
-    if (light.maps) {
-        pass.read(*light.maps, {Usage::sampled, UNIT_VPL_MAPS});
-    }
-    if (light.rays) {
-        read_tracing(pass, *light.rays);
-    }
+    if (light.maps) pass.read(*light.maps, {Usage::sampled, UNIT_VPL_MAPS});
+    if (light.rays) read_tracing(pass, *light.rays);
 }
 
 }  // namespace candela

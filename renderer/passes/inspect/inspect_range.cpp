@@ -16,9 +16,7 @@ BufferHandle<glm::vec2> add_inspect_range(FrameGraph& graph, Gpu& gpu, const Ins
                                        {Usage::storage, BINDING_INSPECTED_RANGES});
         pass.run([=, &gpu, &program](Execution& run) {
             const Shown shown = shown_of(run, inspected, run.value(settings));
-            if (shown.range) {
-                return;
-            }
+            if (shown.range) return;
             run.reserve(ranges, shown.texels.y + 1);
             const InspectedTexels texels(gpu, run, inspected, shown);
             const gl::Uniforms common =

@@ -33,20 +33,14 @@ Shown shown_lists(const CellGrid& grid, const Inspection& wanted) {
 }
 
 Mapping mapping_of(const Inspected& inspected, Mapping wanted) {
-    if (wanted != Mapping::automatic) {
-        return wanted;
-    }
-    if (inspected.texture && is_depth(inspected.texture->desc.format)) {
-        return Mapping::depth;
-    }
+    if (wanted != Mapping::automatic) return wanted;
+    if (inspected.texture && is_depth(inspected.texture->desc.format)) return Mapping::depth;
     const bool single = !inspected.texture || gl::format_info(inspected.texture->desc.format).components == 1;
     return single ? Mapping::heat : Mapping::colour;
 }
 
 int channels_of(const Inspected& inspected, Channels wanted, Mapping mapping) {
-    if (wanted != Channels::rgb) {
-        return static_cast<int>(wanted);
-    }
+    if (wanted != Channels::rgb) return static_cast<int>(wanted);
     if (!inspected.texture || gl::format_info(inspected.texture->desc.format).components == 1) {
         return static_cast<int>(Channels::red);
     }
@@ -79,18 +73,10 @@ std::optional<Inspected> find_inspected(const FrameGraph& graph, std::string_vie
 }
 
 void read_inspected(Pass& pass, const Inspected& inspected) {
-    if (inspected.texture) {
-        pass.read(inspected.texture->handle, Usage::sampled);
-    }
-    if (inspected.buffer) {
-        pass.read(inspected.buffer->handle, {Usage::storage, BINDING_LIST_COUNT});
-    }
-    if (inspected.grid) {
-        pass.read(*inspected.grid);
-    }
-    if (inspected.depth.read) {
-        inspected.depth.read(pass);
-    }
+    if (inspected.texture) pass.read(inspected.texture->handle, Usage::sampled);
+    if (inspected.buffer) pass.read(inspected.buffer->handle, {Usage::storage, BINDING_LIST_COUNT});
+    if (inspected.grid) pass.read(*inspected.grid);
+    if (inspected.depth.read) inspected.depth.read(pass);
 }
 
 Shown shown_of(const Execution& run, const Inspected& inspected, const Inspection& wanted) {

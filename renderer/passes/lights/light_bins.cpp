@@ -46,9 +46,7 @@ void to_tiles(float from, float to, std::uint32_t tile_size, std::uint32_t tiles
 
 /// Slice that contains a depth in metres. Depths before the first or behind the last slice are clamped to it.
 std::uint32_t slice_of(const CellGrid& grid, float depth) {
-    if (!(depth > grid.first_depth)) {
-        return 0;
-    }
+    if (!(depth > grid.first_depth)) return 0;
     const float slice = 1.0F + std::floor(std::log(depth / grid.first_depth) / std::log(grid.depth_ratio));
     return static_cast<std::uint32_t>(std::min(slice, static_cast<float>(grid.slices - 1)));
 }
@@ -59,12 +57,8 @@ CellRange touched(const Reach& reach, const CameraView& view, const CellGrid& gr
     const float depth = -reach.centre.z;
     const float nearest = depth - reach.radius;
     const float farthest = depth + reach.radius;
-    if (!std::isfinite(reach.radius)) {
-        return all;
-    }
-    if (farthest <= 0.0F && !view.orthographic) {
-        return {};
-    }
+    if (!std::isfinite(reach.radius)) return all;
+    if (farthest <= 0.0F && !view.orthographic) return {};
 
     CellRange range = all;
     if (grid.slices > 1) {
@@ -118,21 +112,15 @@ std::vector<bool> choose_global(const LightTable& lights, const std::vector<Cell
     std::uint64_t entries = 0;
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
         global[i] = std::isinf(lights.entries[i].light.range);
-        if (global[i]) {
-            continue;
-        }
+        if (global[i]) continue;
         entries += ranges[i].cells();
         listed.push_back(i);
     }
-    if (entries <= most_list_entries) {
-        return global;
-    }
+    if (entries <= most_list_entries) return global;
     std::stable_sort(listed.begin(), listed.end(),
                      [&](auto a, auto b) { return ranges[a].cells() > ranges[b].cells(); });
     for (const std::uint32_t i : listed) {
-        if (entries <= most_list_entries) {
-            break;
-        }
+        if (entries <= most_list_entries) break;
         entries -= ranges[i].cells();
         global[i] = true;
     }
@@ -150,9 +138,7 @@ LightBins bin_lights(const LightTable& lights, const CameraView& view, const Cel
     }
     const std::vector<bool> global = choose_global(lights, ranges);
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
-        if (global[i]) {
-            bins.entries.push_back(i);
-        }
+        if (global[i]) bins.entries.push_back(i);
     }
     bins.global_count = static_cast<std::uint32_t>(bins.entries.size());
 
@@ -160,9 +146,7 @@ LightBins bin_lights(const LightTable& lights, const CameraView& view, const Cel
     // cells.
     std::vector<std::uint32_t> next(grid.cells() + 1, 0);
     for (std::uint32_t i = 0; i < ranges.size(); ++i) {
-        if (!global[i]) {
-            each_cell(ranges[i], grid, [&](std::uint32_t cell) { ++next[cell + 1]; });
-        }
+        if (!global[i]) each_cell(ranges[i], grid, [&](std::uint32_t cell) { ++next[cell + 1]; });
     }
     next[0] = bins.global_count;
     std::partial_sum(next.begin(), next.end(), next.begin());

@@ -109,9 +109,7 @@ LightLists add_culling(FrameGraph& graph, Gpu& gpu, std::string_view name, Light
         read_light_grid(pass, inputs.grid);
         pass.read(inputs.lights.buffer, {Usage::storage, BINDING_LIGHTS});
         pass.read(bins.first, {Usage::storage, BINDING_LIST_FIRST});
-        if (depths) {
-            pass.read(*depths, {Usage::storage, BINDING_TILE_DEPTHS});
-        }
+        if (depths) pass.read(*depths, {Usage::storage, BINDING_TILE_DEPTHS});
         const gl::Program& program =
             gpu.program({kind == LightList::tile ? "lights/light_tiles.comp" : "lights/light_clusters.comp"});
         const LightLists out{
@@ -189,9 +187,7 @@ LightGrid add_cluster_grid(FrameGraph& graph, const Gpu& gpu, ValueHandle<Camera
 LightLists add_light_tiles(FrameGraph& graph, Gpu& gpu, const ListInputs& inputs,
                            std::optional<TextureHandle> depth) {
     Candidates candidates{add_light_bins(graph, gpu, "light-tiles", inputs)};
-    if (depth) {
-        candidates.depths = add_tile_depths(graph, gpu, *depth, inputs.view, inputs.grid);
-    }
+    if (depth) candidates.depths = add_tile_depths(graph, gpu, *depth, inputs.view, inputs.grid);
     return add_culling(graph, gpu, "light-tiles", LightList::tile, inputs, candidates);
 }
 

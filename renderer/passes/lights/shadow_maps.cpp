@@ -179,14 +179,10 @@ std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, c
     const bool keeps_maps =
         reserve(run, out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
     const DrawnShadows* const last = run.previous(out.drawn);
-    if (last == nullptr || surfaces_changed) {
-        return plan.views;
-    }
+    if (last == nullptr || surfaces_changed) return plan.views;
     std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
     for (const ShadowPlan::View& view : last->views) {
-        if (view.cube ? keeps_cubes : keeps_maps) {
-            shown[{view.cube, view.layer}] = &view;
-        }
+        if (view.cube ? keeps_cubes : keeps_maps) shown[{view.cube, view.layer}] = &view;
     }
     std::vector<ShadowPlan::View> due;
     std::ranges::copy_if(plan.views, std::back_inserter(due), [&](const ShadowPlan::View& view) {
@@ -248,12 +244,8 @@ std::optional<DepthTerms> depth_terms(const ShadowPlan& plan, bool cubes, std::u
     const auto found = std::ranges::find_if(plan.shadows, [&](const gpu::Shadow& shadow) {
         return shadow.kind != SHADOW_NONE && shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
     });
-    if (found == plan.shadows.end()) {
-        return std::nullopt;
-    }
-    if (found->kind != SHADOW_ORTHOGRAPHIC) {
-        return perspective_terms(found->near_plane);
-    }
+    if (found == plan.shadows.end()) return std::nullopt;
+    if (found->kind != SHADOW_ORTHOGRAPHIC) return perspective_terms(found->near_plane);
     const glm::mat4& clip = found->from_world;
     return linear_terms(1.0F / glm::length(glm::vec3(clip[0][2], clip[1][2], clip[2][2])));
 }
@@ -272,9 +264,7 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
     std::uint64_t budget = settings.enabled ? static_cast<std::uint64_t>(settings.budget_mib) << 20U : 0;
     for (const std::uint32_t i : by_importance(lights)) {
         const LightTable::Entry& entry = lights.entries[i];
-        if (!entry.casts_shadow || !settings.enabled) {
-            continue;
-        }
+        if (!entry.casts_shadow || !settings.enabled) continue;
         const ShadowShape shape = light_kinds[entry.light.kind]->shadow(entry.light, metrics);
         const bool cube = shape.kind == SHADOW_CUBE;
         const std::uint64_t cost =

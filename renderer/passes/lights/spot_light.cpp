@@ -50,17 +50,13 @@ void gather_spot_lights(const World& world, SceneCheck& check, const SceneMetric
 /// For narrow cones (less than 45 degrees), the bounding sphere of the cone with its spherical cap: it is
 /// smaller than the sphere of radius `range` around the light.
 LightBounds bounds_of_spot(const gpu::Light& light) {
-    if (light.cos_outer <= std::sqrt(0.5F)) {
-        return {light.position, light.range};
-    }
+    if (light.cos_outer <= std::sqrt(0.5F)) return {light.position, light.range};
     const float radius = light.range / (2.0F * light.cos_outer);
     return {light.position + light.direction * radius, radius};
 }
 
 ShadowShape shadow_of_spot(const gpu::Light& light, const SceneMetrics& /*metrics*/) {
-    if (light.cos_outer < std::cos(widest_map)) {
-        return {};
-    }
+    if (light.cos_outer < std::cos(widest_map)) return {};
     const float outer = light.shape.y / light.shape.x;
     return {.kind = SHADOW_PERSPECTIVE, .tangent = std::sqrt(outer * (2.0F - outer)) / (1.0F - outer)};
 }

@@ -106,7 +106,7 @@ void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
 
 Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
     return graph.add("bvh", [&](Pass& pass) {
-        pass.remembers();  // a tree refitted to moved triangles differs from a new one
+        pass.keeps_state();  // a tree refitted to moved triangles differs from a new one
         pass.read(scene.layout);
         pass.read(scene.placement);
         // Shared, because the hierarchy is changed in place.

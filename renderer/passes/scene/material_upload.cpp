@@ -50,9 +50,7 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
 /// weight the colours, because most materials ignore it.
 Image reduce(const Image& image) {
     const std::uint32_t longer = std::max(image.width, image.height);
-    if (longer <= traced_image_size) {
-        return image;
-    }
+    if (longer <= traced_image_size) return image;
     Image reduced = image;
     reduced.width = std::max(1U, image.width * traced_image_size / longer);
     reduced.height = std::max(1U, image.height * traced_image_size / longer);
@@ -69,9 +67,7 @@ std::uint32_t pack(const glm::u8vec4& texel) {
 }
 
 std::uint32_t wrap_bits(const Image* image) {
-    if (image == nullptr) {
-        return 0;
-    }
+    if (image == nullptr) return 0;
     return static_cast<std::uint32_t>(image->wrap_u) | static_cast<std::uint32_t>(image->wrap_v)
                                                            << MATERIAL_WRAP_BITS;
 }
@@ -94,9 +90,7 @@ float srgb_decode(std::uint8_t encoded) {
 
 /// Mean colour of an image, linear; white if it is empty.
 glm::vec3 mean_of(const Image& image) {
-    if (image.texels.empty()) {
-        return glm::vec3(1.0F);
-    }
+    if (image.texels.empty()) return glm::vec3(1.0F);
     std::array<double, 256> decoded{};
     for (std::size_t i = 0; i < decoded.size(); ++i) {
         decoded[i] = srgb_decode(static_cast<std::uint8_t>(i));
@@ -182,9 +176,7 @@ std::vector<std::shared_ptr<const Material>> MaterialTable::materials() const {
 
 gpu::Material MaterialTable::record_of(const Listed& listed) const {
     static const UploadedImage none{};
-    if (!listed.material) {
-        return {};
-    }
+    if (!listed.material) return {};
     const auto image = [&](std::uint32_t number) -> const UploadedImage& {
         return number == 0 ? none : images_[number - 1];
     };

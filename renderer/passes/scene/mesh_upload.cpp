@@ -16,9 +16,7 @@ glm::vec3 mean_colour_of(const Primitive& primitive) {
 }  // namespace
 
 Box box_around(std::span<const Vertex> vertices) {
-    if (vertices.empty()) {
-        return {glm::vec3(0.0F), glm::vec3(0.0F)};
-    }
+    if (vertices.empty()) return {glm::vec3(0.0F), glm::vec3(0.0F)};
     Box box;
     for (const Vertex& vertex : vertices) {
         box.grow(vertex.position);

@@ -57,7 +57,7 @@ class SceneCheck {
     [[nodiscard]] Fault fault_in(const Environment& environment);
     /// The fault of a mesh, vertices or a picture, found by `find` if it is not known.
     template <class T, class Find>
-    [[nodiscard]] const Fault& remembered(const std::shared_ptr<const T>& of, Find find);
+    [[nodiscard]] const Fault& known_fault(const std::shared_ptr<const T>& of, Find find);
     void forget_destroyed();
     /// An empty `part` is the whole entity.
     [[nodiscard]] bool judge(const World& world, Entity entity, std::string_view part, const Fault& fault);

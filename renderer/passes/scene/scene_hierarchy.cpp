@@ -52,9 +52,7 @@ double area_of(std::span<const Triangle> triangles) {
 bool fit(ObjectHierarchy& object, std::span<const Triangle> triangles) {
     if (object.bvh.order.size() == triangles.size()) {
         refit(object.bvh, triangles);
-        if (sah_cost(object.bvh) <= rebuild_above * object.built_cost) {
-            return false;
-        }
+        if (sah_cost(object.bvh) <= rebuild_above * object.built_cost) return false;
     }
     object.bvh = build_bvh(triangles, object_max_depth);
     object.built_cost = sah_cost(object.bvh);
@@ -71,9 +69,7 @@ std::vector<std::size_t> longest_rise(const std::vector<ObjectHierarchy>& object
     std::vector<std::size_t> last;  // position of the smallest last id of the subsequences of each length
     std::vector<std::size_t> before(objects.size(), none);
     for (std::size_t i = 0; i < objects.size(); ++i) {
-        if (objects[i].first_id == no_id) {
-            continue;
-        }
+        if (objects[i].first_id == no_id) continue;
         const auto at = std::ranges::lower_bound(last, objects[i].first_id, {},
                                                  [&](std::size_t p) { return objects[p].first_id; });
         before[i] = at == last.begin() ? none : *(at - 1);
@@ -105,12 +101,8 @@ void set_first_id(ObjectHierarchy& object, std::uint32_t id) {
 bool fill_in_ids(std::vector<ObjectHierarchy>& objects) {
     std::uint32_t next = 0;
     for (ObjectHierarchy& object : objects) {
-        if (object.first_id == no_id) {
-            set_first_id(object, next);
-        }
-        if (object.first_id < next) {
-            return false;
-        }
+        if (object.first_id == no_id) set_first_id(object, next);
+        if (object.first_id < next) return false;
         next = object.first_id + triangle_count(object);
     }
     return next < TRIANGLE_MASKED;
@@ -127,13 +119,9 @@ void order_ids(std::vector<ObjectHierarchy>& objects) {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < objects.size(); ++i) {
         sum += triangle_count(objects[i]);
-        if (!stays[i]) {
-            set_first_id(objects[i], no_id);
-        }
+        if (!stays[i]) set_first_id(objects[i], no_id);
     }
-    if (std::ranges::find(stays, true) != stays.end() && fill_in_ids(objects)) {
-        return;
-    }
+    if (std::ranges::find(stays, true) != stays.end() && fill_in_ids(objects)) return;
     const auto room = static_cast<std::uint32_t>((TRIANGLE_MASKED - sum) / (objects.size() + 1));
     std::uint32_t next = room;
     for (ObjectHierarchy& object : objects) {
@@ -180,9 +168,7 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
         ObjectHierarchy& object = objects[i];
         const SceneLayout::Drawable& drawable = layout.drawables[i];
         const ObjectHierarchy::Source source = source_of(layout, drawable, placement);
-        if (object.source == source) {
-            continue;
-        }
+        if (object.source == source) continue;
         object.source = source;
         const std::vector<Triangle> triangles =
             place_triangles(layout, drawable, vertices_of(drawable, placement.deformed), source.world);
@@ -217,9 +203,7 @@ SceneMetrics SceneHierarchy::metrics(const SceneLayout& layout) const {
         area_sum += objects[i].area;
         reflecting_sum += objects[i].area * static_cast<double>(layout.drawables[i].albedo);
     }
-    if (metrics.triangles == 0) {
-        return metrics;
-    }
+    if (metrics.triangles == 0) return metrics;
     metrics.lower = bounds.lower;
     metrics.upper = bounds.upper;
     metrics.area = static_cast<float>(area_sum);

@@ -35,9 +35,7 @@ std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& be
 
 /// The boxes, or one box around all of them if there are more than `most`.
 std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
-    if (boxes.size() <= most) {
-        return boxes;
-    }
+    if (boxes.size() <= most) return boxes;
     Box all;
     for (const Box& box : boxes) {
         all.grow(box);
@@ -50,7 +48,7 @@ std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
 ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& scene,
                                           ValueHandle<std::uint64_t> epoch) {
     return graph.add("scene-motion", [&](Pass& pass) {
-        pass.remembers();
+        pass.keeps_state();
         pass.read(scene.layout);
         pass.read(scene.placement);
         pass.read(epoch);
@@ -65,9 +63,7 @@ ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& sc
                 now.step = last->step + 1;
                 now.everything = last->epoch != now.epoch || last->geometry != now.geometry;
             }
-            if (!now.everything) {
-                now.boxes = moved_boxes(run.value(layout), last->placement, now.placement);
-            }
+            if (!now.everything) now.boxes = moved_boxes(run.value(layout), last->placement, now.placement);
             run.set(motion, std::move(now));
         });
         return motion;
@@ -75,12 +71,8 @@ ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& sc
 }
 
 std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::uint64_t done) {
-    if (motion.step == done) {
-        return std::vector<Box>{};
-    }
-    if (motion.everything || motion.step != done + 1) {
-        return std::nullopt;
-    }
+    if (motion.step == done) return std::vector<Box>{};
+    if (motion.everything || motion.step != done + 1) return std::nullopt;
     return at_most(motion.boxes, MOST_CHANGED_BOXES);
 }
 

@@ -29,9 +29,7 @@ const Deformation* find(const Deformations& deformed, std::uint32_t item) {
 
 /// The item's deformation; `last` is its last one, or null.
 Deformation deformation_of(const DeformedMesh& deformed, const Deformation* last) {
-    if (last != nullptr && last->vertices == deformed.vertices) {
-        return *last;
-    }
+    if (last != nullptr && last->vertices == deformed.vertices) return *last;
     Deformation deformation{deformed.vertices, {}};
     for (const std::vector<Vertex>& vertices : *deformed.vertices) {
         deformation.bounds.push_back(box_around(vertices));
@@ -161,9 +159,7 @@ SceneLayout upload_scene(const Gpu& gpu, Execution& run, const SceneData& out, c
     layout.opaque_count = count_until(layout.drawables, AlphaMode::opaque);
     layout.solid_count = count_until(layout.drawables, AlphaMode::mask);
     for (const SceneLayout::Drawable& drawable : layout.drawables) {
-        if (geometry.items[drawable.item].deformed) {
-            store.meshes.add_deformed(drawable);
-        }
+        if (geometry.items[drawable.item].deformed) store.meshes.add_deformed(drawable);
     }
     store.materials.upload(run, out.materials, out.texels);
     store.meshes.upload(gpu, run, out.vertices, out.indices, deformed);
@@ -219,7 +215,7 @@ std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) cons
 SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
     const Gathered gathered = add_scene_gather(graph, gpu.scene_check());
     SceneData scene = graph.add("scene-upload", [&](Pass& pass) {
-        pass.remembers();  // where things lie in the buffers depends on what was there before
+        pass.keeps_state();  // where things lie in the buffers depends on what was there before
         pass.read(gathered.geometry);
         pass.read(gathered.deformed);
         // Shared, because the store is changed in place.

@@ -23,9 +23,7 @@ class UseCache {
     template <class Make>
     std::uint32_t use(const Object* object, Make make) {
         auto found = entries_.find(object);
-        if (found == entries_.end()) {
-            found = entries_.emplace(object, Entry{make()}).first;
-        }
+        if (found == entries_.end()) found = entries_.emplace(object, Entry{make()}).first;
         Entry& entry = found->second;
         if (entry.round != round_) {
             entry.round = round_;

@@ -12,9 +12,7 @@ glm::vec3 transformed(const glm::mat4& matrix, glm::vec3 point) {
 
 /// Rounded to 8 bits, the rgb in sRGB, in which dark colours keep their precision.
 std::uint32_t packed_colour(glm::u16vec4 colour) {
-    if (colour == glm::u16vec4(65535)) {
-        return 0xffffffffU;
-    }
+    if (colour == glm::u16vec4(65535)) return 0xffffffffU;
     const glm::vec4 linear = glm::vec4(colour) / 65535.0F;
     return glm::packUnorm4x8(glm::vec4(glm::convertLinearToSRGB(glm::vec3(linear)), linear.a));
 }

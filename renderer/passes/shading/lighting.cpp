@@ -30,9 +30,7 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.push_back(fmt::format("MOST_VPLS={}",
                                     std::min(max_vpls_per_invocation(*lighting.vpls), lighting.most_vpls)));
     }
-    if (!shows_direct(lighting.show)) {
-        words.emplace_back("DIRECT_HIDDEN");
-    }
+    if (!shows_direct(lighting.show)) words.emplace_back("DIRECT_HIDDEN");
     if (lighting.show == Show::irradiance) {
         words.emplace_back("SHOW_IRRADIANCE");
     } else if (lighting.show == Show::albedo) {
@@ -40,12 +38,8 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
     } else if (lighting.show == Show::normals) {
         words.emplace_back("SHOW_NORMALS");
     }
-    if (lighting.shadow_rays) {
-        words.emplace_back("SHADOW_RAYS");
-    }
-    if (lighting.lists) {
-        words.emplace_back("LIGHT_LIST_CELLS");
-    }
+    if (lighting.shadow_rays) words.emplace_back("SHADOW_RAYS");
+    if (lighting.lists) words.emplace_back("LIGHT_LIST_CELLS");
     if (lighting.lists && lighting.lists->kind == LightList::cluster) {
         words.emplace_back("LIGHT_LIST_PER_SURFACE");
     }
@@ -56,24 +50,14 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     pass.read(lighting.lights.table);
     pass.parameter(lighting.show);
     pass.parameter(lighting.most_vpls);
-    if (!shows_light(lighting.show)) {
-        return;
-    }
+    if (!shows_light(lighting.show)) return;
     pass.read(lighting.lights.constants, {Usage::uniform, UNIFORMS_LIGHTS});
     pass.read(lighting.lights.buffer, {Usage::storage, BINDING_LIGHTS});
     read_shadow_maps(pass, lighting.lights.shadows);
-    if (lighting.shadow_rays) {
-        read_tracing(pass, *lighting.shadow_rays);
-    }
-    if (lighting.vpls) {
-        read_vpl_light(pass, *lighting.vpls);
-    }
-    if (lighting.indirect) {
-        pass.read(*lighting.indirect, {Usage::sampled, UNIT_INDIRECT});
-    }
-    if (lighting.lists) {
-        read_light_lists(pass, *lighting.lists);
-    }
+    if (lighting.shadow_rays) read_tracing(pass, *lighting.shadow_rays);
+    if (lighting.vpls) read_vpl_light(pass, *lighting.vpls);
+    if (lighting.indirect) pass.read(*lighting.indirect, {Usage::sampled, UNIT_INDIRECT});
+    if (lighting.lists) read_light_lists(pass, *lighting.lists);
 }
 
 std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting) {

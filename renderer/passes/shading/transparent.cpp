@@ -72,18 +72,14 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         test_depth(pass, surfaces);
         std::vector<std::string> variant = lighting_variant(lighting);
         variant.emplace_back("BLENDED");
-        if (emission) {
-            variant.emplace_back("EMISSION");
-        }
+        if (emission) variant.emplace_back("EMISSION");
         const gl::Program& program =
             gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant);
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
             const std::vector<SortedGroup> sorted =
                 back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
-            if (sorted.empty()) {
-                return;
-            }
+            if (sorted.empty()) return;
             check_lights(run.value(lighting.lights.table).entries.size());
             bind_meshes(gpu, run, scene);
             program.use(loop_parts(most_lights, most_lights).front());

@@ -95,9 +95,7 @@ SkyGrid tilted(const SkyGrid& grid) {
     SkyGrid result{grid.size, std::vector<SkyGrid::Cell>(grid.cells.size())};
     const glm::vec2 most(grid.size - 1U);
     for (const SkyGrid::Cell& cell : grid.cells) {
-        if (cell.moment == glm::vec3(0.0F)) {
-            continue;
-        }
+        if (cell.moment == glm::vec3(0.0F)) continue;
         const glm::vec2 at = sky_position(tilt() * glm::normalize(cell.moment)) * glm::vec2(grid.size);
         const glm::uvec2 index(glm::clamp(at, glm::vec2(0.0F), most));
         SkyGrid::Cell& target = result.cells[std::size_t{index.y} * grid.size.x + index.x];

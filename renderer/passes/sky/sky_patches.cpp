@@ -48,22 +48,16 @@ std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
     constexpr float two_degrees = 0.99939083F;
     const auto brightest = std::ranges::max_element(
         grid.cells, {}, [](const SkyGrid::Cell& cell) { return sum_of_channels(cell.light); });
-    if (brightest->moment == glm::vec3(0.0F)) {
-        return std::nullopt;
-    }
+    if (brightest->moment == glm::vec3(0.0F)) return std::nullopt;
     // The brightest cell may be at the sun's edge.
     const glm::dvec3 near = light_in_cone(grid, glm::normalize(brightest->moment), two_degrees).moment;
     const glm::vec3 axis(glm::normalize(near));
     const ConeLight sun = light_in_cone(grid, axis, one_degree);
     const double light = sum_of_channels(sun.light);
     const double around = sum_of_channels(light_in_cone(grid, axis, two_degrees).light);
-    if (light < 0.05 * all || light < 0.8 * around) {
-        return std::nullopt;
-    }
+    if (light < 0.05 * all || light < 0.8 * around) return std::nullopt;
     for (SkyGrid::Cell& cell : grid.cells) {
-        if (glm::dot(cell.moment, axis) > one_degree * glm::length(cell.moment)) {
-            cell = {};
-        }
+        if (glm::dot(cell.moment, axis) > one_degree * glm::length(cell.moment)) cell = {};
     }
     return SkySun{glm::vec3(glm::normalize(sun.moment)), glm::vec3(sun.light)};
 }
@@ -74,9 +68,7 @@ std::vector<SkySun> take_suns(SkyGrid& grid) {
     std::vector<SkySun> suns;
     while (suns.size() < most_suns) {
         const std::optional<SkySun> sun = take_sun(grid, all);
-        if (!sun) {
-            break;
-        }
+        if (!sun) break;
         suns.push_back(*sun);
     }
     return suns;
@@ -186,9 +178,7 @@ std::vector<gpu::SkyPatch> place_sky(const SplitSky& sky, const Environment& env
     std::vector<gpu::SkyPatch> placed;
     for (const SkyPatch& patch : sky.patches) {
         const double weight = sum_of_channels(patch.light);
-        if (weight <= 0.0) {
-            continue;
-        }
+        if (weight <= 0.0) continue;
         const glm::vec3 facing = environment.radiance * glm::vec3(std::numbers::pi * patch.light);
         if (sample > 0) {
             const glm::dvec2 start = r2_point(static_cast<std::uint32_t>(placed.size()), glm::dvec2(0.5));

@@ -10,9 +10,7 @@ SkyPatches add_sky_patches(FrameGraph& graph, const Gpu& gpu, const Sky& sky,
     return graph.add("sky-patches", [&](Pass& pass) {
         pass.read(sky.split);
         pass.read(sky.environment);
-        if (refinement) {
-            pass.read(*refinement);
-        }
+        if (refinement) pass.read(*refinement);
         const SkyPatches out{.patches = pass.write(graph.buffer<gpu::SkyPatch>(
                                                        "sky patches", MOST_SKY_PATCHES, Lifetime::persistent),
                                                    Usage::copy),

@@ -66,14 +66,10 @@ void draw_surfaces(Gpu& gpu, Execution& run, const SceneData& scene, const Surfa
     bind_meshes(gpu, run, scene);
     const gl::Program* used = nullptr;
     for (const SceneLayout::Group& group : run.value(scene.layout).groups) {
-        if (group.material.alpha == AlphaMode::blend || !is_drawn(group)) {
-            continue;
-        }
+        if (group.material.alpha == AlphaMode::blend || !is_drawn(group)) continue;
         const gl::Program* const program =
             group.material.alpha == AlphaMode::mask ? programs.masked : programs.opaque;
-        if (std::exchange(used, program) != program) {
-            program->use(uniforms);
-        }
+        if (std::exchange(used, program) != program) program->use(uniforms);
         state.culling = group.material.double_sided ? gl::Culling::off : gl::Culling::back;
         draw_group(gpu, group, state);
     }

@@ -131,9 +131,7 @@ void warn_of_narrow_spots(Log& log, const LightTable& lights, const SceneMetrics
 
 /// For a pass that reads the sky, if there is one. Returns the names to define in its shader.
 std::vector<std::string> read_sky(Pass& pass, const std::optional<SkyPatches>& sky) {
-    if (!sky) {
-        return {};
-    }
+    if (!sky) return {};
     pass.read(sky->count);
     pass.read(sky->patches, {Usage::uniform, UNIFORMS_SKY});
     return {"SKY"};
@@ -164,9 +162,7 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             const auto [count, points] = numbers_of(run, surfels);
             run.reserve(out.points, points);
             run.reserve(out.cells, count);
-            if (count == 0) {
-                return;
-            }
+            if (count == 0) return;
             const std::uint32_t emitters = run.value(surfels.counts).emitters;
             const SceneMetrics& metrics = run.value(tracing.metrics);
             const LightTable& table = run.value(lights.table);
@@ -260,9 +256,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             const auto changed =
                 known.outdated(run, run.value(motion), {run.value(surfels.set), ray_offset},
                                {run.object(out.form_factors), run.object(hits), run.object(out.seen_points)});
-            if (count > 0) {
-                find_visibility(gpu, programs, numbers, ray_offset, changed);
-            }
+            if (count > 0) find_visibility(gpu, programs, numbers, ray_offset, changed);
         });
         return out;
     });
@@ -280,9 +274,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.read(direct.points, {Usage::storage, BINDING_DIRECT_POINTS});
         pass.read(visibility.form_factors, {Usage::storage, BINDING_FORM_FACTORS});
         pass.read(visibility.rows, {Usage::storage, BINDING_SURFEL_ROWS});
-        if (sources.sky) {
-            pass.read(sources.sky->count);
-        }
+        if (sources.sky) pass.read(sources.sky->count);
         pass.parameter(bounces);
         pass.parameter(shown);
         const BouncePrograms programs{
@@ -307,12 +299,8 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             run.reserve(bounced, 2 * count);
             run.reserve(lit.surfels, count);
             run.reserve(lit.points, points);
-            if (lit.emitters) {
-                run.reserve(*lit.emitters, counts.emitters);
-            }
-            if (count == 0) {
-                return;
-            }
+            if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
+            if (count == 0) return;
             ComputeSteps steps(gpu);
             gather_bounces(steps, programs, count, bounces);
             steps.run(programs.writer, {groups(count, SURFEL_GROUP)},

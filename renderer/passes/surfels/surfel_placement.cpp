@@ -41,14 +41,10 @@ Sides sides_of(const SceneTriangles& scene, bool emitting) {
     double area = 0.0;
     for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
         const gpu::TraceTriangle& triangle = scene.triangles[i];
-        if (scene.emits[triangle.material] != emitting) {
-            continue;
-        }
+        if (scene.emits[triangle.material] != emitting) continue;
         const glm::vec3 cross = glm::cross(triangle.edge_ab, triangle.edge_ac);
         const float twice_area = glm::length(cross);
-        if (!(twice_area > 0.0F)) {
-            continue;
-        }
+        if (!(twice_area > 0.0F)) continue;
         const glm::vec3 front = cross / twice_area;
         for (int side = 0; side < (scene.double_sided[triangle.material] ? 2 : 1); ++side) {
             all.sides.push_back({&triangle, side == 0 ? front : -front, scene.item_of[i], side == 1});
@@ -74,17 +70,13 @@ glm::vec2 point_in_triangle(std::uint32_t index, std::uint32_t seed) {
     constexpr double unit = 1.0 / 4294967296.0;
     const glm::dvec2 start(hash(seed) * unit, hash(seed ^ 0x9e3779b9U) * unit);
     glm::dvec2 point = r2_point(index, start);
-    if (point.x + point.y > 1.0) {
-        point = 1.0 - point;
-    }
+    if (point.x + point.y > 1.0) point = 1.0 - point;
     return glm::vec2(point);
 }
 
 /// Interpolated between the corners, in sRGB: gpu::CellPoint::colour.
 std::uint32_t colour_at(const gpu::TraceTriangle& triangle, glm::vec2 b) {
-    if ((triangle.colour_a & triangle.colour_b & triangle.colour_c) == 0xffffffffU) {
-        return 0xffffffffU;
-    }
+    if ((triangle.colour_a & triangle.colour_b & triangle.colour_c) == 0xffffffffU) return 0xffffffffU;
     return glm::packUnorm4x8((1.0F - b.x - b.y) * glm::unpackUnorm4x8(triangle.colour_a) +
                              b.x * glm::unpackUnorm4x8(triangle.colour_b) +
                              b.y * glm::unpackUnorm4x8(triangle.colour_c));
@@ -141,9 +133,7 @@ class SurfelGrid {
         int found = -1;
         for (int i = 0; i < 27; ++i) {
             const auto cell = cells_.find(key(centre + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1, point.item));
-            if (cell == cells_.end()) {
-                continue;
-            }
+            if (cell == cells_.end()) continue;
             for (const std::uint32_t candidate : cell->second) {
                 const PlacedPoint& surfel = surfels_[candidate];
                 const glm::vec3 apart = point.position - surfel.position;
@@ -180,9 +170,7 @@ std::vector<std::uint32_t> assign(SurfelGrid& grid, const std::vector<PlacedPoin
     owners.reserve(points.size());
     for (const PlacedPoint& point : points) {
         int owner = grid.nearest_like(point, 0.9F, 0.1F);
-        if (owner < 0) {
-            owner = grid.nearest_like(point, 0.5F, 0.5F);
-        }
+        if (owner < 0) owner = grid.nearest_like(point, 0.5F, 0.5F);
         if (owner < 0) {
             owner = static_cast<int>(grid.surfels().size());
             grid.add(point);
@@ -271,9 +259,7 @@ SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t po
 /// About `count` surfels with `points_a_surfel` points each on average.
 SurfelSet place_surfels(const Sides& all, std::uint32_t count, std::uint32_t points_a_surfel,
                         std::uint32_t seed) {
-    if (all.sides.empty() || count == 0) {
-        return {};
-    }
+    if (all.sides.empty() || count == 0) return {};
     constexpr int attempts = 4;
     std::uint32_t wanted = count;
     SurfelSet set = spread_surfels(all, wanted, points_a_surfel, seed);

@@ -71,9 +71,7 @@ SceneTriangles triangles_of(const SceneLayout& layout, const std::vector<glm::ma
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
                      const SurfelCounts& counts, std::uint32_t seed) {
     SurfelKey key{layout.geometry, shapes_of(placement), counts, seed};
-    if (last != nullptr && last->key == key) {
-        return *last;
-    }
+    if (last != nullptr && last->key == key) return *last;
     auto set =
         std::make_shared<const SurfelSet>(place_surfels(triangles_of(layout, key.shapes), counts, seed));
     return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
@@ -178,14 +176,12 @@ ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
     return graph.add("surfel-spread", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
-        if (refinement) {
-            pass.read(*refinement);
-        }
+        if (refinement) pass.read(*refinement);
         const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
                                   .emitting = emitting_surfels(settings.count)};
         pass.parameter(counts);
         pass.parameter(settings.seed);
-        pass.remembers();
+        pass.keeps_state();
         const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
             const std::uint32_t set = refinement ? run.value(*refinement).surfel_set : 0;

@@ -10,7 +10,7 @@ namespace candela {
 Refined add_refinement(FrameGraph& graph, ValueHandle<RefinementClock> clock, const SceneData& scene,
                        const RefinedLight& light, const std::vector<ValueHandle<CameraView>>& views) {
     return graph.add("refinement", [&](Pass& pass) {
-        pass.remembers();
+        pass.keeps_state();
         pass.read(clock);
         std::vector<ResourceHandle> lit{scene.layout, scene.placement, light.lights};
         pass.read(scene.layout);

@@ -109,15 +109,9 @@ CameraView requested_view(const World& world, const ViewRequest& request) {
     const auto& camera = world.get<Camera>(request.camera);
     const glm::mat4 matrix = world_matrix(world, request.camera);
     Fault fault = fault_of(camera);
-    if (!fault) {
-        fault = fault_of(matrix);
-    }
-    if (!fault && fault_of(rigid(matrix))) {
-        fault = "the world matrix has no direction";
-    }
-    if (fault) {
-        throw SceneError(fmt::format("{}, Camera: {}", describe(world, request.camera), *fault));
-    }
+    if (!fault) fault = fault_of(matrix);
+    if (!fault && fault_of(rigid(matrix))) fault = "the world matrix has no direction";
+    if (fault) throw SceneError(fmt::format("{}, Camera: {}", describe(world, request.camera), *fault));
     return make_view(camera, matrix, request.size, request.jitter);
 }
 
@@ -128,9 +122,7 @@ void read_request(Pass& pass, ValueHandle<ViewRequest> request) {
 }
 
 glm::vec2 pixel_sample(std::uint32_t i) {
-    if (i == 0) {
-        return glm::vec2(0.0F);
-    }
+    if (i == 0) return glm::vec2(0.0F);
     const std::uint32_t pair = (i + 1) / 2;
     const glm::dvec2 point = r2_point(pair, glm::dvec2(0.5)) - 0.5;
     return glm::vec2(i % 2 == 1 ? point : -point);

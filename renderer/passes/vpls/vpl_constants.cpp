@@ -17,9 +17,7 @@ constexpr std::uint32_t least_tiles = 4;
 
 VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t maps,
                         const SceneMetrics& metrics, const gl::Limits& limits) {
-    if (settings.method != VplVisibility::maps) {
-        return {};
-    }
+    if (settings.method != VplVisibility::maps) return {};
     VplAtlas atlas = plan_vpl_atlas(settings.map_resolution, maps, limits);
     atlas.near = metrics.scale() > 0.0F ? 0x1p-18F * metrics.scale() : 1.0F;
     return atlas;

@@ -40,9 +40,7 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node,
                const std::optional<std::vector<Box>>& changed) {
     LayerTarget target(gpu);
     target.set_layers(run.object(node.depth), run.value(node.common.atlas).side);
-    if (!changed) {
-        target.clear();
-    }
+    if (!changed) target.clear();
     gpu.draw_points(*node.program, run.value(node.counts).mapped(),
                     changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()),
                     {.depth_test = gl::DepthTest::always});

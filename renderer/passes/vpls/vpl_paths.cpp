@@ -35,9 +35,7 @@ std::vector<Share> share_paths(const LightTable& lights, std::uint32_t count) {
         const bool last = i + 1 == lights.entries.size();
         const std::uint32_t until =
             last ? count : std::min(count, static_cast<std::uint32_t>(std::llround(cumulative)));
-        if (until > given) {
-            shares.push_back({i, until - given, expected});
-        }
+        if (until > given) shares.push_back({i, until - given, expected});
         given = std::max(given, until);
     }
     return shares;
@@ -131,9 +129,7 @@ std::vector<float> make_weights(const PathPlan& plan, const std::vector<Share>& 
 
 PathPlan plan_paths(const LightTable& lights, float mean_albedo, const VplSettings& settings) {
     PathPlan plan;
-    if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) {
-        return plan;
-    }
+    if (lights.entries.empty() || settings.count == 0 || settings.bounces == 0) return plan;
     const double albedo = std::clamp(static_cast<double>(mean_albedo), 0.0, 1.0);
     double vpls_per_path = 0.0;
     double survival = 1.0;
@@ -166,9 +162,7 @@ ValueHandle<PathPlan> add_vpl_paths(FrameGraph& graph, ValueHandle<SceneMetrics>
     return graph.add("vpl-paths", [&](Pass& pass) {
         pass.read(lights);
         pass.read(metrics);
-        if (refinement) {
-            pass.read(*refinement);
-        }
+        if (refinement) pass.read(*refinement);
         pass.parameter(settings);
         const auto paths = pass.write(graph.value<PathPlan>("vpl paths"));
         pass.run([=](Execution& run) {

@@ -89,9 +89,7 @@ Vpls add_vpl_trace(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, ValueHan
             run.reserve(buffers.records, plan.vpl_count);
             upload<gpu::Path>(gpu, run, buffers.paths, plan.paths);
             upload<float>(gpu, run, buffers.weights, plan.weights);
-            if (!plan.paths.empty()) {
-                trace(gpu, programs, run.value(tracing.metrics), plan, bound);
-            }
+            if (!plan.paths.empty()) trace(gpu, programs, run.value(tracing.metrics), plan, bound);
         });
         return out;
     });

@@ -48,9 +48,7 @@ class Pool final : public PoolBase {
         if (at == absent) {
             insert(entity, std::move(value), now);
         } else {
-            if (equal(values_[at], value)) {
-                return false;
-            }
+            if (equal(values_[at], value)) return false;
             values_[at] = std::move(value);
             ticks_[at] = now;
         }
@@ -60,9 +58,7 @@ class Pool final : public PoolBase {
 
     bool remove(Entity entity, Tick now) override {
         const std::uint32_t at = position(entity);
-        if (at == absent) {
-            return false;
-        }
+        if (at == absent) return false;
         positions_[entities_.back().index] = at;
         positions_[entity.index] = absent;
         move_last_to(values_, at);
@@ -95,9 +91,7 @@ class Pool final : public PoolBase {
     }
 
     void insert(Entity entity, C value, Tick now) {
-        if (entity.index >= positions_.size()) {
-            positions_.resize(std::size_t{entity.index} + 1, absent);
-        }
+        if (entity.index >= positions_.size()) positions_.resize(std::size_t{entity.index} + 1, absent);
         positions_[entity.index] = static_cast<std::uint32_t>(entities_.size());
         entities_.push_back(entity);
         values_.push_back(std::move(value));
@@ -114,9 +108,7 @@ class Pool final : public PoolBase {
 
     template <class T>
     static void move_last_to(std::vector<T>& values, std::uint32_t at) {
-        if (at + 1 != values.size()) {
-            values[at] = std::move(values.back());
-        }
+        if (at + 1 != values.size()) values[at] = std::move(values.back());
         values.pop_back();
     }
 

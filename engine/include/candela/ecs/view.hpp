@@ -84,9 +84,7 @@ class View {
 
  private:
     void consider(std::span<const Entity> entities) {
-        if (entities.size() < candidates_.size()) {
-            candidates_ = entities;
-        }
+        if (entities.size() < candidates_.size()) candidates_ = entities;
     }
 
     Pools pools_;

@@ -115,13 +115,9 @@ template <Component C>
 void World::set(Entity entity, C value) {
     require_alive(entity, component_name<C>());
     auto& pool = pools_[typeid(C)];
-    if (!pool) {
-        pool = std::make_unique<Pool<C>>();
-    }
+    if (!pool) pool = std::make_unique<Pool<C>>();
     const Tick now = next_tick();
-    if (static_cast<Pool<C>&>(*pool).set(entity, std::move(value), now)) {
-        tick_ = now;
-    }
+    if (static_cast<Pool<C>&>(*pool).set(entity, std::move(value), now)) tick_ = now;
 }
 
 template <Component C>
@@ -129,9 +125,7 @@ void World::remove(Entity entity) {
     require_alive(entity, component_name<C>());
     const auto pool = pools_.find(typeid(C));
     const Tick now = next_tick();
-    if (pool != pools_.end() && pool->second->remove(entity, now)) {
-        tick_ = now;
-    }
+    if (pool != pools_.end() && pool->second->remove(entity, now)) tick_ = now;
 }
 
 template <Component C, std::invocable<C&> F>
@@ -151,9 +145,7 @@ const C* World::find(Entity entity) const {
 template <Component C>
 const C& World::get(Entity entity) const {
     const C* component = find<C>(entity);
-    if (!component) {
-        throw EntityError::lacks(entity, component_name<C>());
-    }
+    if (!component) throw EntityError::lacks(entity, component_name<C>());
     return *component;
 }
 

@@ -195,7 +195,7 @@ class CANDELA_API GraphRuntime {
     /// have just written again, so the check also covers versions that later passes modify in place and
     /// transients whose object another resource uses later in the frame. Not run again are
     /// - passes with side effects and passes that write imports (they run in every frame),
-    /// - passes that read a history or have declared Pass::remembers,
+    /// - passes that read a history or have declared Pass::keeps_state,
     /// - passes that would overwrite a result of one of those, and
     /// - passes with an input that has been overwritten and that only one of those could write again.
     ///
@@ -270,9 +270,7 @@ class CANDELA_API GraphRuntime {
 template <class T>
 void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
     detail::Slot& target = slot(value, true);
-    if (detail::holds_equal<T>(target, content)) {
-        return;
-    }
+    if (detail::holds_equal<T>(target, content)) return;
     detail::put_value<T>(target, std::move(content));
     target.changed = true;
 }
@@ -280,9 +278,7 @@ void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
 template <class T>
 void GraphRuntime::set(ValueHandle<T> imported, std::type_identity_t<T> value) {
     detail::Slot* const target = import_slot(imported);
-    if (!target || detail::holds_equal<T>(*target, value)) {
-        return;
-    }
+    if (!target || detail::holds_equal<T>(*target, value)) return;
     detail::put_value<T>(*target, std::move(value));
     touch(imported);
 }

@@ -106,7 +106,7 @@ class Pass {
     /// The result depends on what the pass updates: computed again from the same inputs, it may be different.
     /// Implied for passes that read a history. Only verification uses this: it does not run such passes
     /// again.
-    void remembers() { declared_.passes.back().remembers = true; }
+    void keeps_state() { declared_.passes.back().keeps_state = true; }
 
     /// A value of the host's about the pass, such as what its time depends on, for PassRecord::tag. The graph
     /// does not use it.
@@ -211,18 +211,14 @@ class FrameGraph {
     /// descriptions, with what append_to_names has added. O(resources).
     [[nodiscard]] std::optional<FoundTexture> find_texture(std::string_view name) const {
         const ResourceHandle found = declared_.find(name, ResourceKind::texture);
-        if (found == ResourceHandle{}) {
-            return std::nullopt;
-        }
+        if (found == ResourceHandle{}) return std::nullopt;
         return FoundTexture{
             {found}, declared_.texture(declared_.resources[found.resource]), declared_.note(found)};
     }
     /// The same for a buffer.
     [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const {
         const ResourceHandle found = declared_.find(name, ResourceKind::buffer);
-        if (found == ResourceHandle{}) {
-            return std::nullopt;
-        }
+        if (found == ResourceHandle{}) return std::nullopt;
         return FoundBuffer{
             {found}, declared_.buffer(declared_.resources[found.resource]).stride, declared_.note(found)};
     }

@@ -105,9 +105,7 @@ void visit_lights(const World& world, Visit&& visit) {
 template <class Visit>
 void visit_lights_of(const World& world, Entity entity, Visit&& visit) {
     for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
-        if (const auto* const light = world.find<Light>(entity)) {
-            visit(*light);
-        }
+        if (const auto* const light = world.find<Light>(entity)) visit(*light);
     });
 }
 
@@ -115,9 +113,7 @@ void visit_lights_of(const World& world, Entity entity, Visit&& visit) {
 template <class Edit>
 void edit_lights_of(World& world, Entity entity, Edit&& edit) {
     for_each_light_kind([&]<class Light>(const LightTraits<Light>&) {
-        if (world.has<Light>(entity)) {
-            world.edit<Light>(entity, edit);
-        }
+        if (world.has<Light>(entity)) world.edit<Light>(entity, edit);
     });
 }
 

@@ -80,7 +80,7 @@ struct PassNode {
     std::uint32_t first_component = 0;
     std::uint32_t first_parameter = 0;
     bool side_effect = false;
-    bool remembers = false;
+    bool keeps_state = false;
     std::uint32_t tag = 0;  // see Pass::tag
 };
 
@@ -98,9 +98,7 @@ class Arena {
 
     template <class T>
     T* store(T value) {
-        if constexpr (!std::is_trivially_destructible_v<T>) {
-            owned_.reserve(owned_.size() + 1);
-        }
+        if constexpr (!std::is_trivially_destructible_v<T>) owned_.reserve(owned_.size() + 1);
         T* const object = ::new (memory_.allocate(sizeof(T), alignof(T))) T(std::move(value));
         if constexpr (!std::is_trivially_destructible_v<T>) {
             owned_.push_back({object, [](void* stored) { static_cast<T*>(stored)->~T(); }});

@@ -77,8 +77,8 @@ struct Content {
 struct Output {
     std::uint32_t version;  // id
     std::uint32_t slot;
-    bool value;       // a CPU value, not a texture or buffer
-    bool turns_over;  // first write to a resource with a history, which is in the next slot: swap the two
+    bool value;          // a CPU value, not a texture or buffer
+    bool swaps_history;  // first write to a resource with a history, which is in the next slot: swap the two
 };
 
 struct Revision {
@@ -116,7 +116,7 @@ struct Step {
     Barrier barrier = Barrier::none;
     bool side_effect = false;
     bool writes_import = false;
-    bool remembers = false;
+    bool keeps_state = false;
     bool has_run = false;
 };
 
@@ -140,7 +140,7 @@ struct State {
 
 /// Per step: whether verification may run it again after a frame. Excluded are
 /// - passes with side effects and passes that write imports,
-/// - passes that read a history or have declared Pass::remembers,
+/// - passes that read a history or have declared Pass::keeps_state,
 /// - passes with a missing input that only an excluded pass could make again, and
 /// - passes that would overwrite an output of an excluded pass.
 [[nodiscard]] std::vector<std::uint8_t> repeatable_steps(const State& state);
