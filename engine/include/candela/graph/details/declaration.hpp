@@ -194,7 +194,12 @@ class CANDELA_API Declaration {
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
     [[nodiscard]] bool is_written(const Resource& resource) const;
     [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
-    void error(ErrorCode code, std::string message) { errors.push_back({code, std::move(message)}); }
+    void error(ErrorCode code, std::string message) {
+        // GCC 12 reports overlapping copies if a CompileError is made first and then moved.
+        CompileError& added = errors.emplace_back();
+        added.code = code;
+        added.message = std::move(message);
+    }
     [[nodiscard]] std::string_view why_no_parts(const Resource& whole, TexturePart part) const;
     [[nodiscard]] std::string_view why_no_history(const Resource& base) const;
     void check_binding(const Resource& resource, Binding binding, bool write);
