@@ -39,7 +39,7 @@ camera moves           x      .        .      .    x     .      .         .     
 camera zooms           .      .        .      .    .     .      .         .        x        x          x       .     .         .          .       .      .       .        .           .             .              .              .         x       x       .        x          x         x       x       x       x       x
 light moves            x      .        .      .    x     x      x         x        x        .          .       x     x         .          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
 spot moves             x      .        .      .    x     x      x         x        x        .          .       x     x         .          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-light changes colour   .      .        .      .    x     x      .         x        .        .          .       x     x         x          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
+light changes colour   .      .        .      .    x     x      .         x        .        .          .       x     x         .          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
 light goes off         .      .        .      .    x     x      x         x        .        .          .       x     x         x          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
 light goes on          .      .        .      .    x     x      x         x        .        .          .       x     x         x          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
 light's shadow goes    .      .        .      .    x     x      x         x        .        .          .       x     x         .          x       .      .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
@@ -212,13 +212,14 @@ class EditTable : public PathFixture {
 
     void check_paths(const std::vector<ShadingPath>& paths, VplPlacement placement = VplPlacement::paths) {
         const Scene scene = scene_;
-        configuration_.vpls.placement = placement;
+        const Configuration configuration = configuration_;
         for (const ShadingPath path : paths) {
             CAPTURE(to_string(path));
             scene_ = scene;
             size_ = first_size;
+            configuration_ = configuration;
+            configuration_.vpls.placement = placement;
             configuration_.path = path;
-            configuration_.show = Show::total;
             renderer.invalidate();
             check_all();
         }

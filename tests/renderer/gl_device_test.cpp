@@ -103,7 +103,7 @@ TEST_SUITE("gl device") {
         gl::Limits limits = device.limits();
         limits.storage_blocks = 8;
         CHECK_THROWS_WITH_AS(require_limits(limits),
-                             "the driver offers 8 storage blocks a program; Candela needs 12", gl::GlError);
+                             "the driver offers 8 storage blocks a program; Candela needs 13", gl::GlError);
         limits = device.limits();
         limits.drawing_storage_blocks = 0;
         CHECK_THROWS_WITH_AS(
