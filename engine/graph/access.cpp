@@ -1,10 +1,12 @@
 // Access to resources: of running passes, and of the host.
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <candela/graph/execute.hpp>
+#include "engine/graph/details/state.hpp"
 
 namespace candela {
 
@@ -36,7 +38,14 @@ void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureD
 }
 
 void GraphRuntime::touch(ResourceHandle imported) {
-    state_.versions[graph_->plan().version(imported.resource, 0)].stamp = ++clock_;
+    state_->versions[graph_->plan().version(imported.resource, 0)].stamp = ++clock_;
+}
+
+void GraphRuntime::set_value(ResourceHandle imported, detail::Value value) {
+    detail::Slot* const slot = import_slot(imported);
+    if (!slot || value.equals(slot->value)) return;
+    slot->value = std::move(value);
+    touch(imported);
 }
 
 /// The slot of a resource or of a history. Until turn_over was called in a frame, a resource still holds its
@@ -45,22 +54,22 @@ detail::Slot* GraphRuntime::slot_of(std::uint32_t index) {
     const std::uint32_t base = graph_->declared().resources[index].history_of;
     const std::uint32_t slot = graph_->plan().object[base == none ? index : base];
     if (slot == none) return nullptr;
-    return &state_.slots[base != none && state_.turned[slot] ? slot + 1 : slot];
+    return &state_->slots[base != none && state_->turned[slot] ? slot + 1 : slot];
 }
 
 const void* GraphRuntime::content(ResourceHandle value) const {
     const detail::Resource& held = resource(value);
     const std::uint32_t slot = graph_->plan().object[value.resource];
-    if (slot == none || !state_.slots[slot].value) {
+    if (slot == none || !state_->slots[slot].value.content) {
         throw GraphError(fmt::format("value '{}' has not been set", held.name));
     }
-    return state_.slots[slot].value.get();
+    return state_->slots[slot].value.content.get();
 }
 
 ObjectId GraphRuntime::object(ResourceHandle handle) const {
     (void)resource(handle);
     const std::uint32_t slot = graph_->plan().object[handle.resource];
-    return slot == none ? 0 : state_.slots[slot].object;
+    return slot == none ? 0 : state_->slots[slot].object;
 }
 
 detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
@@ -75,6 +84,25 @@ detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
     throw GraphError(fmt::format("pass '{}' {} {} '{}' without having declared it",
                                  graph.declared().passes[pass].name, write ? "writes" : "uses",
                                  to_string(resource.kind), resource.name));
+}
+
+ObjectId Execution::object_of(ResourceHandle resource) const {
+    return slot(resource, false).object;
+}
+
+const TextureDesc& Execution::desc(TextureHandle texture) const {
+    return slot(texture, false).texture;
+}
+
+std::uint64_t Execution::count_of(ResourceHandle buffer) const {
+    return slot(buffer, false).buffer.count;
+}
+
+void Execution::set_value(ResourceHandle value, detail::Value content) {
+    detail::Slot& target = slot(value, true);
+    if (content.equals(target.value)) return;
+    target.value = std::move(content);
+    target.changed = true;
 }
 
 const void* Execution::content(ResourceHandle value) const {
@@ -94,12 +122,12 @@ const void* Execution::previous_content(ResourceHandle value) const {
             fmt::format("pass '{}' asks for the previous content of value '{}', but does not update it",
                         graph.declared().passes[pass].name, runtime_.resource(value).name));
     }
-    return runtime_.repeating_ ? nullptr : held.value.get();
+    return runtime_.repeating_ ? nullptr : held.value.content.get();
 }
 
 bool Execution::changed(ResourceHandle read) const {
     const detail::Resource& resource = runtime_.resource(read);
-    const detail::State& state = runtime_.state_;
+    const detail::State& state = *runtime_.state_;
     const detail::Plan& plan = runtime_.graph_->plan();
     const detail::Step& step = state.steps[position_];
     if (resource.first_part != none) {

@@ -127,6 +127,17 @@ std::string to_string(Barrier bits) {
     return text.empty() ? "none" : text;
 }
 
+CompiledGraph::CompiledGraph(std::unique_ptr<const detail::Declaration> declared,
+                             std::unique_ptr<const detail::Plan> plan)
+    : declared_(std::move(declared)), plan_(std::move(plan)) {}
+CompiledGraph::CompiledGraph(CompiledGraph&& other) noexcept = default;
+CompiledGraph& CompiledGraph::operator=(CompiledGraph&& other) noexcept = default;
+CompiledGraph::~CompiledGraph() = default;
+
+std::size_t CompiledGraph::pass_count() const {
+    return plan_->order.size();
+}
+
 CompiledGraph CompileResult::take() && {
     if (graph) return std::move(*graph);
     std::string message = "the frame graph does not compile:";
@@ -137,18 +148,18 @@ CompiledGraph CompileResult::take() && {
 }
 
 CompileResult compile(FrameGraph&& graph) {
-    detail::Declaration declared = std::move(graph.declared_);
-    std::vector<CompileError> errors = std::move(declared.errors);
-    detail::Plan plan;
+    std::unique_ptr<detail::Declaration> declared = std::move(graph.declared_);
+    std::vector<CompileError> errors = std::move(declared->errors);
+    auto plan = std::make_unique<detail::Plan>();
 
-    detail::check_passes(declared, errors);
-    detail::check_resources(declared, errors);
-    detail::number_versions(declared, plan);
+    detail::check_passes(*declared, errors);
+    detail::check_resources(*declared, errors);
+    detail::number_versions(*declared, *plan);
     if (!errors.empty()) return {std::nullopt, std::move(errors)};
-    plan.order = detail::needed_passes(declared, plan);
-    detail::plan_lifetimes(declared, plan);
-    detail::plan_objects(declared, plan);
-    plan.barrier = detail::plan_barriers(declared, plan);
+    plan->order = detail::needed_passes(*declared, *plan);
+    detail::plan_lifetimes(*declared, *plan);
+    detail::plan_objects(*declared, *plan);
+    plan->barrier = detail::plan_barriers(*declared, *plan);
     return {CompiledGraph(std::move(declared), std::move(plan)), {}};
 }
 

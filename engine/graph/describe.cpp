@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/graph/details/plan.hpp"
 #include "engine/json/json.hpp"
 
 namespace candela {

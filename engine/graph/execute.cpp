@@ -1,4 +1,5 @@
 #include <candela/graph/execute.hpp>
+#include "engine/graph/details/state.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -50,22 +51,22 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
     bool marked_too_many = false;
 
     record_.frame = frame_;
-    std::fill(state_.turned.begin(), state_.turned.end(), std::uint8_t{0});
+    std::fill(state_->turned.begin(), state_->turned.end(), std::uint8_t{0});
     Execution execution(*this, world);
     Clock::time_point last = timing == Timing::on ? Clock::now() : Clock::time_point{};
-    for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
-        const detail::Step& step = state_.steps[position];
+    for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
+        const detail::Step& step = state_->steps[position];
         PassRecord& record = record_.passes[position];
         record.ran = record.verified = false;
         record.cpu_ms = 0;
         pending_barriers_ = pending_barriers_ | step.barrier;
-        if (state_.need[position] == nothing) continue;
+        if (state_->need[position] == nothing) continue;
         const bool changed = dirty(step, world);
         if (!changed && marked_too_many) {
             mark(world, position);
             marked_too_many = false;
         }
-        if (!changed && (state_.need[position] & certain) == 0) {
+        if (!changed && (state_->need[position] & certain) == 0) {
             marked_too_many = true;
             continue;
         }
@@ -85,9 +86,9 @@ const FrameRecord& GraphRuntime::run(const World& world, Timing timing) {
 }
 
 void GraphRuntime::require_imports() const {
-    for (const std::uint32_t index : state_.imports) {
-        const detail::Slot& slot = state_.slots[graph_->plan().object[index]];
-        if (slot.filled || slot.value) continue;
+    for (const std::uint32_t index : state_->imports) {
+        const detail::Slot& slot = state_->slots[graph_->plan().object[index]];
+        if (slot.filled || slot.value.content) continue;
         const detail::Resource& resource = graph_->declared().resources[index];
         const std::string_view lack =
             resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
@@ -99,7 +100,7 @@ bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
     if (!step.has_run || step.side_effect) return true;
     return std::ranges::any_of(step.inputs,
                                [this](const detail::Input& input) {
-                                   return state_.versions[input.version].stamp != input.stamp;
+                                   return state_->versions[input.version].stamp != input.stamp;
                                }) ||
            std::ranges::any_of(step.revisions, [&](const detail::Revision& revision) {
                return revision.of(world) != revision.tick;
@@ -109,10 +110,10 @@ bool GraphRuntime::dirty(const detail::Step& step, const World& world) const {
 /// Marks which passes may have to run, from position `from` on. The passes before it are finished: those that
 /// have not changed their results do not make others run.
 void GraphRuntime::mark(const World& world, std::uint32_t from) {
-    for (const std::uint32_t held : state_.holds) {
-        if (held != none) state_.versions[held].present = true;
+    for (const std::uint32_t held : state_->holds) {
+        if (held != none) state_->versions[held].present = true;
     }
-    std::fill_n(state_.need.begin(), from, std::uint8_t{nothing});
+    std::fill_n(state_->need.begin(), from, std::uint8_t{nothing});
     mark_dirty(world, from);
     while (mark_missing(from)) {
     }
@@ -120,19 +121,19 @@ void GraphRuntime::mark(const World& world, std::uint32_t from) {
 
 /// Forward sweep: a pass may change if it is dirty now, or if it has an input from a pass that may change.
 void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
-    for (std::uint32_t position = from; position < state_.step_count(); ++position) {
-        const detail::Step& step = state_.steps[position];
+    for (std::uint32_t position = from; position < state_->step_count(); ++position) {
+        const detail::Step& step = state_->steps[position];
         std::uint8_t need = step.writes_import ? certain : nothing;
         if (dirty(step, world)) {
             need = may_change | certain;
         } else {
             for (const detail::Input& input : step.inputs) {
-                if ((state_.need[state_.versions[input.version].producer] & may_change) != 0) {
+                if ((state_->need[state_->versions[input.version].producer] & may_change) != 0) {
                     need |= may_change;
                 }
             }
         }
-        state_.need[position] = need;
+        state_->need[position] = need;
     }
 }
 
@@ -142,19 +143,19 @@ void GraphRuntime::mark_dirty(const World& world, std::uint32_t from) {
 /// is needed.
 bool GraphRuntime::mark_missing(std::uint32_t from) {
     bool again = false;
-    for (std::uint32_t position = state_.step_count(); position-- > from;) {
-        if (state_.need[position] == nothing) continue;
-        const detail::Step& step = state_.steps[position];
+    for (std::uint32_t position = state_->step_count(); position-- > from;) {
+        if (state_->need[position] == nothing) continue;
+        const detail::Step& step = state_->steps[position];
         for (const detail::Input& input : step.inputs) {
-            const detail::Version& version = state_.versions[input.version];
-            state_.need[version.producer] |= version.present ? nothing : certain;
+            const detail::Version& version = state_->versions[input.version];
+            state_->need[version.producer] |= version.present ? nothing : certain;
         }
         for (const detail::Output& output : step.outputs) {
-            const std::uint32_t held = state_.holds[output.slot];
+            const std::uint32_t held = state_->holds[output.slot];
             if (held == none) continue;
-            detail::Version& version = state_.versions[held];
+            detail::Version& version = state_->versions[held];
             const bool lost = version.present & (version.producer > position);
-            again |= lost & ((state_.need[version.producer] & certain) == 0);
+            again |= lost & ((state_->need[version.producer] & certain) == 0);
             version.present &= !lost;
         }
     }
@@ -162,7 +163,7 @@ bool GraphRuntime::mark_missing(std::uint32_t from) {
 }
 
 void GraphRuntime::run_step(Execution& execution, bool changed) {
-    detail::Step& step = state_.steps[execution.position_];
+    detail::Step& step = state_->steps[execution.position_];
     execution.has_no_result_ = repeating_ || !step.has_run || !has_results(step);
     step.has_run = false;
     begin_outputs(step);
@@ -179,13 +180,13 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
 
 bool GraphRuntime::has_results(const detail::Step& step) const {
     return std::ranges::all_of(
-        step.outputs, [&](const detail::Output& output) { return state_.versions[output.version].present; });
+        step.outputs, [&](const detail::Output& output) { return state_->versions[output.version].present; });
 }
 
 /// Whether all outputs of the step, which has just run, count as changed for their readers.
 bool GraphRuntime::renewed_results(const detail::Step& step) const {
     return std::ranges::all_of(step.outputs, [&](const detail::Output& output) {
-        return state_.versions[output.version].stamp == clock_;
+        return state_->versions[output.version].stamp == clock_;
     });
 }
 
@@ -194,33 +195,33 @@ bool GraphRuntime::renewed_results(const detail::Step& step) const {
 void GraphRuntime::begin_outputs(const detail::Step& step) {
     for (const detail::Output& output : step.outputs) {
         if (output.swaps_history && !repeating_) turn_over(output.slot);
-        if (output.value) state_.slots[output.slot].changed = state_.holds[output.slot] != output.version;
+        if (output.value) state_->slots[output.slot].changed = state_->holds[output.slot] != output.version;
         release(output.slot);
     }
 }
 
 void GraphRuntime::release(std::uint32_t slot) {
-    std::uint32_t& held = state_.holds[slot];
-    if (held != none) state_.versions[held].present = false;
+    std::uint32_t& held = state_->holds[slot];
+    if (held != none) state_->versions[held].present = false;
     held = none;
 }
 
 /// Swaps the two objects of a resource with a history: the current content becomes the history, and the
 /// object of the old history will be written.
 void GraphRuntime::turn_over(std::uint32_t slot) {
-    std::swap(state_.slots[slot], state_.slots[slot + 1]);
-    state_.slots[slot].filled = false;
-    state_.turned[slot] = 1;
+    std::swap(state_->slots[slot], state_->slots[slot + 1]);
+    state_->slots[slot].filled = false;
+    state_->turned[slot] = 1;
 }
 
 void GraphRuntime::begin_pass(std::uint32_t position) {
-    const detail::Step& step = state_.steps[position];
+    const detail::Step& step = state_->steps[position];
     if (step.targets.empty()) return backend_.begin_pass(step.name, position, nullptr);
 
     PassTargets targets;
     colours_.clear();
     for (const detail::Target& target : step.targets) {
-        const detail::Slot& slot = state_.slots[target.slot];
+        const detail::Slot& slot = state_->slots[target.slot];
         targets.size = slot.texture.size;
         if (target.depth) {
             targets.depth = slot.object;
@@ -233,14 +234,14 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
 }
 
 void GraphRuntime::bind_resources(std::uint32_t position) {
-    for (const detail::Bound& bound : state_.steps[position].bound) {
+    for (const detail::Bound& bound : state_->steps[position].bound) {
         bind(bound);
     }
 }
 
 /// After the running pass has replaced the object of one of its resources.
 void GraphRuntime::rebind(std::uint32_t position, std::uint32_t resource) {
-    for (const detail::Bound& bound : state_.steps[position].bound) {
+    for (const detail::Bound& bound : state_->steps[position].bound) {
         if (bound.resource == resource) bind(bound);
     }
 }
@@ -258,26 +259,26 @@ void GraphRuntime::bind(const detail::Bound& bound) {
 /// unchanged inputs; a value keeps its stamp also if it was set to an equal value.
 void GraphRuntime::keep_record(detail::Step& step, const World& world, bool changed) {
     for (detail::Input& input : step.inputs) {
-        input.stamp = state_.versions[input.version].stamp;
+        input.stamp = state_->versions[input.version].stamp;
     }
     for (detail::Revision& revision : step.revisions) {
         revision.tick = revision.of(world);
     }
     ++clock_;
     for (const detail::Output& output : step.outputs) {
-        detail::Version& version = state_.versions[output.version];
+        detail::Version& version = state_->versions[output.version];
         release(output.slot);
-        state_.holds[output.slot] = output.version;
+        state_->holds[output.slot] = output.version;
         version.present = true;
-        if (output.swaps_history) state_.slots[output.slot].filled = true;
-        if (changed && (!output.value || state_.slots[output.slot].changed)) version.stamp = clock_;
+        if (output.swaps_history) state_->slots[output.slot].filled = true;
+        if (changed && (!output.value || state_->slots[output.slot].changed)) version.stamp = clock_;
     }
     if (verifying_) note_contents(step, changed);
     step.has_run = true;
 }
 
 void GraphRuntime::invalidate() {
-    for (detail::Step& step : state_.steps) {
+    for (detail::Step& step : state_->steps) {
         step.has_run = false;
     }
 }

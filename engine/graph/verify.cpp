@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <candela/graph/execute.hpp>
+#include "engine/graph/details/state.hpp"
 
 namespace candela {
 namespace {
@@ -24,20 +25,20 @@ class Raised {
 void GraphRuntime::set_verification(bool on) {
     if (on == verifying_) return;
     verifying_ = on;
-    state_.contents.clear();
-    state_.contents.resize(on ? state_.versions.size() : 0);
+    state_->contents.clear();
+    state_->contents.resize(on ? state_->versions.size() : 0);
 }
 
 void GraphRuntime::verify(const World& world) {
     if (!graph_ || !verifying_) {
         throw GraphError("there is no frame to verify: there is no graph, or verification is off");
     }
-    const std::vector<std::uint8_t> again = detail::repeatable_steps(state_);
+    const std::vector<std::uint8_t> again = detail::repeatable_steps(*state_);
     const Raised repeating(repeating_);
     Execution execution(*this, world);
     pending_barriers_ = all_barriers;  // the planned barriers assume whole frames, one after the other
-    for (std::uint32_t position = 0; position < state_.step_count(); ++position) {
-        pending_barriers_ = pending_barriers_ | state_.steps[position].barrier;
+    for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
+        pending_barriers_ = pending_barriers_ | state_->steps[position].barrier;
         if (!again[position]) continue;
         execution.position_ = position;
         run_step(execution, false);
@@ -49,21 +50,20 @@ void GraphRuntime::verify(const World& world) {
 /// Records the contents of the step's outputs. If the inputs have not changed, compares them with those of
 /// its previous run and throws GraphError at a difference.
 void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
-    const auto drifted = [&](const detail::Input& input) { return state_.contents[input.version].drifted; };
+    const auto drifted = [&](const detail::Input& input) { return state_->contents[input.version].drifted; };
     const bool excused = changed || step.keeps_state || std::ranges::any_of(step.inputs, drifted);
     for (const detail::Output& output : step.outputs) {
-        const detail::Slot& slot = state_.slots[output.slot];
-        const bool stamped = state_.versions[output.version].stamp == clock_;
-        detail::Content& known = state_.contents[output.version];
+        const detail::Slot& slot = state_->slots[output.slot];
+        const bool stamped = state_->versions[output.version].stamp == clock_;
+        detail::Content& known = state_->contents[output.version];
         if (!output.value && !slot.owned) {
             known.drifted = !stamped;  // imported: its content cannot be compared
             continue;
         }
         detail::Content now = content_of(slot);
-        const bool both_set = known.value && now.value;
+        const bool comparable = known.value.content && now.value.equal;
         const bool same =
-            !known.known || (known.digest == now.digest &&
-                             (!both_set || !slot.equal || slot.equal(known.value.get(), now.value.get())));
+            !known.known || (known.digest == now.digest && (!comparable || now.value.equals(known.value)));
         if (!same && !excused) report_difference(step, output.version);
         now.drifted = !stamped && (known.drifted || !same);
         known = std::move(now);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_random.hpp"
 
 namespace {

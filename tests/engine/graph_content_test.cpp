@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_machine.hpp"
 
 namespace {

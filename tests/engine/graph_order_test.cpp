@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_random.hpp"
 
 namespace {

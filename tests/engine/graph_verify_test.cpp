@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_fixture.hpp"
 #include "tests/engine/graph_machine.hpp"
 #include "tests/throws.hpp"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <candela/graph/compile.hpp>
+#include "engine/graph/details/plan.hpp"
 
 namespace candela::detail {
 

@@ -1,4 +1,4 @@
-#include <candela/graph/details/declaration.hpp>
+#include "engine/graph/details/declaration.hpp"
 
 #include <algorithm>
 #include <chrono>

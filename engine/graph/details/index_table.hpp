@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <candela/graph/details/declaration.hpp>
+#include "engine/graph/details/declaration.hpp"
 
 namespace candela::detail {
 

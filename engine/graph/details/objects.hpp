@@ -1,6 +1,6 @@
 #pragma once
 
-#include <candela/graph/compile.hpp>
+#include "engine/graph/details/plan.hpp"
 
 namespace candela::detail {
 

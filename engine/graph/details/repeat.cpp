@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include <candela/graph/details/state.hpp>
+#include "engine/graph/details/state.hpp"
 
 namespace candela::detail {
 namespace {

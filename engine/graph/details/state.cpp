@@ -1,4 +1,4 @@
-#include <candela/graph/details/state.hpp>
+#include "engine/graph/details/state.hpp"
 
 #include <fmt/format.h>
 

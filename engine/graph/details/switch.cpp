@@ -4,6 +4,7 @@
 
 #include <candela/graph/execute.hpp>
 #include "engine/graph/details/index_table.hpp"
+#include "engine/graph/details/state.hpp"
 
 namespace candela {
 namespace {
@@ -60,8 +61,10 @@ class UnusedObjects {
 
 }  // namespace
 
+GraphRuntime::GraphRuntime(Backend& backend) : backend_(backend), state_(std::make_unique<detail::State>()) {}
+
 GraphRuntime::~GraphRuntime() {
-    for (const detail::Slot& slot : state_.slots) {
+    for (const detail::Slot& slot : state_->slots) {
         destroy(slot);
     }
     for (const detail::Slot& slot : free_pool_) {
@@ -80,9 +83,9 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     if (verifying_) state.contents.resize(state.versions.size());
     std::vector<detail::Slot> unused = free_pool_;
     if (graph_) {
-        const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, state_);
+        const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, *state_);
         for (std::size_t index = 0; index < taken.size(); ++index) {
-            if (!taken[index] && state_.slots[index].owned) unused.push_back(state_.slots[index]);
+            if (!taken[index] && state_->slots[index].owned) unused.push_back(state_->slots[index]);
         }
     }
     provide_objects(graph, state, unused);
@@ -96,7 +99,7 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     // The planned barriers of the new graph do not cover the writes of the previous one.
     if (graph_) pending_barriers_ = all_barriers;
     free_pool_ = std::move(unused);
-    state_ = std::move(state);
+    *state_ = std::move(state);
     graph_ = std::move(graph);
     record_.passes = std::move(passes);
 }
@@ -156,7 +159,7 @@ MemoryUse GraphRuntime::memory() const {
             (slot.kind == ResourceKind::texture ? use.texture_bytes : use.buffer_bytes) += bytes(slot);
         }
     };
-    for (const detail::Slot& slot : state_.slots) {
+    for (const detail::Slot& slot : state_->slots) {
         add(slot);
     }
     for (const detail::Slot& slot : free_pool_) {
@@ -169,7 +172,7 @@ MemoryUse GraphRuntime::memory() const {
         const std::uint32_t object = graph_->plan().object[index];
         if (resource.lifetime != Lifetime::transient || object == detail::none) continue;
         if (graph_->plan().owner[object] != index) {
-            use.shared_by_aliasing_bytes += bytes(state_.slots[object]);
+            use.shared_by_aliasing_bytes += bytes(state_->slots[object]);
         }
     }
     return use;

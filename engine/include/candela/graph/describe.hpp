@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <candela/api.hpp>
+#include <candela/graph/backend.hpp>
 #include <candela/graph/compile.hpp>
 
 namespace candela {

@@ -15,7 +15,6 @@
 #include <candela/ecs/world.hpp>
 #include <candela/graph/backend.hpp>
 #include <candela/graph/compile.hpp>
-#include <candela/graph/details/state.hpp>
 #include <candela/graph/errors.hpp>
 #include <candela/graph/records.hpp>
 #include <candela/graph/resources.hpp>
@@ -23,6 +22,40 @@
 namespace candela {
 
 class GraphRuntime;
+
+namespace detail {
+
+struct Bound;
+struct Content;
+struct Output;
+struct Resource;
+struct Slot;
+struct State;
+struct Step;
+
+/// A value of any type, with how to compare it: null if the type has no operator==. Values are replaced,
+/// never modified.
+struct Value {
+    std::shared_ptr<const void> content;
+    bool (*equal)(const void*, const void*) = nullptr;
+
+    [[nodiscard]] bool equals(const Value& other) const {
+        return equal && other.content && equal(content.get(), other.content.get());
+    }
+};
+
+template <class T>
+[[nodiscard]] Value make_value(T content) {
+    Value value{std::make_shared<const T>(std::move(content))};
+    if constexpr (std::equality_comparable<T>) {
+        value.equal = [](const void* a, const void* b) {
+            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+        };
+    }
+    return value;
+}
+
+}  // namespace detail
 
 /// The interface of a running pass; valid only during its function. Every access to a resource that the pass
 /// has not declared throws GraphError, which names the pass and the resource.
@@ -33,21 +66,19 @@ class CANDELA_API Execution {
     [[nodiscard]] const World& world() const { return world_; }
 
     /// The back end's object that holds the resource in this frame. `reserve` may replace it.
-    [[nodiscard]] ObjectId object(TextureHandle texture) const { return slot(texture, false).object; }
+    [[nodiscard]] ObjectId object(TextureHandle texture) const { return object_of(texture); }
     template <class T>
     [[nodiscard]] ObjectId object(BufferHandle<T> buffer) const {
-        return slot(buffer, false).object;
+        return object_of(buffer);
     }
 
     /// The current description, including changes by `reserve`; for imports, that given to `bind`.
-    [[nodiscard]] const TextureDesc& desc(TextureHandle texture) const {
-        return slot(texture, false).texture;
-    }
+    [[nodiscard]] const TextureDesc& desc(TextureHandle texture) const;
     /// Number of elements that the buffer can hold now: for imports as bound, else at least as many as
     /// declared or reserved.
     template <class T>
     [[nodiscard]] std::uint64_t count(BufferHandle<T> buffer) const {
-        return slot(buffer, false).buffer.count;
+        return count_of(buffer);
     }
 
     /// The reference is valid until a pass or the host sets the value again. Throws GraphError if the value
@@ -82,7 +113,9 @@ class CANDELA_API Execution {
     /// Sets a value that the pass writes. If T has operator== and the new content equals the old, the readers
     /// of the value do not run again because of it.
     template <class T>
-    void set(ValueHandle<T> value, std::type_identity_t<T> content);
+    void set(ValueHandle<T> value, std::type_identity_t<T> content) {
+        set_value(value, detail::make_value<T>(std::move(content)));
+    }
 
     /// Ensures that a persistent buffer can hold `count` elements. The pass must write the buffer from
     /// version 0; GraphError otherwise. The buffer grows by at least half its size and never shrinks. Growing
@@ -105,6 +138,9 @@ class CANDELA_API Execution {
     Execution(GraphRuntime& runtime, const World& world) : runtime_(runtime), world_(world) {}
 
     [[nodiscard]] detail::Slot& slot(ResourceHandle handle, bool write) const;
+    [[nodiscard]] ObjectId object_of(ResourceHandle resource) const;
+    [[nodiscard]] std::uint64_t count_of(ResourceHandle buffer) const;
+    void set_value(ResourceHandle value, detail::Value content);
     [[nodiscard]] const void* content(ResourceHandle value) const;
     [[nodiscard]] const void* previous_content(ResourceHandle value) const;
     void reserve_buffer(ResourceHandle buffer, std::uint64_t count);
@@ -130,7 +166,7 @@ class CANDELA_API Execution {
 class CANDELA_API GraphRuntime {
  public:
     /// Keeps a reference: the back end must outlive the runtime.
-    explicit GraphRuntime(Backend& backend) : backend_(backend) {}
+    explicit GraphRuntime(Backend& backend);
     GraphRuntime(const GraphRuntime&) = delete;
     GraphRuntime& operator=(const GraphRuntime&) = delete;
     /// Destroys every object that the runtime has created, not the imported ones.
@@ -155,7 +191,9 @@ class CANDELA_API GraphRuntime {
     /// equals the old, the readers do not run again because of it. Does nothing if only culled passes use the
     /// value. GraphError if there is no graph, or if the handle is of another graph or not imported.
     template <class T>
-    void set(ValueHandle<T> imported, std::type_identity_t<T> value);
+    void set(ValueHandle<T> imported, std::type_identity_t<T> value) {
+        set_value(imported, detail::make_value<T>(std::move(value)));
+    }
 
     /// Provides the object of an imported texture or buffer. The host keeps ownership, and the object must
     /// stay alive while it is bound. The binding stays until the next `bind` or `switch_to`. Each call counts
@@ -252,35 +290,20 @@ class CANDELA_API GraphRuntime {
     [[nodiscard]] detail::Slot* import_slot(ResourceHandle handle);
     void bind(ResourceHandle imported, ObjectId object, const TextureDesc& texture, const BufferDesc& buffer);
     void touch(ResourceHandle imported);
+    void set_value(ResourceHandle imported, detail::Value value);
     [[nodiscard]] const void* content(ResourceHandle value) const;
 
     Backend& backend_;
     std::optional<CompiledGraph> graph_;
-    detail::State state_;
+    std::unique_ptr<detail::State> state_;
     std::vector<detail::Slot> free_pool_;  // objects of the previous graph
     FrameRecord record_;
     std::uint64_t frame_ = 0;
     std::vector<ObjectId> colours_;  // scratch: the colour attachments of the running pass
-    detail::Stamp clock_ = 0;
+    std::uint64_t clock_ = 0;
     Barrier pending_barriers_ = Barrier::none;  // pending: planned for passes that were skipped
     bool verifying_ = false;
     bool repeating_ = false;  // during verify
 };
-
-template <class T>
-void Execution::set(ValueHandle<T> value, std::type_identity_t<T> content) {
-    detail::Slot& target = slot(value, true);
-    if (detail::holds_equal<T>(target, content)) return;
-    detail::put_value<T>(target, std::move(content));
-    target.changed = true;
-}
-
-template <class T>
-void GraphRuntime::set(ValueHandle<T> imported, std::type_identity_t<T> value) {
-    detail::Slot* const target = import_slot(imported);
-    if (!target || detail::holds_equal<T>(*target, value)) return;
-    detail::put_value<T>(*target, std::move(value));
-    touch(imported);
-}
 
 }  // namespace candela

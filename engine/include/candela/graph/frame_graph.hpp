@@ -3,14 +3,18 @@
 #include <any>
 #include <concepts>
 #include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <new>
 #include <optional>
 #include <string_view>
 #include <type_traits>
 #include <typeindex>
 #include <utility>
+#include <vector>
 
+#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
-#include <candela/graph/details/declaration.hpp>
 #include <candela/graph/resources.hpp>
 
 namespace candela {
@@ -19,6 +23,49 @@ class CompiledGraph;
 class Execution;  // the interface of a running pass: execute.hpp
 class FrameGraph;
 struct CompileResult;
+
+namespace detail {
+
+class Declaration;
+
+/// Owns objects of any type, and text, until it is destroyed. Their addresses do not change.
+class Arena {
+ public:
+    Arena() = default;
+    Arena(const Arena&) = delete;
+    Arena& operator=(const Arena&) = delete;
+    ~Arena() {
+        for (const Owned& owned : owned_) {
+            owned.destroy(owned.object);
+        }
+    }
+
+    template <class T>
+    T* store(T value) {
+        if constexpr (!std::is_trivially_destructible_v<T>) owned_.reserve(owned_.size() + 1);
+        T* const object = ::new (memory_.allocate(sizeof(T), alignof(T))) T(std::move(value));
+        if constexpr (!std::is_trivially_destructible_v<T>) {
+            owned_.push_back({object, [](void* stored) { static_cast<T*>(stored)->~T(); }});
+        }
+        return object;
+    }
+
+    [[nodiscard]] std::string_view store_text(std::string_view text) {
+        char* const copy = static_cast<char*>(memory_.allocate(text.size(), 1));
+        return {copy, text.copy(copy, text.size())};
+    }
+
+ private:
+    struct Owned {
+        void* object;
+        void (*destroy)(void*);
+    };
+
+    std::pmr::monotonic_buffer_resource memory_;
+    std::vector<Owned> owned_;
+};
+
+}  // namespace detail
 
 /// Declares one pass: what it reads, what it writes and the function that it runs. The object exists only
 /// during the call of `FrameGraph::add`.
@@ -33,60 +80,60 @@ struct CompileResult;
 /// `update` modifies it in place, and `FrameGraph::history` gives a handle to read it.
 ///
 /// No member throws on misuse; `compile` reports the errors.
-class Pass {
+class CANDELA_API Pass {
  public:
     Pass(const Pass&) = delete;
     Pass& operator=(const Pass&) = delete;
+    ~Pass();
 
     /// The pass reads this version of the resource, and runs again when it changes (histories excepted). The
     /// version must be the newest one, and it must have been written by a pass, be imported or be a history.
     /// With a place, as in `pass.read(lights, {Usage::storage, 2})`, the graph binds it there for the pass.
     void read(TextureHandle texture, Binding binding) {
-        declared_.read(texture, ResourceKind::texture, binding);
+        declare_read(texture, ResourceKind::texture, binding);
     }
     template <class T>
     void read(BufferHandle<T> buffer, Binding binding) {
-        declared_.read(buffer, ResourceKind::buffer, binding);
+        declare_read(buffer, ResourceKind::buffer, binding);
     }
     template <class T>
     void read(ValueHandle<T> value) {
-        declared_.read(value, ResourceKind::value, {});
+        declare_read(value, ResourceKind::value, {});
     }
 
     /// The pass reads components of type C from the world (Execution::world). It runs again when a C of any
     /// entity was added, changed or removed.
     template <Component C>
     void read() {
-        declared_.components.push_back(
-            {component_name<C>(), [](const World& world) { return world.revision<C>(); }});
+        declare_read(component_name<C>(), [](const World& world) { return world.revision<C>(); });
     }
 
     /// The pass writes the resource. Returns the handle of the version that it produces. Histories and
     /// imported values cannot be written.
     [[nodiscard]] TextureHandle write(TextureHandle texture, Binding binding) {
-        return {declared_.write(texture, ResourceKind::texture, binding)};
+        return {declare_write(texture, ResourceKind::texture, binding)};
     }
     template <class T>
     [[nodiscard]] BufferHandle<T> write(BufferHandle<T> buffer, Binding binding) {
-        return {declared_.write(buffer, ResourceKind::buffer, binding)};
+        return {declare_write(buffer, ResourceKind::buffer, binding)};
     }
     template <class T>
     [[nodiscard]] ValueHandle<T> write(ValueHandle<T> value) {
-        return {declared_.write(value, ResourceKind::value, {})};
+        return {declare_write(value, ResourceKind::value, {})};
     }
 
     /// The pass writes version 0 of a persistent resource, but may leave parts of the previous frame's
     /// content as they are (see Execution::changed and Execution::previous). Returns the handle of version 1.
     [[nodiscard]] TextureHandle update(TextureHandle texture, Binding binding) {
-        return {declared_.update(texture, ResourceKind::texture, binding)};
+        return {declare_update(texture, ResourceKind::texture, binding)};
     }
     template <class T>
     [[nodiscard]] BufferHandle<T> update(BufferHandle<T> buffer, Binding binding) {
-        return {declared_.update(buffer, ResourceKind::buffer, binding)};
+        return {declare_update(buffer, ResourceKind::buffer, binding)};
     }
     template <class T>
     [[nodiscard]] ValueHandle<T> update(ValueHandle<T> value) {
-        return {declared_.update(value, ResourceKind::value, {})};
+        return {declare_update(value, ResourceKind::value, {})};
     }
 
     /// A constant on which the pass's result depends, for example one that the function captures.
@@ -97,37 +144,45 @@ class Pass {
         const auto equal = [](const void* a, const void* b) {
             return *static_cast<const T*>(a) == *static_cast<const T*>(b);
         };
-        declared_.parameters.push_back({typeid(T), declared_.store(std::move(value)), equal});
+        declare_parameter(typeid(T), arena_.store(std::move(value)), equal);
     }
 
     /// The pass is never culled and runs in every frame.
-    void side_effect() { declared_.passes.back().side_effect = true; }
+    void side_effect();
 
     /// The result depends on what the pass updates: computed again from the same inputs, it may be different.
     /// Implied for passes that read a history. Only verification uses this: it does not run such passes
     /// again.
-    void keeps_state() { declared_.passes.back().keeps_state = true; }
+    void keeps_state();
 
     /// A value of the host's about the pass, such as what its time depends on, for PassRecord::tag. The graph
     /// does not use it.
     template <class Tag>
     requires std::is_enum_v<Tag>
-    void tag(Tag value) { declared_.passes.back().tag = static_cast<std::uint32_t>(value); }
+    void tag(Tag value) { set_tag(static_cast<std::uint32_t>(value)); }
 
     /// Sets the function that the pass executes: `void(Execution&)`. The graph owns it. A second call
     /// replaces the function; a pass without one only has its barriers issued and its attachments bound.
     template <std::invocable<Execution&> F>
     void run(F function) {
-        detail::PassNode& pass = declared_.passes.back();
-        pass.function = declared_.store(std::move(function));
-        pass.invoke = [](void* object, Execution& execution) { (*static_cast<F*>(object))(execution); };
+        set_function(arena_.store(std::move(function)),
+                     [](void* object, Execution& execution) { (*static_cast<F*>(object))(execution); });
     }
 
  private:
     friend FrameGraph;
-    explicit Pass(detail::Declaration& declared) : declared_(declared) {}
+    Pass(detail::Declaration& declared, std::string_view name);
+
+    void declare_read(ResourceHandle resource, ResourceKind kind, Binding binding);
+    void declare_read(std::string_view component, Tick (*revision)(const World&));
+    [[nodiscard]] ResourceHandle declare_write(ResourceHandle resource, ResourceKind kind, Binding binding);
+    [[nodiscard]] ResourceHandle declare_update(ResourceHandle resource, ResourceKind kind, Binding binding);
+    void declare_parameter(std::type_index type, const void* value, bool (*equal)(const void*, const void*));
+    void set_tag(std::uint32_t tag);
+    void set_function(void* function, void (*invoke)(void*, Execution&));
 
     detail::Declaration& declared_;
+    detail::Arena& arena_;
 };
 
 /// What FrameGraph::find_texture returns. `desc` is as declared; a pass may reserve another one. `note` is
@@ -147,22 +202,25 @@ struct FoundBuffer {
 
 /// The declaration of a frame: its resources and its passes. Misuse does not throw while declaring; `compile`
 /// reports every error. `compile` consumes the graph: afterwards it may only be assigned to or destroyed.
-class FrameGraph {
+class CANDELA_API FrameGraph {
  public:
+    FrameGraph();
+    FrameGraph(FrameGraph&& other) noexcept;
+    FrameGraph& operator=(FrameGraph&& other) noexcept;
+    ~FrameGraph();
+
     // Names appear in messages and reports. They also identify persistent and imported resources across
     // graphs (GraphRuntime::switch_to), so the names of persistent and imported resources must be unique
     // within each kind (texture, buffer, value). The graph copies the names.
 
     /// Appends `ending` to the names of all passes and resources that are declared from now on, so that a
     /// graph can contain the same passes several times, for example once for each view.
-    void append_to_names(std::string_view ending) { declared_.append_to_names(ending); }
+    void append_to_names(std::string_view ending);
 
     /// A texture with the given description. For an imported one, `compile` checks the usages against `desc`,
     /// and GraphRuntime::bind gives the actual description.
     [[nodiscard]] TextureHandle texture(std::string_view name, const TextureDesc& desc,
-                                        Lifetime lifetime = Lifetime::transient) {
-        return {declared_.add_texture(name, desc, lifetime)};
-    }
+                                        Lifetime lifetime = Lifetime::transient);
 
     /// A part of a texture as a resource of its own, with its own versions: one mip level (of all layers), or
     /// one layer (of one mip level). Passes write and read it like a texture of its size, for example to fill
@@ -172,78 +230,62 @@ class FrameGraph {
     /// A texture with parts is written only through them. A read of the texture reads the newest versions of
     /// all its parts. Makes the texture persistent. Parts may not overlap. Imported textures and textures
     /// with a history have no parts.
-    [[nodiscard]] TextureHandle mip(TextureHandle texture, std::uint32_t level) {
-        return {declared_.add_part(texture, {level, TexturePart::all_layers})};
-    }
-    [[nodiscard]] TextureHandle layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip = 0) {
-        return {declared_.add_part(texture, {mip, layer})};
-    }
+    [[nodiscard]] TextureHandle mip(TextureHandle texture, std::uint32_t level);
+    [[nodiscard]] TextureHandle layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip = 0);
 
     /// A buffer of `count` elements of type `T`, sizeof(T) bytes apart.
     template <class T>
     [[nodiscard]] BufferHandle<T> buffer(std::string_view name, std::uint64_t count,
                                          Lifetime lifetime = Lifetime::transient) {
-        return {declared_.add_buffer(name, {count, sizeof(T)}, lifetime)};
+        return {add_buffer(name, {count, sizeof(T)}, lifetime)};
     }
 
     /// A CPU value that a pass sets (Execution::set). It is kept from frame to frame.
     template <class T>
     [[nodiscard]] ValueHandle<T> value(std::string_view name) {
-        return {declared_.add_value(name, typeid(T), Lifetime::persistent)};
+        return {add_value(name, typeid(T), Lifetime::persistent)};
     }
 
     /// A CPU value that the host sets (GraphRuntime::set): before the first run, and again whenever it
     /// changes.
     template <class T>
     [[nodiscard]] ValueHandle<T> import_value(std::string_view name) {
-        return {declared_.add_value(name, typeid(T), Lifetime::imported)};
+        return {add_value(name, typeid(T), Lifetime::imported)};
     }
 
     /// A read-only handle for the content that the texture had at the end of the previous frame. Makes the
     /// texture persistent; imported textures cannot have a history. The history is invalid in the first frame
     /// and after a resize: ask `Execution::history_valid`. A change of the history does not make its readers
     /// run again.
-    [[nodiscard]] TextureHandle history(TextureHandle texture) { return {declared_.add_history(texture)}; }
+    [[nodiscard]] TextureHandle history(TextureHandle texture);
 
     /// The newest version of the texture with this name, for a pass declared next to read. Only what passes
     /// have written so far is found, not what they are yet to write, nor histories and what only the host
     /// writes; of several transients with the name, that declared last. `name` is as in messages and in
     /// descriptions, with what append_to_names has added. O(resources).
-    [[nodiscard]] std::optional<FoundTexture> find_texture(std::string_view name) const {
-        const ResourceHandle found = declared_.find(name, ResourceKind::texture);
-        if (found == ResourceHandle{}) return std::nullopt;
-        return FoundTexture{
-            {found}, declared_.texture(declared_.resources[found.resource]), declared_.note(found)};
-    }
+    [[nodiscard]] std::optional<FoundTexture> find_texture(std::string_view name) const;
     /// The same for a buffer.
-    [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const {
-        const ResourceHandle found = declared_.find(name, ResourceKind::buffer);
-        if (found == ResourceHandle{}) return std::nullopt;
-        return FoundBuffer{
-            {found}, declared_.buffer(declared_.resources[found.resource]).stride, declared_.note(found)};
-    }
+    [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const;
 
     /// Says what the content of a texture or buffer means, for passes that find it by name: any value that
     /// the host chooses, such as a struct with handles of other resources. Replaces an earlier note.
-    void note(ResourceHandle on, std::any what) { declared_.add_note(on, std::move(what)); }
+    void note(ResourceHandle on, std::any what);
 
     /// Adds a pass. Calls `declare(Pass&)` immediately and returns its result, usually the handles that the
     /// pass writes. Pass names must be unique in the graph. `declare` may add resources, but no other pass.
     template <std::invocable<Pass&> Declare>
     std::invoke_result_t<Declare, Pass&> add(std::string_view name, Declare&& declare) {
-        declared_.begin_pass(name);
-        const struct Close {
-            detail::Declaration& declared;
-            ~Close() { declared.end_pass(); }
-        } close{declared_};
-        Pass pass(declared_);
+        Pass pass(*declared_, name);
         return std::forward<Declare>(declare)(pass);
     }
 
  private:
     friend CompileResult compile(FrameGraph&& graph);
 
-    detail::Declaration declared_;
+    ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime);
+    ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
+
+    std::unique_ptr<detail::Declaration> declared_;
 };
 
 }  // namespace candela

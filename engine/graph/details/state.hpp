@@ -1,23 +1,16 @@
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <candela/ecs/world.hpp>
-#include <candela/graph/backend.hpp>
-#include <candela/graph/compile.hpp>
-#include <candela/graph/resources.hpp>
+#include <candela/graph/execute.hpp>
+#include "engine/graph/details/plan.hpp"
 
-namespace candela {
-
-class Execution;
-
-namespace detail {
+namespace candela::detail {
 
 /// A version gets a new stamp from a counter each time its content changes: equal stamps mean equal content.
 using Stamp = std::uint64_t;
@@ -32,31 +25,11 @@ struct Slot {
     ObjectId object = 0;
     TextureDesc texture;
     BufferDesc buffer;
-    std::shared_ptr<void> value;
-    bool (*equal)(const void*, const void*) = nullptr;  // compares values; null if T has no operator==
+    Value value;
     // Key of a persistent object: its name and its declared description. `reserve` may have changed the
     // actual description. Empty for all others.
     std::string kept_as;
 };
-
-template <class T>
-bool holds_equal(const Slot& slot, const T& content) {
-    if constexpr (std::equality_comparable<T>) {
-        return slot.value && *static_cast<const T*>(slot.value.get()) == content;
-    } else {
-        return false;
-    }
-}
-
-template <class T>
-void put_value(Slot& slot, T content) {
-    slot.value = std::make_shared<T>(std::move(content));
-    if constexpr (std::equality_comparable<T>) {
-        slot.equal = [](const void* a, const void* b) {
-            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
-        };
-    }
-}
 
 /// One version of one resource.
 struct Version {
@@ -65,13 +38,12 @@ struct Version {
     bool present = true;         // in its slot, and not about to be overwritten in this frame
 };
 
-/// The content of a version when it was last written, for verification. The value is shared, not copied:
-/// values are replaced, never modified.
+/// The content of a version when it was last written, for verification. The value is shared, not copied.
 struct Content {
     bool known = false;
     bool drifted = false;  // may have changed without a new stamp, so its readers have not seen the change
     std::uint64_t digest = 0;
-    std::shared_ptr<void> value;
+    Value value;
 };
 
 struct Output {
@@ -150,5 +122,4 @@ struct State {
 std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
                                   const State& before);
 
-}  // namespace detail
-}  // namespace candela
+}  // namespace candela::detail

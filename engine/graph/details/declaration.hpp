@@ -4,26 +4,19 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <memory_resource>
-#include <new>
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <typeindex>
 #include <utility>
 #include <vector>
 
-#include <candela/api.hpp>
 #include <candela/ecs/world.hpp>
 #include <candela/graph/errors.hpp>
+#include <candela/graph/frame_graph.hpp>
 #include <candela/graph/resources.hpp>
 
-namespace candela {
-
-class Execution;
-
-namespace detail {
+namespace candela::detail {
 
 /// The size as a 32-bit index.
 template <class T>
@@ -84,45 +77,8 @@ struct PassNode {
     std::uint32_t tag = 0;  // see Pass::tag
 };
 
-/// Owns objects of any type, and text, until it is destroyed. Their addresses do not change.
-class Arena {
- public:
-    Arena() = default;
-    Arena(const Arena&) = delete;
-    Arena& operator=(const Arena&) = delete;
-    ~Arena() {
-        for (const Owned& owned : owned_) {
-            owned.destroy(owned.object);
-        }
-    }
-
-    template <class T>
-    T* store(T value) {
-        if constexpr (!std::is_trivially_destructible_v<T>) owned_.reserve(owned_.size() + 1);
-        T* const object = ::new (memory_.allocate(sizeof(T), alignof(T))) T(std::move(value));
-        if constexpr (!std::is_trivially_destructible_v<T>) {
-            owned_.push_back({object, [](void* stored) { static_cast<T*>(stored)->~T(); }});
-        }
-        return object;
-    }
-
-    [[nodiscard]] std::string_view store_text(std::string_view text) {
-        char* const copy = static_cast<char*>(memory_.allocate(text.size(), 1));
-        return {copy, text.copy(copy, text.size())};
-    }
-
- private:
-    struct Owned {
-        void* object;
-        void (*destroy)(void*);
-    };
-
-    std::pmr::monotonic_buffer_resource memory_;
-    std::vector<Owned> owned_;
-};
-
 /// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in one arena.
-class CANDELA_API Declaration {
+class Declaration {
  public:
     Declaration();
 
@@ -148,10 +104,7 @@ class CANDELA_API Declaration {
     ResourceHandle write(ResourceHandle handle, ResourceKind kind, Binding binding);
     ResourceHandle update(ResourceHandle handle, ResourceKind kind, Binding binding);
 
-    template <class T>
-    T* store(T value) {
-        return arena_->store(std::move(value));
-    }
+    [[nodiscard]] Arena& arena() { return *arena_; }
 
     [[nodiscard]] std::uint32_t pass_count() const { return static_cast<std::uint32_t>(passes.size()); }
     [[nodiscard]] std::span<const Access> accesses_of(std::uint32_t pass) const {
@@ -210,5 +163,4 @@ class CANDELA_API Declaration {
     bool declaring_ = false;
 };
 
-}  // namespace detail
-}  // namespace candela
+}  // namespace candela::detail

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <candela/graph/backend.hpp>
+#include "engine/graph/details/declaration.hpp"
+
+namespace candela::detail {
+
+/// Positions of a resource's first and last access in the execution order; `first` is none if no kept pass
+/// (one that was not culled) uses it.
+struct Span {
+    std::uint32_t first = none;
+    std::uint32_t last = none;
+};
+
+/// What compiling adds to a declaration. All versions of all resources are numbered in one sequence: the id
+/// of a version is the first id of its resource plus the version number. An object is one storage location: a
+/// texture, a buffer or a value.
+struct Plan {
+    std::vector<std::uint32_t> order;          // kept passes, in execution order
+    std::vector<std::uint32_t> first_version;  // per resource: its first version id; then the total number
+    std::vector<std::uint32_t> writer;         // per version id: the pass that writes it, or none
+    std::vector<Span> lifetime;                // per resource
+    // Per resource: its object, or none if it is unused. A history has the object after its resource's.
+    std::vector<std::uint32_t> object;
+    std::vector<std::uint32_t> owner;  // per object: a resource that has its kind and description
+    std::vector<Barrier> barrier;      // per position: what to issue before the pass
+
+    [[nodiscard]] std::uint32_t version(std::uint32_t resource, std::uint32_t number) const {
+        return first_version[resource] + number;
+    }
+    /// The resource of a version id.
+    [[nodiscard]] std::uint32_t resource(std::uint32_t version_id) const {
+        const auto next = std::ranges::upper_bound(first_version, version_id);
+        return static_cast<std::uint32_t>(next - first_version.begin()) - 1;
+    }
+};
+
+}  // namespace candela::detail
