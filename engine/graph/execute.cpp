@@ -1,5 +1,4 @@
 #include <candela/graph/execute.hpp>
-#include "engine/graph/details/state.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,6 +6,8 @@
 #include <span>
 
 #include <fmt/format.h>
+
+#include "engine/graph/details/state.hpp"
 
 namespace candela {
 

@@ -19,6 +19,9 @@ constexpr std::array states{
     RasterState{.depth_test = DepthTest::nearer, .clamps_depth = true, .slope_offset = -1.0F},
     RasterState{.blending = Blending::cover, .culling = Culling::front, .clockwise_front = true}};
 
+constexpr std::array<GLenum, 5> capabilities{GL_DEPTH_TEST, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL, GL_BLEND,
+                                             GL_CULL_FACE};
+
 GLint get(const Functions& gl, GLenum what) {
     GLint value = 0;
     gl.GetIntegerv(what, &value);
@@ -28,12 +31,12 @@ GLint get(const Functions& gl, GLenum what) {
 /// What the context draws with.
 std::vector<GLint> state_of(const Functions& gl) {
     std::vector<GLint> state;
-    for (const GLenum capability :
-         {GL_DEPTH_TEST, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL, GL_BLEND, GL_CULL_FACE}) {
+    for (const GLenum capability : capabilities) {
         state.push_back(gl.IsEnabled(capability));
     }
-    for (const GLenum what : {GL_DEPTH_WRITEMASK, GL_FRONT_FACE, GL_BLEND_SRC_RGB, GL_BLEND_DST_RGB,
-                              GL_BLEND_SRC_ALPHA, GL_BLEND_DST_ALPHA}) {
+    constexpr std::array<GLenum, 6> values{GL_DEPTH_WRITEMASK, GL_FRONT_FACE,      GL_BLEND_SRC_RGB,
+                                           GL_BLEND_DST_RGB,   GL_BLEND_SRC_ALPHA, GL_BLEND_DST_ALPHA};
+    for (const GLenum what : values) {
         state.push_back(get(gl, what));
     }
     state.push_back(gl.IsEnabled(GL_DEPTH_TEST) == GL_TRUE ? get(gl, GL_DEPTH_FUNC) : 0);
@@ -82,8 +85,7 @@ TEST_SUITE("gl raster state") {
         const std::vector<GLint> initial = state_of(gl);
         CHECK(initial ==
               std::vector<GLint>{0, 0, 0, 0, 0, 1, GL_CCW, GL_ONE, GL_ZERO, GL_ONE, GL_ZERO, 0, 0, 0, 0});
-        for (const GLenum capability :
-             {GL_DEPTH_TEST, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL, GL_BLEND, GL_CULL_FACE}) {
+        for (const GLenum capability : capabilities) {
             gl.Enable(capability);
         }
         gl.DepthMask(GL_FALSE);

@@ -207,9 +207,9 @@ const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& 
 }
 
 std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {
-    const auto [first, last] =
-        std::ranges::equal_range(groups, alpha, {}, [](const Group& group) { return group.material.alpha; });
-    return {first, last};
+    const auto alpha_of = [](const Group& group) { return group.material.alpha; };
+    return {std::ranges::lower_bound(groups, alpha, {}, alpha_of),
+            std::ranges::upper_bound(groups, alpha, {}, alpha_of)};
 }
 
 SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
