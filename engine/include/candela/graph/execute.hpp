@@ -47,11 +47,7 @@ struct Value {
 template <class T>
 [[nodiscard]] Value make_value(T content) {
     Value value{std::make_shared<const T>(std::move(content))};
-    if constexpr (std::equality_comparable<T>) {
-        value.equal = [](const void* a, const void* b) {
-            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
-        };
-    }
+    if constexpr (std::equality_comparable<T>) value.equal = equal_as<T>;
     return value;
 }
 

@@ -28,6 +28,12 @@ namespace detail {
 
 class Declaration;
 
+/// Compares two objects of type T.
+template <class T>
+[[nodiscard]] bool equal_as(const void* a, const void* b) {
+    return *static_cast<const T*>(a) == *static_cast<const T*>(b);
+}
+
 /// Owns objects of any type, and text, until it is destroyed. Their addresses do not change.
 class Arena {
  public:
@@ -141,10 +147,7 @@ class CANDELA_API Pass {
     /// The graph owns the copy.
     template <std::equality_comparable T>
     void parameter(T value) {
-        const auto equal = [](const void* a, const void* b) {
-            return *static_cast<const T*>(a) == *static_cast<const T*>(b);
-        };
-        declare_parameter(typeid(T), arena_.store(std::move(value)), equal);
+        declare_parameter(typeid(T), arena_.store(std::move(value)), detail::equal_as<T>);
     }
 
     /// The pass is never culled and runs in every frame.
