@@ -11,6 +11,7 @@
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 #include <candela/graph/execute.hpp>
+#include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_machine.hpp"
 #include "tests/engine/graph_random.hpp"
 #include "tests/engine/recording_backend.hpp"
