@@ -21,19 +21,21 @@ void main() {
     if (gl_GlobalInvocationID.x >= fill_count) return;
     uint packed_pixel = fill_pixels[gl_GlobalInvocationID.x];
     ivec2 at = ivec2(packed_pixel & 0xffffu, packed_pixel >> 16);
-    Surface surface = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
-    vec3 irradiance = vec3(0.0);
+    Surface surfaces[SURFACES];
+    vec3 irradiance[SURFACES];
+    surfaces[0] = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
+    irradiance[0] = vec3(0.0);
     uint end = min(vpl_constants.count, 2u * (part_first + part_size));
     for (uint i = 2u * part_first + uint(at.x + at.y) % 2u; i < end; i += 2u) {
 #ifdef SURFELS
         // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
-        irradiance += irradiance_from_vpl(i, surface);
+        add_vpl(i, surfaces, irradiance);
 #else
-        irradiance += irradiance_from_vpl(vpl_order[i], surface);
+        add_vpl(vpl_order[i], surfaces, irradiance);
 #endif
     }
     vec4 found = imageLoad(reconstructed, at);
     float weight = 1.0 / (found.a + 0.5);  // the sum over half of the VPLs is half of the estimate
     if (part_first == 0u) found.rgb *= found.a * weight;
-    imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance, found.a));
+    imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance[0], found.a));
 }

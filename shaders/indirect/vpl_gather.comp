@@ -29,10 +29,7 @@ void main() {
     uint share = share_of_class(offset);
     uint first = share * vpl_constants.count / classes + part_first;
     uint last = nearest > 0.0 ? min((share + 1u) * vpl_constants.count / classes, first + part_size) : first;
-    for (uint i = first; i < last; ++i) {
-        uint vpl = vpl_order[i];
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(vpl, surfaces[s]);
-    }
+    for (uint i = first; i < last; ++i) add_vpl(vpl_order[i], surfaces, irradiance);
     // Multiplied by the number of classes: the estimate for all VPLs. OpenGL discards stores outside the image.
     for (int s = 0; s < SURFACES; ++s) {
         ivec2 at = int(interleave) * block_pixel(s) + ivec2(offset);

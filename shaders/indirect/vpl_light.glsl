@@ -1,4 +1,4 @@
-// Light that virtual point lights (VPLs) send to a surface. The entry is irradiance_from_vpl.
+// Light that virtual point lights (VPLs) send to surfaces. The entry is add_vpl. An invocation has SURFACES surfaces.
 #include "bindings.glsl"
 #include "vpls/disc.glsl"
 #include "sky/sky_patch.glsl"
@@ -6,6 +6,10 @@
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
 #include "vpls/vpl_visibility.glsl"
+
+#ifndef SURFACES
+#define SURFACES 1
+#endif
 
 #ifndef SURFELS
 
@@ -33,13 +37,18 @@ float geometry_term(TracedVpl vpl, Surface surface) {
     return sinking_disc_term(to_vpl, height, vpl.normal, vpl.radius2, tilt, shading_normal(surface));
 }
 
-// π times the irradiance from the VPL of that index.
-vec3 irradiance_from_vpl(uint index, Surface surface) {
-    TracedVpl vpl = traced_vpls[index];
+// π times the irradiance from the VPL, whose index is that of its depth map.
+vec3 irradiance_from_traced(uint index, TracedVpl vpl, Surface surface) {
     if (vpl.state == VPL_ESCAPED) return vec3(0.0);
     float geometry = geometry_term(vpl, surface);
     if (geometry > 0.0) geometry *= visibility_of_vpl(index, vpl.position, vpl.normal, surface);
     return vpl.flux * geometry;
+}
+
+// Adds π times the irradiance from the VPL of that index. Loops over the surfaces inside, so that it is fetched once.
+void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+    TracedVpl vpl = traced_vpls[index];
+    for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_traced(index, vpl, surfaces[s]);
 }
 
 #else
@@ -70,9 +79,8 @@ vec3 unoccluded_from_cell(LitSurfel surfel, Surface surface) {
     return surfel.flux * disc_term_at(surface, surfel.centre, surfel.normal, surfel.radius2);
 }
 
-// π times the irradiance from a surfel.
-vec3 irradiance_from_surfel(uint index, Surface surface) {
-    LitSurfel surfel = lit_surfels[index];
+// π times the irradiance from a surfel, whose index is that of its depth map.
+vec3 irradiance_from_surfel(uint index, LitSurfel surfel, Surface surface) {
     if (surfel.flux == vec3(0.0)) return vec3(0.0);
     vec3 unoccluded = unoccluded_from_cell(surfel, surface);
     if (unoccluded == vec3(0.0)) return vec3(0.0);
@@ -104,18 +112,24 @@ vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
 
 #endif
 
-// π times the irradiance from the VPL of that index. Kinds whose light is not shown send none.
-vec3 irradiance_from_vpl(uint index, Surface surface) {
-    if (index < vpl_constants.first_emitter) return irradiance_from_surfel(index, surface);
+// Adds π times the irradiance from the VPL of that index: the kinds follow one another. Kinds whose light is not shown
+// send none. Loops over the surfaces inside, so that the VPL is fetched once.
+void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+    if (index < vpl_constants.first_emitter) {
+        LitSurfel surfel = lit_surfels[index];
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_surfel(index, surfel, surfaces[s]);
+        return;
+    }
 #ifdef EMITTERS
     if (index < vpl_constants.first_sky_patch) {
-        return irradiance_from_emitter(lit_emitters[index - vpl_constants.first_emitter], surface);
+        LitEmitter emitter = lit_emitters[index - vpl_constants.first_emitter];
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_emitter(emitter, surfaces[s]);
+        return;
     }
 #endif
 #ifdef SKY
-    return irradiance_from_patch(sky_patches[index - vpl_constants.first_sky_patch], surface);
-#else
-    return vec3(0.0);
+    SkyPatch sky_patch = sky_patches[index - vpl_constants.first_sky_patch];
+    for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_patch(sky_patch, surfaces[s]);
 #endif
 }
 

@@ -83,7 +83,7 @@ void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Refl
     uint count = vpl_constants.count;
     uint vpl_stride = count <= uint(MOST_VPLS) ? 1u : (count + uint(MOST_VPLS) - 1u) / uint(MOST_VPLS) | 1u;
     for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < count; i += vpl_stride) {
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_vpl(i, surfaces[s]);
+        add_vpl(i, surfaces, irradiance);
     }
     for (int s = 0; s < SURFACES; ++s) reflected[s].diffuse += irradiance[s] * float(vpl_stride) / PI;
 }
