@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace candela::sandbox {
 
 namespace {
@@ -9,6 +11,15 @@ namespace {
 ControlPlaces& places() {
     static ControlPlaces drawn;
     return drawn;
+}
+
+/// What Dear ImGui shows beside a control of this width: the label, or nothing if there is no room for it. It
+/// then stands above the control.
+std::string label_beside(const char* label, float width = ImGui::CalcItemWidth()) {
+    const float needed = width + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(label).x;
+    if (needed <= ImGui::GetContentRegionAvail().x) return label;
+    text(label);
+    return fmt::format("##{}", label);
 }
 
 }  // namespace
@@ -45,7 +56,7 @@ bool button(const std::string& label, const char* tip) {
 }
 
 bool checkbox(const char* label, bool& value, const char* tip) {
-    const bool changed = ImGui::Checkbox(label, &value);
+    const bool changed = ImGui::Checkbox(label_beside(label, ImGui::GetFrameHeight()).c_str(), &value);
     note_control(label, tip);
     return changed;
 }
@@ -77,40 +88,42 @@ std::size_t choose(std::span<const Choice> choices, std::size_t chosen, const ch
 
 bool drag(const char* label, std::uint32_t& value, float speed, std::uint32_t least, std::uint32_t most,
           const char* tip) {
-    const bool changed = ImGui::DragScalar(label, ImGuiDataType_U32, &value, speed, &least, &most, nullptr,
-                                           ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragScalar(label_beside(label).c_str(), ImGuiDataType_U32, &value, speed,
+                                           &least, &most, nullptr, ImGuiSliderFlags_AlwaysClamp);
     note_control(label, tip);
     return changed;
 }
 
 bool drag(const char* label, float& value, float speed, float least, float most, const char* tip) {
-    const bool changed =
-        ImGui::DragFloat(label, &value, speed, least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragFloat(label_beside(label).c_str(), &value, speed, least, most, "%.4g",
+                                          ImGuiSliderFlags_AlwaysClamp);
     note_control(label, tip);
     return changed;
 }
 
 bool drag(const char* label, glm::vec3& value, float speed, float least, float most, const char* tip) {
-    const bool changed =
-        ImGui::DragFloat3(label, &value.x, speed, least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragFloat3(label_beside(label).c_str(), &value.x, speed, least, most, "%.4g",
+                                           ImGuiSliderFlags_AlwaysClamp);
     note_control(label, tip);
     return changed;
 }
 
 bool slide(const char* label, float& value, float least, float most, const char* tip) {
-    const bool changed = ImGui::SliderFloat(label, &value, least, most, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::SliderFloat(label_beside(label).c_str(), &value, least, most, "%.3g",
+                                            ImGuiSliderFlags_AlwaysClamp);
     note_control(label, tip);
     return changed;
 }
 
 bool slide(const char* label, int& value, int least, int most, const char* tip) {
-    const bool changed = ImGui::SliderInt(label, &value, least, most, "%d", ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::SliderInt(label_beside(label).c_str(), &value, least, most, "%d",
+                                          ImGuiSliderFlags_AlwaysClamp);
     note_control(label, tip);
     return changed;
 }
 
 bool colour(const char* label, glm::vec3& value, const char* tip) {
-    const bool changed = ImGui::ColorEdit3(label, &value.r, ImGuiColorEditFlags_Float);
+    const bool changed = ImGui::ColorEdit3(label_beside(label).c_str(), &value.r, ImGuiColorEditFlags_Float);
     note_control(label, tip);
     return changed;
 }

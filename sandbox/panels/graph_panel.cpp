@@ -139,9 +139,7 @@ void draw_graph_panel(GraphSelection& selection, const GraphDescription& graph, 
     const PassCost* plotted = selection.pass ? cost_of(costs, *selection.pass) : nullptr;
     draw_plot(plotted != nullptr ? *plotted : costs.frame());
     list_resources_of(selection, graph);
-    ImGui::PushTextWrapPos(0.0F);
     ImGui::TextDisabled("last and mean ms; round: CPU; blue: needs, orange: is needed by");
-    ImGui::PopTextWrapPos();
 
     const float space = 4.0F * ImGui::GetFontSize();
     Anchors anchors(graph.passes.size());

@@ -48,7 +48,7 @@ void draw_fitted(const InspectionResult& result, const Rectangle& space) {
 void draw_range(Inspection& inspection, const InspectionResult& result) {
     bool automatic = !inspection.range;
     const std::string unit = result.unit.empty() ? "" : fmt::format(" {}", result.unit);
-    if (checkbox("range from the least to the greatest value", automatic, "of what is shown")) {
+    if (checkbox("automatic range", automatic, "from the least to the greatest value of what is shown")) {
         inspection.range = automatic ? std::nullopt : std::optional(ValueRange{result.low, result.high});
     }
     if (!inspection.range) return text(fmt::format("{:.4g} to {:.4g}{}", result.low, result.high, unit));

@@ -258,7 +258,7 @@ void draw_vpls(const VplReport& vpls) {
 void draw_warnings(const std::vector<std::string>& warnings) {
     if (warnings.empty()) return;
     if (!header("About this scene", true)) return;
-    for (const std::string& warning : warnings) ImGui::TextWrapped("%s", warning.c_str());
+    for (const std::string& warning : warnings) text(warning);
 }
 
 void draw_account(const Report& report) {

@@ -68,7 +68,7 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
         comparison.with_reference && comparison.mode == CompareMode::off) {
         comparison.mode = CompareMode::divider;
     }
-    if (!reference.fault().empty()) ImGui::TextWrapped("%s", reference.fault().c_str());
+    if (!reference.fault().empty()) text(reference.fault());
     const ReferencePicture* picture = reference.picture();
     if (picture == nullptr) return text("tracing the first picture");
     text(fmt::format("{} paths a pixel, {:.0f} s", picture->samples, picture->seconds));

@@ -85,8 +85,10 @@ std::vector<Action> draw_panel(SessionState& state) {
                                         ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
                                         ImGuiWindowFlags_NoBringToFrontOnFocus;
     if (ImGui::Begin("panel", nullptr, docked) && ImGui::BeginTabBar("tabs")) {
-        ImGui::PushItemWidth(0.55F * ImGui::GetContentRegionAvail().x);
+        ImGui::PushItemWidth(0.45F * ImGui::GetContentRegionAvail().x);
+        ImGui::PushTextWrapPos(0.0F);
         draw_tabs(state, wanted);
+        ImGui::PopTextWrapPos();
         ImGui::PopItemWidth();
         ImGui::EndTabBar();
     }

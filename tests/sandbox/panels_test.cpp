@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "sandbox/command_line/choose_configuration.hpp"
@@ -18,11 +19,11 @@ namespace {
 /// Dear ImGui with a pointer and without a screen.
 class Screen {
  public:
-    explicit Screen(std::function<void()> draw) : draw_(std::move(draw)) {
+    explicit Screen(std::function<void()> draw, float width = 600.0F) : draw_(std::move(draw)) {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
-        io.DisplaySize = {600.0F, 1600.0F};
+        io.DisplaySize = {width, 1600.0F};
         io.DeltaTime = 1.0F / 60.0F;
         unsigned char* pixels = nullptr;
         glm::ivec2 size(0);
@@ -34,6 +35,12 @@ class Screen {
     ~Screen() { ImGui::DestroyContext(); }
 
     [[nodiscard]] bool has(std::string_view label) const { return places_.contains(label); }
+    /// The right edge of the control that reaches furthest, with its label.
+    [[nodiscard]] float right_edge() const {
+        float edge = 0.0F;
+        for (const auto& [label, place] : places_) edge = std::max(edge, place.corner.x + place.size.x);
+        return edge;
+    }
     void click(std::string_view label) {
         settle();  // what was changed since the last click
         const auto place = places_.find(label);
@@ -122,6 +129,15 @@ TEST_SUITE("panels") {
         for (const ShadingPath path : all_shading_paths) {
             screen.click(to_string(path));
             CHECK(configuration.path == path);
+        }
+    }
+
+    TEST_CASE("the names of settings are not cut by the edge of the panel") {
+        Configuration configuration;
+        for (const float width : {340.0F, 170.0F}) {  // of the widest and the narrowest panel
+            const Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }), width);
+            CHECK(screen.has("shadows.cube_resolution"));
+            CHECK(screen.right_edge() <= width);
         }
     }
 
