@@ -72,6 +72,8 @@ Window::Window(glm::ivec2 size, const std::string& title) {
     if (handle_ == nullptr) fail("opens no window with OpenGL 4.5");
     glfwMakeContextCurrent(handle_);
     glfwSwapInterval(1);
+    glfwGetWindowSize(handle_, &size_.x, &size_.y);
+    glfwGetFramebufferSize(handle_, &framebuffer_size_.x, &framebuffer_size_.y);
     listen();
 }
 
@@ -117,7 +119,13 @@ void Window::listen() {
     });
     const auto expose = [](GLFWwindow* handle) { of(handle).exposed_ = true; };
     glfwSetWindowRefreshCallback(handle_, expose);
-    glfwSetFramebufferSizeCallback(handle_, [](GLFWwindow* handle, int, int) { of(handle).exposed_ = true; });
+    glfwSetWindowSizeCallback(handle_, [](GLFWwindow* handle, int width, int height) {
+        of(handle).size_ = {width, height};
+    });
+    glfwSetFramebufferSizeCallback(handle_, [](GLFWwindow* handle, int width, int height) {
+        of(handle).framebuffer_size_ = {width, height};
+        of(handle).exposed_ = true;
+    });
     glfwSetWindowIconifyCallback(handle_, [](GLFWwindow* handle, int) { of(handle).exposed_ = true; });
     glfwSetWindowContentScaleCallback(handle_,
                                       [](GLFWwindow* handle, float, float) { of(handle).exposed_ = true; });
@@ -127,25 +135,15 @@ gl::GetProc Window::functions() {
     return glfwGetProcAddress;
 }
 
-glm::ivec2 Window::size() const {
-    glm::ivec2 size(0);
-    glfwGetWindowSize(handle_, &size.x, &size.y);
-    return size;
-}
-
 glm::ivec2 Window::framebuffer_size() const {
-    glm::ivec2 size(0);
-    glfwGetFramebufferSize(handle_, &size.x, &size.y);
-    return glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) == GLFW_TRUE ? glm::ivec2(0) : size;
+    return glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) == GLFW_TRUE ? glm::ivec2(0) : framebuffer_size_;
 }
 
 float Window::content_scale() const {
     float content = 1.0F;
     glfwGetWindowContentScale(handle_, &content, nullptr);
-    glm::ivec2 pixels(0);
-    glfwGetFramebufferSize(handle_, &pixels.x, &pixels.y);
-    const auto units = static_cast<float>(size().x);
-    return pixels.x > 0 ? std::max(content * units / static_cast<float>(pixels.x), 1.0F) : 1.0F;
+    if (framebuffer_size_.x < 1) return 1.0F;
+    return std::max(content * static_cast<float>(size_.x) / static_cast<float>(framebuffer_size_.x), 1.0F);
 }
 
 bool Window::should_close() const {

@@ -62,8 +62,8 @@ class Window {
         return std::make_unique<SharedContext>(handle_);
     }
 
-    [[nodiscard]] glm::ivec2 size() const;              ///< window coordinates
-    [[nodiscard]] glm::ivec2 framebuffer_size() const;  ///< pixels; 0x0 while minimised
+    [[nodiscard]] glm::ivec2 size() const { return size_; }  ///< window coordinates
+    [[nodiscard]] glm::ivec2 framebuffer_size() const;       ///< pixels; 0x0 while minimised
     /// Of text and controls on the display, in window coordinates; >= 1. Where a window coordinate is more
     /// than one pixel, 1.
     [[nodiscard]] float content_scale() const;
@@ -100,6 +100,9 @@ class Window {
 
     Library library_;
     GLFWwindow* handle_ = nullptr;
+    // Both at the last event: asked for one after the other, they may be those before and after a change.
+    glm::ivec2 size_{0};
+    glm::ivec2 framebuffer_size_{0};
     /// At the last event. The current position does not tell where a button was pressed.
     glm::vec2 pointer_{0.0F};
     std::vector<InputEvent> events_;
