@@ -102,15 +102,12 @@ void History::keep(const World& world, std::string name, EntityStates before, bo
     if (after == before) return;
     undone_.clear();
     if (may_join && joins(name, before)) {
-        done_.back().serial = ++last_serial_;
         done_.back().after = std::move(after);
         return;
     }
-    done_.push_back({++last_serial_, std::move(name), std::move(before), std::move(after)});
+    done_.push_back({std::move(name), std::move(before), std::move(after)});
     joins_ = may_join;
-    if (done_.size() <= most_) return;
-    oldest_ = done_.front().serial;
-    done_.pop_front();
+    if (done_.size() > most_) done_.pop_front();
 }
 
 std::vector<Entity> History::undo(World& world) {
@@ -139,11 +136,6 @@ std::optional<std::string_view> History::undo_name() const {
 
 std::optional<std::string_view> History::redo_name() const {
     return undone_.empty() ? std::nullopt : std::optional<std::string_view>(undone_.back().name);
-}
-
-void History::mark_saved() {
-    saved_ = present();
-    joins_ = false;
 }
 
 }  // namespace candela::sandbox

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
@@ -34,7 +33,7 @@ using EntityStates = std::vector<std::pair<Entity, EntityState>>;
 [[nodiscard]] EntityStates states_of(const World& world, const std::vector<Entity>& entities);
 
 /// The changes of a world, to be undone and redone in order. An entity that was deleted is still alive,
-/// without components, so that handles to it stay valid; whoever destroys entities must `clear` first.
+/// without components, so that handles to it stay valid: entities of the world must not be destroyed.
 class History {
  public:
     /// Keeps the last `most` edits, >= 1.
@@ -47,7 +46,6 @@ class History {
     void commit(const World& world);
     /// Ends the open edit, if there is one, and restores the entities.
     void cancel(World& world);
-    [[nodiscard]] bool open() const { return open_.has_value(); }
 
     /// Keeps a change that has already been made: `before` are the states before it. Joins the previous one
     /// if that was kept by this function too, with the same name and entities, and there was no
@@ -67,16 +65,8 @@ class History {
     [[nodiscard]] std::optional<std::string_view> undo_name() const;
     [[nodiscard]] std::optional<std::string_view> redo_name() const;
 
-    /// Whether the world differs from the one at the last `mark_saved`, or at the start. An open edit counts
-    /// only after it is committed.
-    [[nodiscard]] bool edited() const { return present() != saved_; }
-    void mark_saved();
-    /// Forgets everything and counts as saved, for a new world.
-    void clear() { *this = History(most_); }
-
  private:
     struct Edit {
-        std::uint64_t serial = 0;  ///< tells the world after this edit from all others
         std::string name;
         EntityStates before;
         EntityStates after;
@@ -88,16 +78,11 @@ class History {
 
     void keep(const World& world, std::string name, EntityStates before, bool may_join);
     [[nodiscard]] bool joins(const std::string& name, const EntityStates& before) const;
-    /// The serial of the edit that led to the present world.
-    [[nodiscard]] std::uint64_t present() const { return done_.empty() ? oldest_ : done_.back().serial; }
 
     std::size_t most_;
     std::deque<Edit> done_;
     std::vector<Edit> undone_;  ///< the next one to redo is the last
     std::optional<Open> open_;
-    std::uint64_t last_serial_ = 0;
-    std::uint64_t oldest_ = 0;  ///< serial of the last edit that was forgotten
-    std::uint64_t saved_ = 0;
     bool joins_ = false;  ///< the last edit may still grow
 };
 

@@ -13,12 +13,10 @@
 
 namespace candela::sandbox {
 
-SavedScene save_document(Document& document) {
+SavedScene save_document(const Document& document) {
     const std::filesystem::path path = next_numbered_file(".gltf");
     const std::array of_app{document.interaction.viewer()};
-    std::vector<std::string> warnings = save_scene(document.scene.world, path, of_app);
-    document.interaction.history().mark_saved();
-    return {path, std::move(warnings)};
+    return {path, save_scene(document.scene.world, path, of_app)};
 }
 
 std::filesystem::path save_configuration(const Configuration& configuration) {

@@ -16,7 +16,7 @@ struct SavedScene {
     std::filesystem::path path;
     std::vector<std::string> warnings;  ///< what glTF cannot hold, one per line
 };
-[[nodiscard]] SavedScene save_document(Document& document);
+[[nodiscard]] SavedScene save_document(const Document& document);
 
 /// Returns the file.
 [[nodiscard]] std::filesystem::path save_configuration(const Configuration& configuration);

@@ -69,7 +69,6 @@ TEST_SUITE("history") {
         history.cancel(world);
         CHECK(x_of(world, light) == 1.0F);
         CHECK_FALSE(history.undo_name());
-        CHECK_FALSE(history.open());
     }
 
     TEST_CASE("an edit that changes nothing is not kept, and undo ends an open one") {
@@ -135,29 +134,6 @@ TEST_SUITE("history") {
         while (!history.undo(world).empty()) {
         }
         CHECK(x_of(world, light) == 2.0F);
-        CHECK(history.edited());  // the saved world can no longer be reached
-    }
-
-    TEST_CASE("edited tells whether the world is the saved one") {
-        World world;
-        History history;
-        const Entity light = add_point_light(world, {0, 0, 0});
-        CHECK_FALSE(history.edited());
-        record_x(world, history, light, 1.0F);
-        CHECK(history.edited());
-        history.undo(world);
-        CHECK_FALSE(history.edited());
-        history.redo(world);
-        history.mark_saved();
-        CHECK_FALSE(history.edited());
-        record_x(world, history, light, 2.0F);  // does not join what was saved
-        CHECK(history.edited());
-        history.undo(world);
-        CHECK_FALSE(history.edited());
-        history.undo(world);
-        CHECK(history.edited());
-        move_x(world, history, light, 8.0F);  // another way to as many edits as were saved
-        CHECK(history.edited());
     }
 }
 

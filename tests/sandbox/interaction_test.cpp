@@ -80,7 +80,7 @@ TEST_SUITE("interaction") {
         user.click(origin + glm::vec2(320.0F, 5.0F));  // above the horizon
         CHECK_FALSE(user.interaction.selected);
         CHECK(user.viewport().clip_from_world == view);
-        CHECK_FALSE(user.interaction.history().edited());
+        CHECK_FALSE(user.interaction.history().undo_name());
     }
 
     TEST_CASE("a press on a surface orbits if the pointer moves, and keeps the selection") {
@@ -218,7 +218,7 @@ TEST_SUITE("interaction") {
         CHECK_FALSE(user.interaction.selected);
         user.undo();
         CHECK_FALSE(is_present(user.world, spot));
-        CHECK_FALSE(user.interaction.history().edited());
+        CHECK_FALSE(user.interaction.history().undo_name());
     }
 
     TEST_CASE("a directional light is aimed with rings around the pivot of the view") {
