@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 
 #include <candela/scene/components.hpp>
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 
 namespace candela::sandbox {
 

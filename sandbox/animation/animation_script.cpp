@@ -14,7 +14,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/files/input_file.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"

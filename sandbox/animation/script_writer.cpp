@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/scene/scene.hpp"
 

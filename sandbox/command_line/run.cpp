@@ -18,7 +18,7 @@
 #include <candela/gl_error.hpp>
 #include <candela/headless_context.hpp>
 #include "sandbox/animation/animation_script.hpp"
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/command_line/exit_status.hpp"
 #include "sandbox/command_line/messages.hpp"

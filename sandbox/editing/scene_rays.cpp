@@ -14,7 +14,6 @@
 #include <glm/matrix.hpp>
 
 #include <candela/scene/hierarchy.hpp>
-#include "sandbox/candela_private/rays.hpp"
 
 namespace candela::sandbox {
 

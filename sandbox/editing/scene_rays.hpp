@@ -13,7 +13,7 @@
 
 #include <candela/ecs/world.hpp>
 #include <candela/scene/components.hpp>
-#include "sandbox/candela_private/rays.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/editing/viewport.hpp"
 
 namespace candela::sandbox {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 
 namespace candela::sandbox {
 

@@ -12,7 +12,7 @@
 #include <stb/stb_image_write.h>
 
 #include <candela/scene/scene_error.hpp>
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/files/output_file.hpp"
 
 namespace candela::sandbox {

@@ -6,7 +6,7 @@
 #include <glm/vec4.hpp>
 
 #include <candela/view.hpp>
-#include "sandbox/candela_private/gl.hpp"
+#include "sandbox/candela_private.hpp"
 
 namespace candela::sandbox {
 

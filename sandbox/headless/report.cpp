@@ -9,7 +9,7 @@
 #include <glm/common.hpp>
 
 #include <candela/version.hpp>
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/files/picture_error.hpp"
 
 namespace candela::sandbox {

@@ -14,6 +14,7 @@
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include "sandbox/candela_private.hpp"
 
 namespace candela::sandbox {
 

@@ -11,7 +11,10 @@
 #include <candela/ecs/world.hpp>
 #include <candela/scene/gltf.hpp>
 #include "sandbox/animation/animation.hpp"
-#include "sandbox/candela_private/rays.hpp"
+
+namespace candela {
+struct Box;
+}  // namespace candela
 
 namespace candela::sandbox {
 

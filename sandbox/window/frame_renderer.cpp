@@ -6,8 +6,6 @@
 
 #include <glm/vec4.hpp>
 
-#include "sandbox/candela_private/gl.hpp"
-
 namespace candela::sandbox {
 
 namespace {

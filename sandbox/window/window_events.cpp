@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "sandbox/candela_private/files.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/files/recent_files.hpp"

@@ -14,7 +14,7 @@
 #include <glm/vec2.hpp>
 
 #include <candela/renderer.hpp>
-#include "sandbox/candela_private/gl.hpp"
+#include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/options.hpp"
 #include "sandbox/files/config_watch.hpp"
 #include "sandbox/files/save_watch.hpp"
