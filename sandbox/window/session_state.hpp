@@ -12,7 +12,6 @@
 #include "sandbox/window/frame_request.hpp"
 #include "sandbox/window/layout.hpp"
 #include "sandbox/window/reference_view.hpp"
-#include "sandbox/window/ui_log.hpp"
 
 namespace candela::sandbox {
 
@@ -43,9 +42,6 @@ struct SessionState {
 
 /// What the status line says of it.
 [[nodiscard]] Status status_of(const SessionState& state);
-
-/// What the log says of it.
-[[nodiscard]] UiRecord record_of(const SessionState& state);
 
 /// The picture that it asks for, `size` in pixels.
 [[nodiscard]] FrameRequest frame_request(SessionState& state, glm::uvec2 size);

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "sandbox/candela_private.hpp"
+#include "sandbox/command_line/choose_configuration.hpp"
+#include "sandbox/editing/placing.hpp"
 
 namespace candela::sandbox {
 
@@ -37,31 +39,41 @@ std::string_view to_string(CompareMode mode) {
     return "off";
 }
 
+Json to_json(const Document& document) {
+    const World& world = document.scene.world;
+    const Interaction& interaction = document.interaction;
+    const std::optional<Entity> selected = interaction.selected;
+    return {{"scene_file", document.scene.path.string()},
+            {"eye", to_json(position_of(world, interaction.viewer()))},
+            {"selected", selected ? Json(name_of(world, *selected)) : Json()},
+            {"position", selected ? to_json(position_of(world, *selected)) : Json()},
+            {"undo", interaction.history().undo_count()},
+            {"redo", interaction.history().redo_count()}};
+}
+
 /// What is the same while nothing happens.
-Json lasting(const UiRecord& record) {
+Json lasting(const SessionState& state, const UiFrame& frame) {
+    const AppState& app = state.app;
+    const Report* report = state.report();
     Json controls = Json::object();
-    for (const auto& [label, place] : record.controls) controls[label] = to_json(place);
-    return {{"picture", record.picture},
-            {"submitted", record.submitted},
-            {"settled", record.settled},
-            {"busy", record.busy.empty() ? Json() : Json(record.busy)},
-            {"latency", to_json(record.latency)},
-            {"scene", to_json(record.scene)},
-            {"scale", record.scale},
-            {"scene_file", record.scene_file},
-            {"eye", to_json(record.eye)},
-            {"selected", to_json(record.selected)},
-            {"position", record.position ? to_json(*record.position) : Json()},
-            {"configuration", record.configuration},
-            {"show", record.show},
-            {"compare", to_string(record.compare)},
-            {"view", to_json(record.view)},
-            {"errors", Json::array({record.errors.begin(), record.errors.end()})},
-            {"undo", record.undo},
-            {"redo", record.redo},
-            {"refined", record.refined},
-            {"rel_mse", to_json(record.rel_mse)},
-            {"controls", std::move(controls)}};
+    for (const auto& [label, place] : frame.controls) controls[label] = to_json(place);
+    Json json{{"picture", state.shown ? state.shown->request : 0},
+              {"submitted", state.submitted},
+              {"settled", state.is_settled()},
+              {"busy", state.busy.empty() ? Json() : Json(state.busy)},
+              {"latency", to_json(frame.latency)},
+              {"scene", to_json(state.layout.scene)},
+              {"scale", frame.scale},
+              {"configuration", name_of(app.configuration)},
+              {"show", to_string(app.configuration.show)},
+              {"compare", to_string(app.comparison.mode)},
+              {"view", to_json(state.selection.resource)},
+              {"errors", Json::array({app.errors.begin(), app.errors.end()})},
+              {"refined", report != nullptr ? report->refined : 0},
+              {"rel_mse", to_json(app.error)},
+              {"controls", std::move(controls)}};
+    if (state.document) json.update(to_json(*state.document));
+    return json;
 }
 
 }  // namespace
@@ -70,11 +82,11 @@ UiLog::UiLog(const std::filesystem::path& path) : file_(path) {
     if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
 }
 
-void UiLog::add(const UiRecord& record) {
-    Json content = lasting(record);
+void UiLog::add(const SessionState& state, const UiFrame& frame) {
+    Json content = lasting(state, frame);
     std::string text = content.dump();
     if (text == last_) return;
-    Json line{{"frame", record.frame}, {"time", record.time}};
+    Json line{{"frame", frame.number}, {"time", frame.time}};
     line.update(content);
     file_ << line.dump() << '\n' << std::flush;
     last_ = std::move(text);

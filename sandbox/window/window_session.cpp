@@ -166,13 +166,13 @@ std::string WindowSession::busy_words() const {
 void WindowSession::write_log() {
     if (!log_) return;
     note_progress();
-    UiRecord record = record_of(state_);
-    record.frame = frame_;
-    record.time = ImGui::GetTime();
-    record.scale = gui_.scale();
-    record.controls = take_control_places();
-    if (answered_input_) record.latency = Seconds(Clock::now() - *answered_input_).count();
-    log_->add(record);
+    std::optional<double> latency;
+    if (answered_input_) latency = Seconds(Clock::now() - *answered_input_).count();
+    log_->add(state_, {.number = frame_,
+                       .time = ImGui::GetTime(),
+                       .latency = latency,
+                       .scale = gui_.scale(),
+                       .controls = take_control_places()});
 }
 
 void WindowSession::write_results() {
