@@ -21,7 +21,7 @@ const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
 detail::Slot* GraphRuntime::import_slot(ResourceHandle handle) {
     const detail::Resource& imported = resource(handle);
     if (imported.lifetime != Lifetime::imported) {
-        throw GraphError(fmt::format("{} '{}' is not imported", to_string(imported.kind), imported.name));
+        throw GraphError(fmt::format("{} is not imported", imported.title()));
     }
     return slot_of(handle.resource);
 }
@@ -31,8 +31,8 @@ void GraphRuntime::bind(ResourceHandle imported, ObjectId object, const TextureD
     detail::Slot* const slot = import_slot(imported);
     if (!slot) return;
     slot->object = object;  // may be 0: the window's framebuffer
-    slot->texture = texture;
-    slot->buffer = buffer;
+    slot->storage.texture = texture;
+    slot->storage.buffer = buffer;
     slot->filled = true;
     touch(imported);
 }
@@ -61,7 +61,7 @@ const void* GraphRuntime::content(ResourceHandle value) const {
     const detail::Resource& held = resource(value);
     const std::uint32_t slot = graph_->plan().object[value.resource];
     if (slot == none || !state_->slots[slot].value.content) {
-        throw GraphError(fmt::format("value '{}' has not been set", held.name));
+        throw GraphError(fmt::format("{} has not been set", held.title()));
     }
     return state_->slots[slot].value.content.get();
 }
@@ -81,9 +81,9 @@ detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
             return *runtime_.slot_of(handle.resource);
         }
     }
-    throw GraphError(fmt::format("pass '{}' {} {} '{}' without having declared it",
+    throw GraphError(fmt::format("pass '{}' {} {} without having declared it",
                                  graph.declared().passes[pass].name, write ? "writes" : "uses",
-                                 to_string(resource.kind), resource.name));
+                                 resource.title()));
 }
 
 ObjectId Execution::object_of(ResourceHandle resource) const {
@@ -91,11 +91,11 @@ ObjectId Execution::object_of(ResourceHandle resource) const {
 }
 
 const TextureDesc& Execution::desc(TextureHandle texture) const {
-    return slot(texture, false).texture;
+    return slot(texture, false).storage.texture;
 }
 
 std::uint64_t Execution::count_of(ResourceHandle buffer) const {
-    return slot(buffer, false).buffer.count;
+    return slot(buffer, false).storage.buffer.count;
 }
 
 void Execution::set_value(ResourceHandle value, detail::Value content) {
@@ -118,9 +118,8 @@ const void* Execution::previous_content(ResourceHandle value) const {
         return access.resource == value.resource && access.update;
     };
     if (!std::ranges::any_of(graph.declared().accesses_of(pass), updates)) {
-        throw GraphError(
-            fmt::format("pass '{}' asks for the previous content of value '{}', but does not update it",
-                        graph.declared().passes[pass].name, runtime_.resource(value).name));
+        throw GraphError(fmt::format("pass '{}' asks for the previous content of {}, but does not update it",
+                                     graph.declared().passes[pass].name, runtime_.resource(value).title()));
     }
     return runtime_.repeating_ ? nullptr : held.value.content.get();
 }
@@ -142,18 +141,18 @@ bool Execution::changed(ResourceHandle read) const {
     for (const detail::Input& input : step.inputs) {
         if (input.version == version) return has_no_result_ || state.versions[version].stamp != input.stamp;
     }
-    throw GraphError(fmt::format("pass '{}' asks whether {} '{}' has changed without having declared it",
-                                 step.name, to_string(resource.kind), resource.name));
+    throw GraphError(fmt::format("pass '{}' asks whether {} has changed without having declared it",
+                                 step.name, resource.title()));
 }
 
 bool Execution::history_valid(TextureHandle history) const {
     const detail::Slot& previous = slot(history, false);
     const std::uint32_t present_of = runtime_.resource(history).history_of;
     if (present_of == none) {
-        throw GraphError(fmt::format("texture '{}' is not a history", runtime_.resource(history).name));
+        throw GraphError(fmt::format("{} is not a history", runtime_.resource(history).title()));
     }
     const detail::Slot& present = *runtime_.slot_of(present_of);
-    return previous.filled && previous.texture == present.texture;
+    return previous.filled && previous.storage == present.storage;
 }
 
 detail::Slot& Execution::reservable(ResourceHandle handle) const {
@@ -167,32 +166,37 @@ detail::Slot& Execution::reservable(ResourceHandle handle) const {
     });
     const detail::Resource& resource = runtime_.resource(handle);
     if (from_start && resource.lifetime == Lifetime::persistent) return found;
-    throw GraphError(
-        fmt::format("pass '{}' reserves {} '{}', but may only what is persistent and what it writes from "
-                    "version 0, not as a target",
-                    graph.declared().passes[pass].name, to_string(resource.kind), resource.name));
+    throw GraphError(fmt::format(
+        "pass '{}' reserves {}, but may only what is persistent and what it writes from version 0, "
+        "not as a target",
+        graph.declared().passes[pass].name, resource.title()));
 }
 
 void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
-    detail::Slot& old = reservable(buffer);
-    if (count <= old.buffer.count) return;
-    detail::Slot grown = old;
-    grown.buffer.count = std::max(count, old.buffer.count + old.buffer.count / 2);
-    runtime_.create(grown, runtime_.resource(buffer).name);
-    runtime_.destroy(old);
-    old = grown;
-    runtime_.rebind(position_, buffer.resource);
+    detail::Storage wanted = reservable(buffer).storage;
+    const std::uint64_t present = wanted.buffer.count;
+    if (count > present) wanted.buffer.count = std::max(count, present + present / 2);
+    replace(buffer, wanted);
 }
 
 void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
-    detail::Slot& old = reservable(texture);
-    if (desc == old.texture) return;
-    detail::Slot other = old;
-    other.texture = desc;
-    runtime_.create(other, runtime_.resource(texture).name);
-    runtime_.destroy(old);
-    old = other;
-    runtime_.rebind(position_, texture.resource);
+    detail::Storage wanted = reservable(texture).storage;
+    wanted.texture = desc;
+    replace(texture, wanted);
+}
+
+/// Creates a new object for a resource of the running pass, unless the present one has this storage.
+void Execution::replace(ResourceHandle handle, const detail::Storage& wanted) {
+    detail::Slot& present = slot(handle, true);
+    if (present.storage == wanted) return;
+    detail::Slot made = present;
+    made.storage = wanted;
+    runtime_.create(made, runtime_.resource(handle).name);
+    runtime_.destroy(present);
+    present = made;
+    for (const detail::Bound& bound : runtime_.state_->steps[position_].bound) {
+        if (bound.resource == handle.resource) runtime_.bind(bound);
+    }
 }
 
 }  // namespace candela

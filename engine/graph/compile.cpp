@@ -2,54 +2,49 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <functional>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/graph/details/barriers.hpp"
-#include "engine/graph/details/index_table.hpp"
 #include "engine/graph/details/objects.hpp"
 
 namespace candela {
 namespace detail {
 namespace {
 
-/// Checks that pass names are unique.
-void check_passes(const Declaration& declared, std::vector<CompileError>& errors) {
-    IndexTable table(declared.pass_count());
-    for (std::uint32_t pass = 0; pass < declared.pass_count(); ++pass) {
-        const std::string_view name = declared.passes[pass].name;
-        const auto same = [&](std::uint32_t other) { return declared.passes[other].name == name; };
-        if (table.find_or_insert(hash_of(name), pass, same) != none) {
-            errors.push_back({ErrorCode::duplicate_pass, fmt::format("two passes are called '{}'", name)});
+/// Checks that the names of passes are unique. A hash table with open addressing: a set would allocate memory
+/// for every pass, which can be seen in the time that compiling takes.
+void check_passes(Declaration& declared) {
+    std::vector<std::string_view> table(std::bit_ceil(2 * declared.passes.size() + 1));
+    for (const PassNode& pass : declared.passes) {
+        std::size_t at = std::hash<std::string_view>{}(pass.name) & (table.size() - 1);
+        while (table[at].data() && table[at] != pass.name) {
+            at = (at + 1) & (table.size() - 1);
         }
+        if (table[at].data())
+            declared.error(ErrorCode::duplicate_pass, "two passes are called '{}'", pass.name);
+        table[at] = pass.name;
     }
 }
 
-/// Checks that the names of persistent and imported resources are unique, and that every resource with a
-/// history is written.
-void check_resources(const Declaration& declared, std::vector<CompileError>& errors) {
-    const auto known = [](const Resource& resource) {
-        return resource.lifetime != Lifetime::transient && resource.history_of == none;
-    };
-    const auto& resources = declared.resources;
-    IndexTable table(static_cast<std::size_t>(std::count_if(resources.begin(), resources.end(), known)));
-    for (std::uint32_t index = 0; index < resources.size(); ++index) {
-        const Resource& resource = resources[index];
+/// Checks that the names of persistent and imported resources are unique within a kind, and that every
+/// resource with a history is written.
+void check_resources(Declaration& declared) {
+    std::array<std::unordered_set<std::string_view>, 3> names;  // by kind
+    for (const Resource& resource : declared.resources) {
         if (resource.history != none && resource.versions == 0) {
-            errors.push_back(
-                {ErrorCode::unwritten_read, fmt::format("{} '{}' has a history, but no pass writes it",
-                                                        to_string(resource.kind), resource.name)});
+            declared.error(ErrorCode::unwritten_read, "{} has a history, but no pass writes it",
+                           resource.title());
         }
-        if (!known(resource)) continue;
-        const auto same = [&](std::uint32_t other) {
-            return resources[other].kind == resource.kind && resources[other].name == resource.name;
-        };
-        const std::size_t hash = hash_of(resource.name) + static_cast<std::size_t>(resource.kind);
-        if (table.find_or_insert(hash, index, same) != none) {
-            errors.push_back({ErrorCode::duplicate_resource,
-                              fmt::format("two {}s that are kept or imported are called '{}'",
-                                          to_string(resource.kind), resource.name)});
+        const ResourceKind kind = resource.storage->kind;
+        if (resource.is_kept() && !names.at(static_cast<std::size_t>(kind)).insert(resource.name).second) {
+            declared.error(ErrorCode::duplicate_resource, "two {}s that are kept or imported are called '{}'",
+                           to_string(kind), resource.name);
         }
     }
 }
@@ -97,11 +92,7 @@ std::vector<std::uint32_t> needed_passes(const Declaration& declared, const Plan
         const std::uint32_t pass = open.back();
         open.pop_back();
         for (const Access& access : declared.accesses_of(pass)) {
-            const std::uint32_t base = declared.resources[access.resource].history_of;
-            const std::uint32_t version =
-                base == none ? plan.version(access.resource, access.version - (access.write ? 1 : 0))
-                             : plan.version(base, declared.resources[base].versions);
-            need(plan.writer[version]);
+            need(plan.writer[plan.needed_version(declared, access)]);
         }
     }
     std::vector<std::uint32_t> order;
@@ -149,13 +140,12 @@ CompiledGraph CompileResult::take() && {
 
 CompileResult compile(FrameGraph&& graph) {
     std::unique_ptr<detail::Declaration> declared = std::move(graph.declared_);
-    std::vector<CompileError> errors = std::move(declared->errors);
     auto plan = std::make_unique<detail::Plan>();
 
-    detail::check_passes(*declared, errors);
-    detail::check_resources(*declared, errors);
+    detail::check_passes(*declared);
+    detail::check_resources(*declared);
+    if (!declared->errors.empty()) return {std::nullopt, std::move(declared->errors)};
     detail::number_versions(*declared, *plan);
-    if (!errors.empty()) return {std::nullopt, std::move(errors)};
     plan->order = detail::needed_passes(*declared, *plan);
     detail::plan_lifetimes(*declared, *plan);
     detail::plan_objects(*declared, *plan);

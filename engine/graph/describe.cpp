@@ -59,7 +59,7 @@ class Describer {
         std::vector<std::uint32_t> numbers;
         std::uint32_t next = 0;
         for (const std::uint32_t owner : plan_.owner) {
-            const bool value = declared_.resources[owner].kind == ResourceKind::value;
+            const bool value = declared_.resources[owner].storage->kind == ResourceKind::value;
             numbers.push_back(value ? none : next++);
         }
         return numbers;
@@ -68,12 +68,12 @@ class Describer {
     [[nodiscard]] DescribedResource describe(const Resource& resource, std::uint32_t index,
                                              std::uint32_t object) const {
         DescribedResource made{.name = std::string(resource.name),
-                               .kind = resource.kind,
+                               .kind = resource.storage->kind,
                                .lifetime = resource.lifetime,
+                               .texture = resource.storage->texture,
+                               .buffer = resource.storage->buffer,
                                .first = plan_.lifetime[index].first,
                                .last = plan_.lifetime[index].last};
-        if (resource.kind == ResourceKind::texture) made.texture = declared_.texture(resource);
-        if (resource.kind == ResourceKind::buffer) made.buffer = declared_.buffer(resource);
         if (resource.part_of != none) made.part_of = declared_.resources[resource.part_of].name;
         if (object != none) made.object = object;
         if (resource.history != none) made.history_object = object + 1;
@@ -102,7 +102,7 @@ class Describer {
                                 .history = resource.history_of != none,
                                 .write = access.write,
                                 .update = access.update};
-            if (resource.kind != ResourceKind::value) {
+            if (resource.storage->kind != ResourceKind::value) {
                 made.gpu = true;
                 use.usage = access.usage;
             }
@@ -113,13 +113,10 @@ class Describer {
 
     /// From the pass whose result is accessed.
     void add_edge(const Access& access, std::uint32_t position) {
-        const std::uint32_t base = declared_.resources[access.resource].history_of;
-        const std::uint32_t version =
-            base == none ? plan_.version(access.resource, access.version - (access.write ? 1 : 0))
-                         : plan_.version(base, declared_.resources[base].versions);
-        const std::uint32_t writer = plan_.writer[version];
-        if (writer == none || (writer == plan_.order[position] && base == none)) return;
-        DescribedEdge edge{position_[writer], position, base != none, {index_of(access)}};
+        const bool history = declared_.resources[access.resource].history_of != none;
+        const std::uint32_t writer = plan_.writer[plan_.needed_version(declared_, access)];
+        if (writer == none || (writer == plan_.order[position] && !history)) return;
+        DescribedEdge edge{position_[writer], position, history, {index_of(access)}};
         const auto same = std::find_if(first_edge(position), made_.edges.end(), [&](const auto& other) {
             return other.from == edge.from && other.history == edge.history;
         });

@@ -22,18 +22,6 @@ enum Need : std::uint8_t {
     certain = 2      // it runs even if its inputs do not change
 };
 
-template <class F>
-class OnExit {
- public:
-    explicit OnExit(F function) : function_(std::move(function)) {}
-    OnExit(const OnExit&) = delete;
-    OnExit& operator=(const OnExit&) = delete;
-    ~OnExit() { function_(); }
-
- private:
-    F function_;
-};
-
 using Clock = std::chrono::steady_clock;
 
 double milliseconds(Clock::duration duration) {
@@ -92,8 +80,8 @@ void GraphRuntime::require_imports() const {
         if (slot.filled || slot.value.content) continue;
         const detail::Resource& resource = graph_->declared().resources[index];
         const std::string_view lack =
-            resource.kind == ResourceKind::value ? "has not been set" : "has not been bound";
-        throw GraphError(fmt::format("imported {} '{}' {}", to_string(resource.kind), resource.name, lack));
+            resource.storage->kind == ResourceKind::value ? "has not been set" : "has not been bound";
+        throw GraphError(fmt::format("imported {} {}", resource.title(), lack));
     }
 }
 
@@ -172,8 +160,10 @@ void GraphRuntime::run_step(Execution& execution, bool changed) {
     pending_barriers_ = Barrier::none;
     begin_pass(execution.position_);
     {
-        const OnExit end([this] { backend_.end_pass(); });
-        bind_resources(execution.position_);
+        const detail::OnExit end([this] { backend_.end_pass(); });
+        for (const detail::Bound& bound : step.bound) {
+            bind(bound);
+        }
         if (step.invoke) step.invoke(step.function, execution);
     }
     keep_record(step, execution.world(), changed);
@@ -223,7 +213,7 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
     colours_.clear();
     for (const detail::Target& target : step.targets) {
         const detail::Slot& slot = state_->slots[target.slot];
-        targets.size = slot.texture.size;
+        targets.size = slot.storage.texture.size;
         if (target.depth) {
             targets.depth = slot.object;
         } else {
@@ -234,23 +224,10 @@ void GraphRuntime::begin_pass(std::uint32_t position) {
     backend_.begin_pass(step.name, position, &targets);
 }
 
-void GraphRuntime::bind_resources(std::uint32_t position) {
-    for (const detail::Bound& bound : state_->steps[position].bound) {
-        bind(bound);
-    }
-}
-
-/// After the running pass has replaced the object of one of its resources.
-void GraphRuntime::rebind(std::uint32_t position, std::uint32_t resource) {
-    for (const detail::Bound& bound : state_->steps[position].bound) {
-        if (bound.resource == resource) bind(bound);
-    }
-}
-
 void GraphRuntime::bind(const detail::Bound& bound) {
     const detail::Slot& slot = *slot_of(bound.resource);
-    if (slot.kind == ResourceKind::texture) {
-        backend_.bind_texture(slot.object, slot.texture, bound.binding);
+    if (slot.storage.kind == ResourceKind::texture) {
+        backend_.bind_texture(slot.object, slot.storage.texture, bound.binding);
     } else {
         backend_.bind_buffer(slot.object, bound.binding);
     }

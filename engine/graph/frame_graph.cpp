@@ -1,105 +1,224 @@
 #include <candela/graph/frame_graph.hpp>
 
+#include <chrono>
+#include <utility>
+
 #include "engine/graph/details/declaration.hpp"
 
 namespace candela {
 
-Pass::Pass(detail::Declaration& declared, std::string_view name)
-    : declared_(declared), arena_(declared.arena()) {
-    declared_.begin_pass(name);
+using detail::Declaration;
+using detail::none;
+using detail::Resource;
+
+namespace {
+
+/// 2^64 / golden ratio: a product with it has the low bits spread over the high ones.
+constexpr std::uint64_t golden = 0x9e37'79b9'7f4a'7c15U;
+
+/// An identity for a graph, without a process-wide counter: a hash of address and time. Two live graphs have
+/// different addresses, and two successive graphs at one address have different times; the hash has 31 bits.
+/// Never 0, which marks a null handle.
+std::uint32_t make_identity(const void* address) {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+    auto bits = static_cast<std::uint64_t>(now) ^ (reinterpret_cast<std::uintptr_t>(address) << 16U);
+    bits *= golden;
+    return static_cast<std::uint32_t>(bits >> 32U) | 1U;
 }
 
-Pass::~Pass() {
-    declared_.end_pass();
+/// `name` is stored in the arena.
+ResourceHandle add_resource(Declaration& declared, std::string_view name, const detail::Storage& storage,
+                            Lifetime lifetime) {
+    const bool repeats = !declared.resources.empty() && *declared.resources.back().storage == storage;
+    Resource& added = declared.resources.emplace_back();
+    added.name = name;
+    added.storage = repeats ? (&added - 1)->storage : declared.arena.store(storage);
+    added.lifetime = lifetime;
+    return {declared.id, detail::size_of(declared.resources) - 1, 0};
 }
 
-void Pass::declare_read(ResourceHandle resource, ResourceKind kind, Binding binding) {
-    declared_.read(resource, kind, binding);
+/// Empty if the resource can have a history.
+std::string_view why_no_history(const Resource& base) {
+    if (base.lifetime == Lifetime::imported) return "is imported";
+    if (base.history_of != none) return "is a history itself";
+    if (base.updated) return "is updated in place";
+    return base.first_part != none || base.part_of != none ? "has parts or is one" : "";
 }
 
-void Pass::declare_read(std::string_view component, Tick (*revision)(const World&)) {
-    declared_.components.push_back({component, revision});
+/// Empty if the texture can have the part.
+std::string_view why_no_part(const Declaration& declared, const Resource& whole, TexturePart part) {
+    if (whole.lifetime == Lifetime::imported) return "it is imported";
+    if (whole.history != none || whole.history_of != none || whole.part_of != none) {
+        return "it has a history, is one, or is a part itself";
+    }
+    if (whole.versions > 0 || whole.reader != none) return "a pass accesses it as a whole";
+    const TextureDesc& desc = whole.storage->texture;
+    const bool has_layer = part.layer == TexturePart::all_layers ||
+                           (part.layer < desc.layers && desc.shape != TextureShape::flat);
+    if (part.mip >= desc.mips || !has_layer) return "there are fewer";
+    for (std::uint32_t at = whole.first_part; at != none; at = declared.resources[at].next_part) {
+        const TexturePart other = declared.resources[at].part;
+        const bool one_is_whole_mip =
+            part.layer == TexturePart::all_layers || other.layer == TexturePart::all_layers;
+        if (part.mip == other.mip && one_is_whole_mip) return "it overlaps another part";
+    }
+    return "";
 }
 
-ResourceHandle Pass::declare_write(ResourceHandle resource, ResourceKind kind, Binding binding) {
-    return declared_.write(resource, kind, binding);
+ResourceHandle add_part(Declaration& declared, TextureHandle of, TexturePart part) {
+    if (!declared.owns(of, ResourceKind::texture)) {
+        declared.error(ErrorCode::foreign_handle, "part of a texture of another graph");
+        return {};
+    }
+    const Resource whole = declared.resources[of.resource];
+    for (std::uint32_t at = whole.first_part; at != none; at = declared.resources[at].next_part) {
+        if (declared.resources[at].part == part) return {declared.id, at, 0};
+    }
+    if (const std::string_view why = why_no_part(declared, whole, part); !why.empty()) {
+        declared.error(ErrorCode::wrong_usage, "{} has no {}: {}", whole.title(), to_string(part), why);
+        return of;
+    }
+    const std::string_view name =
+        declared.arena.store_text(fmt::format("{} {}", whole.name, to_string(part)));
+    const ResourceHandle handle = add_resource(
+        declared, name, {.kind = ResourceKind::texture, .texture = part_desc(whole.storage->texture, part)},
+        Lifetime::persistent);
+    Resource& added = declared.resources[handle.resource];
+    added.part_of = of.resource;
+    added.part = part;
+    added.next_part = whole.first_part;
+    declared.resources[of.resource].first_part = handle.resource;
+    declared.resources[of.resource].lifetime = Lifetime::persistent;
+    return handle;
 }
 
-ResourceHandle Pass::declare_update(ResourceHandle resource, ResourceKind kind, Binding binding) {
-    return declared_.update(resource, kind, binding);
+/// Whether passes have written it; a texture with parts is written if all of them are. Never a history.
+bool is_written(const Declaration& declared, const Resource& resource) {
+    if (resource.first_part == none) return resource.versions > 0;
+    std::uint32_t part = resource.first_part;
+    while (part != none && declared.resources[part].versions > 0) {
+        part = declared.resources[part].next_part;
+    }
+    return part == none;
 }
 
-void Pass::declare_parameter(std::type_index type, const void* value,
-                             bool (*equal)(const void*, const void*)) {
-    declared_.parameters.push_back({type, value, equal});
+/// See FrameGraph::find_texture. A null handle if there is none.
+ResourceHandle find(const Declaration& declared, std::string_view name, ResourceKind kind) {
+    for (std::uint32_t index = detail::size_of(declared.resources); index-- > 0;) {
+        const Resource& resource = declared.resources[index];
+        if (resource.storage->kind == kind && resource.name == name && is_written(declared, resource)) {
+            return {declared.id, index, resource.versions};
+        }
+    }
+    return {};
 }
 
-void Pass::side_effect() {
-    declared_.passes.back().side_effect = true;
+/// Null without one.
+const std::any* note_of(const Declaration& declared, const Resource& resource) {
+    return resource.note == none ? nullptr : &declared.notes[resource.note];
 }
 
-void Pass::keeps_state() {
-    declared_.passes.back().keeps_state = true;
+}  // namespace
+
+std::size_t detail::Storage::hash() const {
+    std::size_t hash = 0;
+    for (const std::uint64_t part :
+         {std::uint64_t{texture.size.x}, std::uint64_t{texture.size.y}, std::uint64_t{texture.layers},
+          std::uint64_t{texture.mips}, static_cast<std::uint64_t>(texture.format), buffer.count,
+          std::uint64_t{buffer.stride}}) {
+        hash = (hash ^ part) * golden;
+        hash ^= hash >> 32U;  // mixes the high bits into the low ones
+    }
+    return hash;
 }
 
-void Pass::set_tag(std::uint32_t tag) {
-    declared_.passes.back().tag = tag;
+detail::Declaration::Declaration() : id(make_identity(this)) {
+    passes.reserve(16);
+    accesses.reserve(64);
+    resources.reserve(32);
 }
 
-void Pass::set_function(void* function, void (*invoke)(void*, Execution&)) {
-    declared_.passes.back().function = function;
-    declared_.passes.back().invoke = invoke;
+bool detail::Declaration::owns(ResourceHandle handle, ResourceKind kind) const {
+    return handle.graph == id && handle.resource < resources.size() &&
+           resources[handle.resource].storage->kind == kind &&
+           handle.version <= resources[handle.resource].versions;
 }
 
-FrameGraph::FrameGraph() : declared_(std::make_unique<detail::Declaration>()) {}
+std::string_view detail::Declaration::store_name(std::string_view name) {
+    if (ending.empty()) return arena.store_text(name);
+    return arena.store_text(fmt::format("{}{}", name, ending));
+}
+
+FrameGraph::FrameGraph() : declared_(std::make_unique<Declaration>()) {}
 FrameGraph::FrameGraph(FrameGraph&& other) noexcept = default;
 FrameGraph& FrameGraph::operator=(FrameGraph&& other) noexcept = default;
 FrameGraph::~FrameGraph() = default;
 
 void FrameGraph::append_to_names(std::string_view ending) {
-    declared_->append_to_names(ending);
+    declared_->ending = ending;
 }
 
 TextureHandle FrameGraph::texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime) {
-    return {declared_->add_texture(name, desc, lifetime)};
-}
-
-TextureHandle FrameGraph::mip(TextureHandle texture, std::uint32_t level) {
-    return {declared_->add_part(texture, {level, TexturePart::all_layers})};
-}
-
-TextureHandle FrameGraph::layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip) {
-    return {declared_->add_part(texture, {mip, layer})};
+    return {add_resource(*declared_, declared_->store_name(name),
+                         {.kind = ResourceKind::texture, .texture = desc}, lifetime)};
 }
 
 ResourceHandle FrameGraph::add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime) {
-    return declared_->add_buffer(name, desc, lifetime);
+    return add_resource(*declared_, declared_->store_name(name),
+                        {.kind = ResourceKind::buffer, .buffer = desc}, lifetime);
 }
 
 ResourceHandle FrameGraph::add_value(std::string_view name, std::type_index type, Lifetime lifetime) {
-    return declared_->add_value(name, type, lifetime);
+    return add_resource(*declared_, declared_->store_name(name), {.type = type}, lifetime);
+}
+
+TextureHandle FrameGraph::mip(TextureHandle texture, std::uint32_t level) {
+    return {add_part(*declared_, texture, {level, TexturePart::all_layers})};
+}
+
+TextureHandle FrameGraph::layer(TextureHandle texture, std::uint32_t layer, std::uint32_t mip) {
+    return {add_part(*declared_, texture, {mip, layer})};
 }
 
 TextureHandle FrameGraph::history(TextureHandle texture) {
-    return {declared_->add_history(texture)};
+    if (!declared_->owns(texture, ResourceKind::texture)) {
+        declared_->error(ErrorCode::foreign_handle, "history of a texture of another graph");
+        return {};
+    }
+    const Resource base = declared_->resources[texture.resource];
+    if (const std::string_view why = why_no_history(base); !why.empty()) {
+        declared_->error(ErrorCode::wrong_usage, "{} has no history: it {}", base.title(), why);
+        return texture;
+    }
+    if (base.history != none) return {{declared_->id, base.history, 0}};
+
+    const ResourceHandle history = add_resource(*declared_, base.name, *base.storage, Lifetime::persistent);
+    declared_->resources[history.resource].history_of = texture.resource;
+    declared_->resources[texture.resource].history = history.resource;
+    declared_->resources[texture.resource].lifetime = Lifetime::persistent;
+    return {history};
 }
 
 std::optional<FoundTexture> FrameGraph::find_texture(std::string_view name) const {
-    const ResourceHandle found = declared_->find(name, ResourceKind::texture);
+    const ResourceHandle found = find(*declared_, name, ResourceKind::texture);
     if (found == ResourceHandle{}) return std::nullopt;
-    const TextureDesc& desc = declared_->texture(declared_->resources[found.resource]);
-    return FoundTexture{{found}, desc, declared_->note(found)};
+    const Resource& resource = declared_->resources[found.resource];
+    return FoundTexture{{found}, resource.storage->texture, note_of(*declared_, resource)};
 }
 
 std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const {
-    const ResourceHandle found = declared_->find(name, ResourceKind::buffer);
+    const ResourceHandle found = find(*declared_, name, ResourceKind::buffer);
     if (found == ResourceHandle{}) return std::nullopt;
-    const BufferDesc& desc = declared_->buffer(declared_->resources[found.resource]);
-    return FoundBuffer{{found}, desc.stride, declared_->note(found)};
+    const Resource& resource = declared_->resources[found.resource];
+    return FoundBuffer{{found}, resource.storage->buffer.stride, note_of(*declared_, resource)};
 }
 
 void FrameGraph::note(ResourceHandle on, std::any what) {
-    declared_->add_note(on, std::move(what));
+    if (on.graph != declared_->id || on.resource >= declared_->resources.size()) {
+        return declared_->error(ErrorCode::foreign_handle, "note on a resource of another graph");
+    }
+    declared_->resources[on.resource].note = detail::size_of(declared_->notes);
+    declared_->notes.push_back(std::move(what));
 }
 
 }  // namespace candela

@@ -8,17 +8,44 @@
 namespace candela {
 namespace {
 
-/// Sets the flag for its own lifetime.
-class Raised {
- public:
-    explicit Raised(bool& flag) : flag_(flag) { flag_ = true; }
-    Raised(const Raised&) = delete;
-    Raised& operator=(const Raised&) = delete;
-    ~Raised() { flag_ = false; }
+/// Per step: whether it may run again after a frame (see GraphRuntime::verify). Excludes the steps that must
+/// not run again by themselves, then those that an excluded one keeps from it, until nothing changes.
+std::vector<std::uint8_t> repeatable_steps(const detail::State& state) {
+    std::vector<std::uint8_t> again(state.step_count(), 1);
+    std::vector<std::uint8_t> settled(state.slots.size());         // holds an output of an excluded step
+    std::vector<std::uint8_t> overwritten(state.versions.size());  // by an excluded step
+    const auto exclude = [&](std::uint32_t position) {
+        again[position] = 0;
+        for (const detail::Output& output : state.steps[position].outputs) {
+            settled[output.slot] = 1;
+            overwritten[output.version - 1] = 1;
+        }
+    };
+    const auto can_read = [&](const detail::Input& input) {
+        const detail::Version& version = state.versions[input.version];
+        const bool made_again = version.producer < again.size() && again[version.producer];
+        return !overwritten[input.version] && (made_again || version.present);
+    };
+    const auto can_write = [&](const detail::Output& output) { return !settled[output.slot]; };
 
- private:
-    bool& flag_;
-};
+    for (std::uint32_t position = 0; position < again.size(); ++position) {
+        const detail::Step& step = state.steps[position];
+        if (!step.has_run || step.side_effect || step.writes_import || step.keeps_state) exclude(position);
+    }
+    for (bool excluded = true; excluded;) {
+        excluded = false;
+        for (std::uint32_t position = 0; position < again.size(); ++position) {
+            const detail::Step& step = state.steps[position];
+            if (!again[position] || (std::ranges::all_of(step.inputs, can_read) &&
+                                     std::ranges::all_of(step.outputs, can_write))) {
+                continue;
+            }
+            exclude(position);
+            excluded = true;
+        }
+    }
+    return again;
+}
 
 }  // namespace
 
@@ -33,8 +60,9 @@ void GraphRuntime::verify(const World& world) {
     if (!graph_ || !verifying_) {
         throw GraphError("there is no frame to verify: there is no graph, or verification is off");
     }
-    const std::vector<std::uint8_t> again = detail::repeatable_steps(*state_);
-    const Raised repeating(repeating_);
+    const std::vector<std::uint8_t> again = repeatable_steps(*state_);
+    repeating_ = true;
+    const detail::OnExit end([this] { repeating_ = false; });
     Execution execution(*this, world);
     pending_barriers_ = all_barriers;  // the planned barriers assume whole frames, one after the other
     for (std::uint32_t position = 0; position < state_->step_count(); ++position) {
@@ -72,9 +100,9 @@ void GraphRuntime::note_contents(const detail::Step& step, bool changed) {
 
 detail::Content GraphRuntime::content_of(const detail::Slot& slot) const {
     detail::Content content{.known = true, .value = slot.value};
-    if (slot.kind == ResourceKind::texture) {
+    if (slot.storage.kind == ResourceKind::texture) {
         content.digest = backend_.texture_digest(slot.object);
-    } else if (slot.kind == ResourceKind::buffer) {
+    } else if (slot.storage.kind == ResourceKind::buffer) {
         content.digest = backend_.buffer_digest(slot.object);
     }
     return content;
@@ -84,8 +112,8 @@ void GraphRuntime::report_difference(const detail::Step& step, std::uint32_t ver
     const detail::Resource& resource = graph_->declared().resources[graph_->plan().resource(version)];
     throw GraphError(fmt::format(
         "pass '{}' has an undeclared input: run again while nothing that it declares has changed, "
-        "it gives {} '{}' another content",
-        step.name, to_string(resource.kind), resource.name));
+        "it gives {} another content",
+        step.name, resource.title()));
 }
 
 }  // namespace candela

@@ -53,14 +53,15 @@ class Timeline {
     template <class Need>
     void visit(const Access& access, std::uint32_t position, Need need) {
         const Resource& resource = declared_.resources[access.resource];
-        if (resource.kind == ResourceKind::value) return;
+        if (resource.storage->kind == ResourceKind::value) return;
         const std::uint32_t object = object_of(access);
         const Time since = std::max(wrote_[object], incoherent(access) ? read_[object] : 0);
-        if (since != 0) need(position, now_, index_of(barrier_for(resource.kind, access.usage)), since);
+        if (since != 0)
+            need(position, now_, index_of(barrier_for(resource.storage->kind, access.usage)), since);
     }
 
     void note(const Access& access) {
-        if (declared_.resources[access.resource].kind == ResourceKind::value) return;
+        if (declared_.resources[access.resource].storage->kind == ResourceKind::value) return;
         if (incoherent(access)) wrote_[object_of(access)] = now_;
         if (!access.write) read_[object_of(access)] = now_;
     }

@@ -1,15 +1,17 @@
 #pragma once
 
 #include <any>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <typeindex>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include <candela/ecs/world.hpp>
 #include <candela/graph/errors.hpp>
@@ -26,22 +28,36 @@ template <class T>
 
 inline constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
+/// The kind of a resource with its description.
+struct Storage {
+    ResourceKind kind = ResourceKind::value;
+    TextureDesc texture{};
+    BufferDesc buffer{};
+    std::type_index type = typeid(void);  // of a value
+    bool operator==(const Storage&) const = default;
+    [[nodiscard]] std::size_t hash() const;
+};
+
 struct Resource {
     std::string_view name;
-    ResourceKind kind = ResourceKind::texture;
+    const Storage* storage = nullptr;  // as declared; in the arena
     Lifetime lifetime = Lifetime::transient;
-    std::uint32_t desc = 0;           // index into the textures, buffers or value types, by kind
+    bool updated = false;             // see Pass::update
     std::uint32_t versions = 0;       // number of writes declared so far
     std::uint32_t reader = none;      // the pass with the last declared read
     std::uint32_t writer = none;      // the pass with the last declared write
     std::uint32_t history_of = none;  // for a history: the resource whose history it is
     std::uint32_t history = none;     // the resource that is this one's history
-    bool updated = false;             // see Pass::update
     std::uint32_t part_of = none;     // for a part: the texture
     TexturePart part;                 // and which part of it
     std::uint32_t first_part = none;  // the parts of a texture are a linked list
     std::uint32_t next_part = none;
     std::uint32_t note = none;  // see FrameGraph::note
+
+    /// Whether it is found again by its name in another graph. A history goes with its resource.
+    [[nodiscard]] bool is_kept() const { return lifetime != Lifetime::transient && history_of == none; }
+    /// For messages, for example "texture 'depth'".
+    [[nodiscard]] std::string title() const { return fmt::format("{} '{}'", to_string(storage->kind), name); }
 };
 
 struct Access {
@@ -63,6 +79,8 @@ struct Parameter {
     std::type_index type;
     const void* value;
     bool (*equal)(const void*, const void*);
+
+    bool operator==(const Parameter& other) const { return type == other.type && equal(value, other.value); }
 };
 
 struct PassNode {
@@ -77,36 +95,11 @@ struct PassNode {
     std::uint32_t tag = 0;  // see Pass::tag
 };
 
-/// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in one arena.
-class Declaration {
- public:
+/// The content of a FrameGraph in flat arrays. Names, functions and parameters are stored in the arena.
+struct Declaration {
     Declaration();
 
-    ResourceHandle add_texture(std::string_view name, const TextureDesc& desc, Lifetime lifetime);
-    ResourceHandle add_buffer(std::string_view name, const BufferDesc& desc, Lifetime lifetime);
-    ResourceHandle add_value(std::string_view name, std::type_index type, Lifetime lifetime);
-    ResourceHandle add_history(ResourceHandle of);
-    ResourceHandle add_part(ResourceHandle of, TexturePart part);
-    void add_note(ResourceHandle on, std::any note);
-    /// Null without one.
-    [[nodiscard]] const std::any* note(ResourceHandle on) const {
-        const std::uint32_t index = resources[on.resource].note;
-        return index == none ? nullptr : &notes[index];
-    }
-    /// See FrameGraph::find_texture. A null handle if there is none.
-    [[nodiscard]] ResourceHandle find(std::string_view name, ResourceKind kind) const;
-
-    /// See FrameGraph::append_to_names.
-    void append_to_names(std::string_view ending) { ending_ = ending; }
-    void begin_pass(std::string_view name);
-    void end_pass();
-    void read(ResourceHandle handle, ResourceKind kind, Binding binding);
-    ResourceHandle write(ResourceHandle handle, ResourceKind kind, Binding binding);
-    ResourceHandle update(ResourceHandle handle, ResourceKind kind, Binding binding);
-
-    [[nodiscard]] Arena& arena() { return *arena_; }
-
-    [[nodiscard]] std::uint32_t pass_count() const { return static_cast<std::uint32_t>(passes.size()); }
+    [[nodiscard]] std::uint32_t pass_count() const { return size_of(passes); }
     [[nodiscard]] std::span<const Access> accesses_of(std::uint32_t pass) const {
         return part(accesses, pass, &PassNode::first_access);
     }
@@ -116,22 +109,29 @@ class Declaration {
     [[nodiscard]] std::span<const Parameter> parameters_of(std::uint32_t pass) const {
         return part(parameters, pass, &PassNode::first_parameter);
     }
-    [[nodiscard]] const TextureDesc& texture(const Resource& resource) const {
-        return textures[resource.desc];
+    /// Whether the handle is of this graph and names a resource of this kind.
+    [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
+    /// Copies the name, with the ending of FrameGraph::append_to_names.
+    [[nodiscard]] std::string_view store_name(std::string_view name);
+    template <class... Args>
+    void error(ErrorCode code, fmt::format_string<Args...> format, Args&&... args) {
+        // GCC 12 reports overlapping copies if a CompileError is made first and then moved.
+        CompileError& added = errors.emplace_back();
+        added.code = code;
+        added.message = fmt::format(format, std::forward<Args>(args)...);
     }
-    [[nodiscard]] const BufferDesc& buffer(const Resource& resource) const { return buffers[resource.desc]; }
 
     std::uint32_t id = 0;
+    Arena arena;
+    std::string ending;      // of the names of what is declared
+    bool declaring = false;  // a pass
     std::vector<PassNode> passes;
     std::vector<Access> accesses;
     std::vector<ComponentRead> components;
     std::vector<Parameter> parameters;
     std::vector<Resource> resources;
-    std::vector<TextureDesc> textures;
-    std::vector<BufferDesc> buffers;
-    std::vector<std::type_index> value_types;
     std::vector<std::any> notes;
-    std::vector<CompileError> errors;  // those found while declaring
+    std::vector<CompileError> errors;
 
  private:
     template <class T>
@@ -141,26 +141,6 @@ class Declaration {
         const std::size_t end = pass + 1 < passes.size() ? passes[pass + 1].*first : all.size();
         return std::span(all).subspan(begin, end - begin);
     }
-    [[nodiscard]] std::string_view store_name(std::string_view name);
-    ResourceHandle add_resource(std::string_view name, ResourceKind kind, Lifetime lifetime,
-                                std::size_t desc);
-    [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
-    [[nodiscard]] bool is_written(const Resource& resource) const;
-    [[nodiscard]] std::string_view writer_of(std::uint32_t resource, std::uint32_t version) const;
-    void error(ErrorCode code, std::string message) {
-        // GCC 12 reports overlapping copies if a CompileError is made first and then moved.
-        CompileError& added = errors.emplace_back();
-        added.code = code;
-        added.message = std::move(message);
-    }
-    [[nodiscard]] std::string_view why_no_parts(const Resource& whole, TexturePart part) const;
-    [[nodiscard]] std::string_view why_no_history(const Resource& base) const;
-    void check_binding(const Resource& resource, Binding binding, bool write);
-    void check_attachments();
-
-    std::unique_ptr<Arena> arena_;
-    std::string ending_;  // of the names of what is declared
-    bool declaring_ = false;
 };
 
 }  // namespace candela::detail

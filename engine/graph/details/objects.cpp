@@ -1,33 +1,36 @@
 #include "engine/graph/details/objects.hpp"
 
-#include "engine/graph/details/index_table.hpp"
+#include <unordered_set>
 
 namespace candela::detail {
 namespace {
 
-/// For each description, the index of the first one that is equal.
-template <class Desc>
-std::vector<std::uint32_t> classes_of(const std::vector<Desc>& descs) {
-    std::vector<std::uint32_t> classes(descs.size());
-    IndexTable table(descs.size());
-    for (std::uint32_t index = 0; index < descs.size(); ++index) {
-        const auto same = [&](std::uint32_t other) { return descs[other] == descs[index]; };
-        const std::uint32_t found = table.find_or_insert(hash_of(descs[index]), index, same);
-        classes[index] = found == none ? index : found;
+/// Per transient: the first one with equal storage.
+std::vector<std::uint32_t> find_equals(const std::vector<Resource>& resources) {
+    const auto hash = [&](std::uint32_t index) { return resources[index].storage->hash(); };
+    const auto same = [&](std::uint32_t a, std::uint32_t b) {
+        return *resources[a].storage == *resources[b].storage;
+    };
+    std::unordered_set<std::uint32_t, decltype(hash), decltype(same)> firsts(0, hash, same);
+    std::vector<std::uint32_t> equals(resources.size(), none);
+    std::uint32_t last = none;
+    for (std::uint32_t index = 0; index < equals.size(); ++index) {
+        if (resources[index].lifetime != Lifetime::transient) continue;
+        const bool repeats = last != none && resources[index].storage == resources[last].storage;
+        equals[index] = repeats ? equals[last] : *firsts.insert(index).first;
+        last = index;
     }
-    return classes;
+    return equals;
 }
 
-/// Allocates objects to resources and takes them back. There is a free list per description.
+/// Allocates objects to resources and takes them back. There is a free list per storage of transients.
 class Objects {
  public:
     Objects(const Declaration& declared, Plan& plan)
         : declared_(declared),
           plan_(plan),
-          texture_class_(classes_of(declared.textures)),
-          buffer_class_(classes_of(declared.buffers)),
-          free_texture_(declared.textures.size(), none),
-          free_buffer_(declared.buffers.size(), none) {
+          equal_(find_equals(declared.resources)),
+          free_(declared.resources.size(), none) {
         next_.reserve(declared.resources.size());
         plan_.owner.reserve(declared.resources.size());
     }
@@ -40,7 +43,7 @@ class Objects {
             give(resource.part_of);  // first, as it must be created first
         }
         if (resource.lifetime == Lifetime::transient) {
-            std::uint32_t& free = free_list(resource);
+            std::uint32_t& free = free_[equal_[index]];
             plan_.object[index] = free != none ? take(free) : create(index);
         } else {
             plan_.object[index] = create(index);
@@ -49,21 +52,15 @@ class Objects {
     }
 
     void take_back(std::uint32_t index) {
-        const Resource& resource = declared_.resources[index];
         const std::uint32_t object = plan_.object[index];
-        if (resource.lifetime != Lifetime::transient || next_[object] != in_use) return;
-        std::uint32_t& free = free_list(resource);
+        if (declared_.resources[index].lifetime != Lifetime::transient || next_[object] != in_use) return;
+        std::uint32_t& free = free_[equal_[index]];
         next_[object] = free;
         free = object;
     }
 
  private:
     static constexpr std::uint32_t in_use = none - 1;
-
-    std::uint32_t& free_list(const Resource& resource) {
-        return resource.kind == ResourceKind::texture ? free_texture_[texture_class_[resource.desc]]
-                                                      : free_buffer_[buffer_class_[resource.desc]];
-    }
 
     std::uint32_t take(std::uint32_t& free) {
         const std::uint32_t object = free;
@@ -80,10 +77,8 @@ class Objects {
 
     const Declaration& declared_;
     Plan& plan_;
-    std::vector<std::uint32_t> texture_class_;
-    std::vector<std::uint32_t> buffer_class_;
-    std::vector<std::uint32_t> free_texture_;  // per class: the first free object, or none
-    std::vector<std::uint32_t> free_buffer_;
+    std::vector<std::uint32_t> equal_;
+    std::vector<std::uint32_t> free_;  // per first one with a storage: the first free object, or none
     std::vector<std::uint32_t> next_;  // per object: the next free one, none, or in_use
 };
 

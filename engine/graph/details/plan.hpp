@@ -32,6 +32,13 @@ struct Plan {
     [[nodiscard]] std::uint32_t version(std::uint32_t resource, std::uint32_t number) const {
         return first_version[resource] + number;
     }
+    /// The id of the version on which an access depends: that which it reads or overwrites; of a history the
+    /// last one.
+    [[nodiscard]] std::uint32_t needed_version(const Declaration& declared, const Access& access) const {
+        const std::uint32_t base = declared.resources[access.resource].history_of;
+        return base == none ? version(access.resource, access.version - (access.write ? 1 : 0))
+                            : version(base, declared.resources[base].versions);
+    }
     /// The resource of a version id.
     [[nodiscard]] std::uint32_t resource(std::uint32_t version_id) const {
         const auto next = std::ranges::upper_bound(first_version, version_id);

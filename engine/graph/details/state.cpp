@@ -1,22 +1,10 @@
 #include "engine/graph/details/state.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "engine/graph/details/index_table.hpp"
+#include <map>
 
 namespace candela::detail {
 namespace {
-
-std::string describe(const TextureDesc& desc) {
-    return fmt::format("{}x{}x{} {} {} {}", desc.size.x, desc.size.y, desc.layers, to_string(desc.format),
-                       static_cast<int>(desc.shape), desc.mips);
-}
-
-std::string describe(const BufferDesc& desc) {
-    return fmt::format("{}x{}", desc.count, desc.stride);
-}
 
 class StateMaker {
  public:
@@ -68,19 +56,19 @@ class StateMaker {
         const bool swaps_history = resource.history != none && access.version == 1;
         state_.versions[version].producer = position;
         state_.versions[version].present = false;
-        step.outputs.push_back(
-            {version, plan_.object[access.resource], resource.kind == ResourceKind::value, swaps_history});
+        step.outputs.push_back({version, plan_.object[access.resource],
+                                resource.storage->kind == ResourceKind::value, swaps_history});
     }
 
     void add_input(Step& step, const Access& access, std::uint32_t pass) const {
-        const bool previous = declared_.resources[access.resource].history_of != none;
-        if (previous || (access.write && access.version == 1)) return;
-        const std::uint32_t version = plan_.version(access.resource, access.version - (access.write ? 1 : 0));
+        const bool history = declared_.resources[access.resource].history_of != none;
+        if (history || (access.write && access.version == 1)) return;
+        const std::uint32_t version = plan_.needed_version(declared_, access);
         if (plan_.writer[version] != pass) step.inputs.push_back({version});
     }
 
     void add_target(Step& step, const Access& access) const {
-        if (declared_.resources[access.resource].kind != ResourceKind::texture) return;
+        if (declared_.resources[access.resource].storage->kind != ResourceKind::texture) return;
         const bool depth = access.usage == Usage::depth_target;
         if (depth || access.usage == Usage::colour_target) {
             step.targets.push_back({plan_.object[access.resource], depth});
@@ -99,16 +87,12 @@ class StateMaker {
         for (std::uint32_t object = 0; object < plan_.owner.size(); ++object) {
             const Resource& resource = declared_.resources[plan_.owner[object]];
             Slot& slot = state_.slots[object];
-            slot.kind = resource.kind;
-            slot.owned = slot.kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
-            if (slot.kind == ResourceKind::texture) slot.texture = declared_.texture(resource);
-            if (slot.kind == ResourceKind::buffer) slot.buffer = declared_.buffer(resource);
+            slot.storage = *resource.storage;
+            slot.owned =
+                resource.storage->kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
             slot.view = resource.part_of != none;
-            if (slot.owned && resource.lifetime == Lifetime::persistent) {
-                const TextureDesc& whole =
-                    slot.view ? declared_.texture(declared_.resources[resource.part_of]) : slot.texture;
-                slot.kept_as = fmt::format("{} {} {}", resource.name, describe(whole), describe(slot.buffer));
-            }
+            slot.declared = slot.view ? *declared_.resources[resource.part_of].storage : slot.storage;
+            if (slot.owned && resource.lifetime == Lifetime::persistent) slot.name = resource.name;
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const bool imported = declared_.resources[index].lifetime == Lifetime::imported;
@@ -152,62 +136,43 @@ class StateTransfer {
 
  private:
     [[nodiscard]] bool alike(const Resource& resource, const Resource& old) const {
-        if (resource.kind != old.kind || resource.lifetime != old.lifetime || resource.name != old.name ||
-            (resource.history == none) != (old.history == none) ||
+        if (resource.name != old.name || *resource.storage != *old.storage ||
+            resource.lifetime != old.lifetime || (resource.history == none) != (old.history == none) ||
             (resource.history_of == none) != (old.history_of == none) ||
             (resource.part_of == none) != (old.part_of == none)) {
             return false;
         }
-        if (resource.part_of != none &&
-            (resource.part != old.part ||
-             !alike(declared_.resources[resource.part_of], old_declared_.resources[old.part_of]))) {
-            return false;
-        }
-        switch (resource.kind) {
-            case ResourceKind::texture:
-                return declared_.texture(resource) == old_declared_.texture(old);
-            case ResourceKind::buffer:
-                return declared_.buffer(resource) == old_declared_.buffer(old);
-            case ResourceKind::value:
-                return declared_.value_types[resource.desc] == old_declared_.value_types[old.desc];
-        }
-        return false;
+        return resource.part_of == none ||
+               (resource.part == old.part &&
+                alike(declared_.resources[resource.part_of], old_declared_.resources[old.part_of]));
     }
 
     /// Matches persistent and imported resources by kind and name. The host must bind imported GPU objects
     /// again.
     void take_slots() {
-        const auto known = [](const Resource& resource) {
-            return resource.lifetime != Lifetime::transient && resource.history_of == none;
-        };
-        const auto hash = [](const Resource& resource) {
-            return hash_of(resource.name) + static_cast<std::size_t>(resource.kind);
-        };
-        IndexTable table(old_declared_.resources.size());
+        std::map<std::pair<ResourceKind, std::string_view>, std::uint32_t> by_name;
         for (std::uint32_t index = 0; index < old_declared_.resources.size(); ++index) {
             const Resource& old = old_declared_.resources[index];
-            if (known(old) && old_plan_.object[index] != none) {
-                (void)table.find_or_insert(hash(old), index, [](std::uint32_t) { return false; });
+            if (old.is_kept() && old_plan_.object[index] != none) {
+                by_name.insert({{old.storage->kind, old.name}, index});
             }
         }
         for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
             const Resource& resource = declared_.resources[index];
-            if (!known(resource) || plan_.object[index] == none) continue;
-            const std::uint32_t old = table.find_index(hash(resource), [&](std::uint32_t other) {
-                return alike(resource, old_declared_.resources[other]);
-            });
-            if (old != none) take_resource(index, old);
+            if (!resource.is_kept() || plan_.object[index] == none) continue;
+            const auto found = by_name.find({resource.storage->kind, resource.name});
+            if (found != by_name.end() && alike(resource, old_declared_.resources[found->second])) {
+                take_resource(index, found->second);
+            }
         }
     }
 
     void take_resource(std::uint32_t index, std::uint32_t old) {
         const Resource& resource = declared_.resources[index];
-        const std::uint32_t version = plan_.version(index, 0);
-        const std::uint32_t old_version = old_plan_.version(old, 0);
-        const bool bound_anew =
-            resource.lifetime == Lifetime::imported && resource.kind != ResourceKind::value;
-        if (resource.lifetime == Lifetime::imported) pair_versions(version, old_version);
-        if (bound_anew) return;
+        if (resource.lifetime == Lifetime::imported) {
+            pair_versions(plan_.version(index, 0), old_plan_.version(old, 0));
+            if (resource.storage->kind != ResourceKind::value) return;  // bound anew
+        }
         take_slot(plan_.object[index], old_plan_.object[old]);
         if (resource.history != none) take_slot(plan_.object[index] + 1, old_plan_.object[old] + 1);
     }
@@ -228,16 +193,15 @@ class StateTransfer {
     }
 
     void take_records() {
-        IndexTable table(old_.step_count());
+        std::map<std::string_view, std::uint32_t> by_name;
         for (std::uint32_t index = 0; index < old_.step_count(); ++index) {
-            (void)table.find_or_insert(hash_of(old_.steps[index].name), index,
-                                       [](std::uint32_t) { return false; });
+            by_name.insert({old_.steps[index].name, index});
         }
         for (std::uint32_t index = 0; index < state_.step_count(); ++index) {
-            const std::string_view name = state_.steps[index].name;
-            const std::uint32_t old = table.find_index(
-                hash_of(name), [&](std::uint32_t other) { return old_.steps[other].name == name; });
-            if (old != none && same_pass(plan_.order[index], old_plan_.order[old])) take_record(index, old);
+            const auto found = by_name.find(state_.steps[index].name);
+            if (found != by_name.end() && same_pass(plan_.order[index], old_plan_.order[found->second])) {
+                take_record(index, found->second);
+            }
         }
     }
 
@@ -255,7 +219,7 @@ class StateTransfer {
 
     void take_transient(std::uint32_t slot, std::uint32_t old_version) {
         const std::uint32_t old_slot = old_plan_.object[old_plan_.resource(old_version)];
-        const auto is_transient = [](const Slot& of) { return of.owned && of.kept_as.empty(); };
+        const auto is_transient = [](const Slot& of) { return of.owned && of.name.empty(); };
         if (old_.holds[old_slot] == old_version && taken_[old_slot] == 0 &&
             is_transient(old_.slots[old_slot]) && is_transient(state_.slots[slot]) &&
             state_.slots[slot].object == 0) {
@@ -264,17 +228,10 @@ class StateTransfer {
     }
 
     [[nodiscard]] bool same_pass(std::uint32_t pass, std::uint32_t old) const {
-        const auto accesses = declared_.accesses_of(pass);
-        const auto components = declared_.components_of(pass);
-        const auto parameters = declared_.parameters_of(pass);
-        const auto old_components = old_declared_.components_of(old);
-        return std::ranges::equal(components, old_components) &&
-               std::ranges::equal(parameters, old_declared_.parameters_of(old),
-                                  [](const Parameter& a, const Parameter& b) {
-                                      return a.type == b.type && a.equal(a.value, b.value);
-                                  }) &&
+        return std::ranges::equal(declared_.components_of(pass), old_declared_.components_of(old)) &&
+               std::ranges::equal(declared_.parameters_of(pass), old_declared_.parameters_of(old)) &&
                std::ranges::equal(
-                   accesses, old_declared_.accesses_of(old),
+                   declared_.accesses_of(pass), old_declared_.accesses_of(old),
                    [&](const Access& a, const Access& b) { return same_access(a, pass, b, old); });
     }
 
@@ -288,9 +245,8 @@ class StateTransfer {
         }
         if (resource.history_of != none) return true;
         if (a.write && (a.version == 1 || b.version == 1)) return a.version == b.version;
-        const std::uint32_t step_back = a.write ? 1 : 0;
-        const std::uint32_t version = plan_.version(a.resource, a.version - step_back);
-        const std::uint32_t old_version = old_plan_.version(b.resource, b.version - step_back);
+        const std::uint32_t version = plan_.needed_version(declared_, a);
+        const std::uint32_t old_version = old_plan_.needed_version(old_declared_, b);
         const bool own = plan_.writer[version] == pass;
         const bool old_own = old_plan_.writer[old_version] == old;
         return own == old_own && (own || old_version_[version] == old_version);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <candela/ecs/world.hpp>
@@ -17,18 +18,15 @@ using Stamp = std::uint64_t;
 
 /// The current state of one object: a texture, a buffer or a value.
 struct Slot {
-    ResourceKind kind = ResourceKind::value;
+    Storage storage;       // of an import, as bound; `reserve` may have changed the declared one
     bool view = false;     // a part of another slot's texture, without storage of its own
     bool owned = false;    // created by the runtime; false for imports and for values
     bool changed = false;  // a value: the running pass may have changed the content of its version
     bool filled = false;   // written since it was created, or bound by the host
     ObjectId object = 0;
-    TextureDesc texture;
-    BufferDesc buffer;
     Value value;
-    // Key of a persistent object: its name and its declared description. `reserve` may have changed the
-    // actual description. Empty for all others.
-    std::string kept_as;
+    std::string name;  // of a persistent texture or buffer; empty for all others
+    Storage declared;  // of a part: that of the whole texture
 };
 
 /// One version of one resource.
@@ -100,22 +98,27 @@ struct State {
     std::vector<std::uint32_t> holds;    // per slot: the version that was written to it last, or none
     std::vector<std::uint8_t> turned;    // per slot: was swapped with its history in this frame
     std::vector<std::uint32_t> imports;  // resources that the host must provide
-    std::vector<std::uint8_t>
-        need;  // per step, and one more for versions that no step makes: scratch of a frame
-    std::vector<Content> contents;  // per version id; empty without verification
+    std::vector<std::uint8_t> need;      // scratch: per step, and one more for versions that no step makes
+    std::vector<Content> contents;       // per version id; empty without verification
 
     [[nodiscard]] std::uint32_t step_count() const { return static_cast<std::uint32_t>(steps.size()); }
 };
 
+/// Calls a function at the end of its own lifetime.
+template <class F>
+class OnExit {
+ public:
+    explicit OnExit(F function) : function_(std::move(function)) {}
+    OnExit(const OnExit&) = delete;
+    OnExit& operator=(const OnExit&) = delete;
+    ~OnExit() { function_(); }
+
+ private:
+    F function_;
+};
+
 /// The state of a graph that has not run. The slots have no objects yet.
 [[nodiscard]] State make_state(const CompiledGraph& graph);
-
-/// Per step: whether verification may run it again after a frame. Excluded are
-/// - passes with side effects and passes that write imports,
-/// - passes that read a history or have declared Pass::keeps_state,
-/// - passes with a missing input that only an excluded pass could make again, and
-/// - passes that would overwrite an output of an excluded pass.
-[[nodiscard]] std::vector<std::uint8_t> repeatable_steps(const State& state);
 
 /// Takes over from `before` what both graphs declare in the same way: slots (objects and values), stamps, and
 /// the records of passes. Returns, for each slot of `before`, whether it was taken over.

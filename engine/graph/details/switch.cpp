@@ -1,62 +1,49 @@
 #include <algorithm>
+#include <functional>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
 #include <candela/graph/execute.hpp>
-#include "engine/graph/details/index_table.hpp"
 #include "engine/graph/details/state.hpp"
 
 namespace candela {
 namespace {
 
 std::size_t hash_of(const detail::Slot& slot) {
-    return slot.kind == ResourceKind::texture ? detail::hash_of(slot.texture) : detail::hash_of(slot.buffer);
+    return std::hash<std::string>{}(slot.name) ^ slot.declared.hash();
 }
 
-bool alike(const detail::Slot& a, const detail::Slot& b) {
-    return a.kind == b.kind && a.texture == b.texture && a.buffer == b.buffer;
+std::uint64_t byte_size(const detail::Slot& slot) {
+    if (slot.view) return 0;
+    return slot.storage.kind == ResourceKind::texture ? byte_size(slot.storage.texture)
+                                                      : byte_size(slot.storage.buffer);
 }
 
-/// Unused objects that slots can take. A slot whose object was taken has object 0.
+/// Unused objects that other slots can take. A slot whose object was taken has object 0.
 class UnusedObjects {
  public:
-    explicit UnusedObjects(std::vector<detail::Slot>& slots) : slots_(slots) {
-        for (std::size_t index = 0; index < slots.size(); ++index) {
-            if (slots[index].kept_as.empty()) {
-                by_hash_.emplace(hash_of(slots[index]), index);
-            } else {
-                by_name_.emplace(slots[index].kept_as, index);
-            }
+    explicit UnusedObjects(std::vector<detail::Slot>& slots) {
+        for (detail::Slot& slot : slots) {
+            by_hash_.emplace(hash_of(slot), &slot);
         }
     }
 
-    /// Gives the slot a matching object if there is one. A persistent object matches by its key (`kept_as`)
-    /// and keeps its current description, which may be larger than declared.
+    /// Gives the slot an object that was declared alike, if there is one. A persistent object keeps its
+    /// current storage, which may be larger than declared.
     void provide(detail::Slot& wanted) {
-        if (wanted.kept_as.empty()) {
-            const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
-            const auto found = std::find_if(
-                first, last, [&](const auto& entry) { return alike(slots_[entry.second], wanted); });
-            if (found != last) {
-                take(wanted, found->second);
-                by_hash_.erase(found);
-            }
-        } else if (const auto found = by_name_.find(wanted.kept_as); found != by_name_.end()) {
-            take(wanted, found->second);
-            by_name_.erase(found);
-        }
+        const auto [first, last] = by_hash_.equal_range(hash_of(wanted));
+        const auto found = std::find_if(first, last, [&](const auto& entry) {
+            return entry.second->name == wanted.name && entry.second->declared == wanted.declared;
+        });
+        if (found == last) return;
+        wanted.object = std::exchange(found->second->object, 0);
+        wanted.storage = found->second->storage;
+        by_hash_.erase(found);
     }
 
  private:
-    void take(detail::Slot& wanted, std::size_t index) {
-        wanted.object = std::exchange(slots_[index].object, 0);
-        wanted.texture = slots_[index].texture;
-        wanted.buffer = slots_[index].buffer;
-    }
-
-    std::vector<detail::Slot>& slots_;
-    std::unordered_multimap<std::size_t, std::size_t> by_hash_;
-    std::unordered_multimap<std::string, std::size_t> by_name_;
+    std::unordered_multimap<std::size_t, detail::Slot*> by_hash_;
 };
 
 }  // namespace
@@ -135,13 +122,14 @@ void GraphRuntime::provide_objects(const CompiledGraph& graph, detail::State& st
 }
 
 void GraphRuntime::create(detail::Slot& slot, std::string_view name) {
-    slot.object = slot.kind == ResourceKind::texture ? backend_.create_texture(name, slot.texture)
-                                                     : backend_.create_buffer(name, slot.buffer);
+    slot.object = slot.storage.kind == ResourceKind::texture
+                      ? backend_.create_texture(name, slot.storage.texture)
+                      : backend_.create_buffer(name, slot.storage.buffer);
 }
 
 void GraphRuntime::destroy(const detail::Slot& slot) {
     if (!slot.owned || slot.object == 0) return;
-    if (slot.kind == ResourceKind::texture) {
+    if (slot.storage.kind == ResourceKind::texture) {
         backend_.destroy_texture(slot.object);
     } else {
         backend_.destroy_buffer(slot.object);
@@ -150,21 +138,16 @@ void GraphRuntime::destroy(const detail::Slot& slot) {
 
 MemoryUse GraphRuntime::memory() const {
     MemoryUse use;
-    const auto bytes = [](const detail::Slot& slot) {
-        if (slot.view) return std::uint64_t{0};
-        return slot.kind == ResourceKind::texture ? byte_size(slot.texture) : byte_size(slot.buffer);
-    };
     const auto add = [&](const detail::Slot& slot) {
-        if (slot.owned) {
-            (slot.kind == ResourceKind::texture ? use.texture_bytes : use.buffer_bytes) += bytes(slot);
-        }
+        const bool texture = slot.storage.kind == ResourceKind::texture;
+        if (slot.owned) (texture ? use.texture_bytes : use.buffer_bytes) += byte_size(slot);
     };
     for (const detail::Slot& slot : state_->slots) {
         add(slot);
     }
     for (const detail::Slot& slot : free_pool_) {
         add(slot);
-        use.free_pool_bytes += bytes(slot);
+        use.free_pool_bytes += byte_size(slot);
     }
     if (!graph_) return use;
     for (std::uint32_t index = 0; index < graph_->declared().resources.size(); ++index) {
@@ -172,7 +155,7 @@ MemoryUse GraphRuntime::memory() const {
         const std::uint32_t object = graph_->plan().object[index];
         if (resource.lifetime != Lifetime::transient || object == detail::none) continue;
         if (graph_->plan().owner[object] != index) {
-            use.shared_by_aliasing_bytes += bytes(state_->slots[object]);
+            use.shared_by_aliasing_bytes += byte_size(state_->slots[object]);
         }
     }
     return use;

@@ -13,7 +13,7 @@ namespace candela {
 
 namespace detail {
 
-class Declaration;
+struct Declaration;
 struct Plan;
 
 }  // namespace detail

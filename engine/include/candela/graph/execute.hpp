@@ -32,6 +32,7 @@ struct Resource;
 struct Slot;
 struct State;
 struct Step;
+struct Storage;
 
 /// A value of any type, with how to compare it: null if the type has no operator==. Values are replaced,
 /// never modified.
@@ -141,6 +142,7 @@ class CANDELA_API Execution {
     [[nodiscard]] const void* previous_content(ResourceHandle value) const;
     void reserve_buffer(ResourceHandle buffer, std::uint64_t count);
     [[nodiscard]] detail::Slot& reservable(ResourceHandle handle) const;
+    void replace(ResourceHandle handle, const detail::Storage& wanted);
 
     GraphRuntime& runtime_;
     const World& world_;
@@ -265,8 +267,6 @@ class CANDELA_API GraphRuntime {
     void run_step(Execution& execution, bool changed);
     void begin_outputs(const detail::Step& step);
     void begin_pass(std::uint32_t position);
-    void bind_resources(std::uint32_t position);
-    void rebind(std::uint32_t position, std::uint32_t resource);
     void bind(const detail::Bound& bound);
     void keep_record(detail::Step& step, const World& world, bool changed);
     [[nodiscard]] bool has_results(const detail::Step& step) const;

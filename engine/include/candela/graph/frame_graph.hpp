@@ -26,7 +26,7 @@ struct CompileResult;
 
 namespace detail {
 
-class Declaration;
+struct Declaration;
 
 /// Compares two objects of type T.
 template <class T>
