@@ -19,7 +19,6 @@ constexpr std::array bindings{
     KeyBinding{GLFW_KEY_H, 0, Action::help, "H", "show or hide these keys"},
     KeyBinding{GLFW_KEY_F11, 0, Action::full_screen, "F11", "full screen, and back"},
     KeyBinding{GLFW_KEY_F12, 0, Action::screenshot, "F12", "save a screenshot"},
-    KeyBinding{GLFW_KEY_F12, shift, Action::sequence, "Shift+F12", "save each new picture, or stop that"},
     KeyBinding{GLFW_KEY_O, control, Action::open_scene, "Ctrl+O", "open a scene"},
     KeyBinding{GLFW_KEY_S, control, Action::save_scene, "Ctrl+S", "save the scene as glTF"},
     KeyBinding{GLFW_KEY_S, control | shift, Action::save_configuration, "Ctrl+Shift+S", "save the configuration"},

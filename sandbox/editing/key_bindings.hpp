@@ -36,7 +36,6 @@ enum class Action : std::uint8_t {
     save_configuration,
     record_drag,
     screenshot,
-    sequence,
     full_screen,
     panel,
     help,

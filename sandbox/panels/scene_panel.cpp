@@ -24,7 +24,7 @@ namespace {
 
 constexpr float any = std::numeric_limits<float>::max();
 
-void draw_files(std::vector<Action>& wanted, const AppState& state) {
+void draw_files(std::vector<Action>& wanted) {
     if (button("open", "Ctrl+O: another scene; or drop a file on the window")) {
         wanted.push_back(Action::open_scene);
     }
@@ -35,11 +35,6 @@ void draw_files(std::vector<Action>& wanted, const AppState& state) {
     ImGui::SameLine();
     if (button("screenshot", "F12: the picture as PNG, in the current folder")) {
         wanted.push_back(Action::screenshot);
-    }
-    ImGui::SameLine();
-    if (button(state.sequence ? "end sequence###sequence" : "sequence###sequence",
-               "Shift+F12: saves each new picture as a numbered PNG, in the current folder")) {
-        wanted.push_back(Action::sequence);
     }
 }
 
@@ -272,7 +267,7 @@ void draw_account(const Report& report) {
 std::vector<Action> draw_scene_panel(Document& document, const AppState& state, const Report* report) {
     std::vector<Action> wanted;
     const World& world = document.scene.world;
-    draw_files(wanted, state);
+    draw_files(wanted);
     draw_history(document.interaction);
     draw_cameras(world, document.interaction);
     ImGui::Separator();

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include <candela/configuration.hpp>
 
 namespace candela::sandbox {
@@ -27,14 +25,6 @@ struct Comparison {
     float factor = 8.0F;          ///< of differences
 };
 
-/// A series of pictures that is being saved: "candela-001-0000.png", "candela-001-0001.png", ...
-struct PictureSequence {
-    std::string start;  ///< of the names of the files: "candela-001"
-    int next = 0;       ///< number of the next file
-
-    [[nodiscard]] std::string next_file() { return fmt::format("{}-{:04}.png", start, next++); }
-};
-
 /// What the user has chosen to see, and what the app has to say about it. Panels change it; the session acts
 /// on it.
 struct AppState {
@@ -42,8 +32,7 @@ struct AppState {
     Comparison comparison;
     bool panel = true;
     bool help = false;
-    std::optional<PictureSequence> sequence;  ///< set: each new picture is saved
-    bool vpls = false;                        ///< VPLs are shown as dots
+    bool vpls = false;  ///< VPLs are shown as dots
     /// The path tracer's picture of what is shown is refined in the background, and compared with it.
     bool reference = false;
     /// What the scene's file asks for and the picture lacks, and what the renderer left out.

@@ -1,5 +1,7 @@
 // What the session of a window does when the user has chosen it.
 
+#include <filesystem>
+#include <future>
 #include <stdexcept>
 #include <utility>
 
@@ -7,6 +9,7 @@
 
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/numbered_file.hpp"
+#include "sandbox/files/picture.hpp"
 #include "sandbox/files/recent_files.hpp"
 #include "sandbox/scene/environment.hpp"
 #include "sandbox/window/save_commands.hpp"
@@ -31,9 +34,7 @@ void WindowSession::carry_out(const Command& command) {
         case Action::record_drag:
             return attempt([&] { app.notice = toggle_recording(*state_.document); });
         case Action::screenshot:
-            return save_picture(next_numbered_file(".png"));
-        case Action::sequence:
-            return toggle_sequence();
+            return save_picture();
         case Action::full_screen:
             return window_.toggle_full_screen();
         case Action::cancel:
@@ -77,21 +78,20 @@ void WindowSession::save_scene() {
     state_.app.notice = written(saved.path);
 }
 
-void WindowSession::save_picture(const std::filesystem::path& path) {
+/// In another thread, so that the window does not wait for the compression. A picture before it is finished
+/// first: their numbers follow from the files that are there.
+void WindowSession::save_picture() {
     if (!state_.shown) return;
+    if (saved_picture_.valid()) saved_picture_.wait();
+    take_saved_picture();
     const FinishedTexture& picture = state_.shown->picture;
-    writer_.write(path, picture.size, gl::read_texels(device_.gl(), picture.texture, picture.size));
-}
-
-void WindowSession::toggle_sequence() {
-    AppState& app = state_.app;
-    if (app.sequence) {
-        app.sequence.reset();
-        app.notice.clear();
-        return;
-    }
-    app.sequence = PictureSequence{.start = next_numbered_file("").string()};
-    app.notice = fmt::format("saving each new picture as {}-0000.png, ...", app.sequence->start);
+    saved_picture_ = std::async(
+        std::launch::async,
+        [size = picture.size, texels = gl::read_texels(device_.gl(), picture.texture, picture.size)] {
+            std::filesystem::path path = next_numbered_file(".png");
+            write_png(path, size, rgb_of_texels(size, texels));
+            return path;
+        });
 }
 
 void WindowSession::report_errors(std::vector<std::string> errors) {

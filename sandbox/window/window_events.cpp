@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <chrono>
+#include <future>
 #include <iterator>
 #include <stdexcept>
 #include <utility>
@@ -49,7 +51,7 @@ void WindowSession::take(const InputEvent& event) {
 void WindowSession::take_news() {
     take_loaded_scene();
     for (const std::filesystem::path& file : window_.take_dropped_files()) take_dropped_file(file);
-    take_written_pictures();
+    take_saved_picture();
     take_saved_configuration();
     take_saved_shaders();
     take_warnings();
@@ -71,7 +73,6 @@ void WindowSession::take_loaded_scene() {
     if (!first) {
         state_.app.errors.clear();
         state_.app.notice.clear();
-        state_.app.sequence.reset();
         add_recent_file(recent_files_list(), std::filesystem::absolute(state_.document->scene.path));
     }
     announce_scene();
@@ -97,15 +98,12 @@ void WindowSession::take_dropped_file(const std::filesystem::path& file) {
     });
 }
 
-void WindowSession::take_written_pictures() {
-    for (PictureWriter::Result& result : writer_.take_results()) {
-        redraw_.changed();
-        if (result.error.empty()) {
-            state_.app.notice = written(result.path);
-        } else {
-            report_errors({std::move(result.error)});
-        }
-    }
+void WindowSession::take_saved_picture() {
+    const bool is_ready = saved_picture_.valid() &&
+                          saved_picture_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (!is_ready) return;
+    redraw_.changed();
+    attempt([&] { state_.app.notice = written(saved_picture_.get()); });
 }
 
 void WindowSession::take_saved_configuration() {
@@ -138,10 +136,8 @@ void WindowSession::show(RenderedFrame frame) {
     }
     if (frame.input) answered_input_ = frame.input;
     if (!frame.report && state_.shown) frame.report = state_.shown->report;
-    const bool is_new = !state_.shown || frame.request != state_.shown->request;
     state_.shown = std::move(frame);
     if (state_.shown->radiance) measure_error();
-    if (state_.app.sequence && is_new) save_picture(state_.app.sequence->next_file());
 }
 
 /// Errors of a frame stay until a frame of the newest request has none.

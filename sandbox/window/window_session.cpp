@@ -46,7 +46,7 @@ void WindowSession::run() {
 
 bool WindowSession::stop() {
     constexpr double patience = 0.2;  // seconds
-    writer_.finish();
+    if (saved_picture_.valid()) saved_picture_.wait();
     loader_.cancel();
     return thread_->stop(patience) && loader_.is_idle();
 }

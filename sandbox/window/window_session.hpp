@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,7 +21,6 @@
 #include "sandbox/files/save_watch.hpp"
 #include "sandbox/panels/open_panel.hpp"
 #include "sandbox/window/gui.hpp"
-#include "sandbox/window/picture_writer.hpp"
 #include "sandbox/window/redraw.hpp"
 #include "sandbox/window/reference_view.hpp"
 #include "sandbox/window/render_thread.hpp"
@@ -83,7 +83,7 @@ class WindowSession {
     void take_news();
     void take_loaded_scene();
     void take_dropped_file(const std::filesystem::path& file);
-    void take_written_pictures();
+    void take_saved_picture();
     void take_saved_configuration();
     void take_saved_shaders();
     void take_warnings();
@@ -104,8 +104,7 @@ class WindowSession {
     void open(const std::filesystem::path& path);
     void close_what_is_open();
     void save_scene();
-    void save_picture(const std::filesystem::path& path);
-    void toggle_sequence();
+    void save_picture();
     void report_errors(std::vector<std::string> errors);
     void announce_scene();
 
@@ -115,7 +114,7 @@ class WindowSession {
     SaveWatch shader_saves_;
     Gui gui_;
     gl::Device device_{Window::functions(), gl::DebugOutput::off};
-    PictureWriter writer_{Window::wake};
+    std::future<std::filesystem::path> saved_picture_;  ///< that another thread is writing
     Lines warnings_;
     SessionState state_;
     std::optional<UiLog> log_;
