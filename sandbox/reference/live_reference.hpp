@@ -40,6 +40,7 @@ struct ReferenceRequest {
     bool antialiased = false;
     unsigned threads = 0;           ///< 0: half of the machine's cores, but at least one
     std::uint32_t samples = 16384;  ///< paths per pixel after which the work ends; even
+    bool operator==(const ReferenceRequest&) const = default;
 };
 
 /// A reference that gets better in the background, on threads of low priority, with unlimited bounces. Its

@@ -4,18 +4,8 @@
 
 namespace candela::sandbox {
 
-namespace {
-
-bool same(const ReferenceRequest& a, const ReferenceRequest& b) {
-    return a.world == b.world && a.camera == b.camera && a.size == b.size && a.antialiased == b.antialiased;
-}
-
-}  // namespace
-
 void ReferenceView::follow(const std::optional<ReferenceRequest>& request) {
-    if (!tracer_) return;
-    const bool unchanged = request && request_ ? same(*request, *request_) : !request && !request_;
-    if (unchanged) return;
+    if (!tracer_ || request == request_) return;
     request_ = request;
     picture_.reset();
     radiance_.reset();
