@@ -1,6 +1,7 @@
 // Access to resources: of running passes, and of the host.
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,6 +12,19 @@
 namespace candela {
 
 using detail::none;
+
+namespace {
+
+/// Whether the pass at `position` has declared an access to the resource that suits.
+template <class Suits>
+bool declares(const CompiledGraph& graph, std::uint32_t position, ResourceHandle handle, Suits suits) {
+    const auto accesses = graph.declared().accesses_of(graph.plan().order[position]);
+    return std::ranges::any_of(accesses, [&](const detail::Access& access) {
+        return access.resource == handle.resource && std::invoke(suits, access);
+    });
+}
+
+}  // namespace
 
 const detail::Resource& GraphRuntime::resource(ResourceHandle handle) const {
     if (!graph_) throw GraphError("there is no frame graph");
@@ -74,15 +88,10 @@ ObjectId GraphRuntime::object(ResourceHandle handle) const {
 
 detail::Slot& Execution::slot(ResourceHandle handle, bool write) const {
     const detail::Resource& resource = runtime_.resource(handle);
-    const CompiledGraph& graph = *runtime_.graph_;
-    const std::uint32_t pass = graph.plan().order[position_];
-    for (const detail::Access& access : graph.declared().accesses_of(pass)) {
-        if (access.resource == handle.resource && (access.write || !write)) {
-            return *runtime_.slot_of(handle.resource);
-        }
-    }
+    const auto suits = [=](const detail::Access& access) { return access.write || !write; };
+    if (declares(*runtime_.graph_, position_, handle, suits)) return *runtime_.slot_of(handle.resource);
     throw GraphError(fmt::format("pass '{}' {} {} without having declared it",
-                                 graph.declared().passes[pass].name, write ? "writes" : "uses",
+                                 runtime_.state_->steps[position_].name, write ? "writes" : "uses",
                                  resource.title()));
 }
 
@@ -112,14 +121,10 @@ const void* Execution::content(ResourceHandle value) const {
 
 const void* Execution::previous_content(ResourceHandle value) const {
     const detail::Slot& held = slot(value, true);
-    const CompiledGraph& graph = *runtime_.graph_;
-    const std::uint32_t pass = graph.plan().order[position_];
-    const auto updates = [&](const detail::Access& access) {
-        return access.resource == value.resource && access.update;
-    };
-    if (!std::ranges::any_of(graph.declared().accesses_of(pass), updates)) {
+    if (!declares(*runtime_.graph_, position_, value, &detail::Access::update)) {
         throw GraphError(fmt::format("pass '{}' asks for the previous content of {}, but does not update it",
-                                     graph.declared().passes[pass].name, runtime_.resource(value).title()));
+                                     runtime_.state_->steps[position_].name,
+                                     runtime_.resource(value).title()));
     }
     return runtime_.repeating_ ? nullptr : held.value.content.get();
 }
@@ -129,18 +134,19 @@ bool Execution::changed(ResourceHandle read) const {
     const detail::State& state = *runtime_.state_;
     const detail::Plan& plan = runtime_.graph_->plan();
     const detail::Step& step = state.steps[position_];
-    if (resource.first_part != none) {
-        (void)slot(read, false);
-        return has_no_result_ || std::ranges::any_of(step.inputs, [&](const detail::Input& input) {
-                   return runtime_.graph_->declared().resources[plan.resource(input.version)].part_of ==
-                              read.resource &&
-                          state.versions[input.version].stamp != input.stamp;
-               });
-    }
+    const auto is_part = [&](std::uint32_t version) {
+        return resource.first_part != none &&
+               runtime_.graph_->declared().resources[plan.resource(version)].part_of == read.resource;
+    };
     const std::uint32_t version = plan.version(read.resource, read.version);
+    bool is_input = false;
+    bool differs = has_no_result_;
     for (const detail::Input& input : step.inputs) {
-        if (input.version == version) return has_no_result_ || state.versions[version].stamp != input.stamp;
+        if (input.version != version && !is_part(input.version)) continue;
+        is_input |= input.version == version;
+        differs |= state.versions[input.version].stamp != input.stamp;
     }
+    if (is_input) return differs;
     throw GraphError(fmt::format("pass '{}' asks whether {} has changed without having declared it",
                                  step.name, resource.title()));
 }
@@ -157,19 +163,18 @@ bool Execution::history_valid(TextureHandle history) const {
 
 detail::Slot& Execution::reservable(ResourceHandle handle) const {
     detail::Slot& found = slot(handle, true);
-    const CompiledGraph& graph = *runtime_.graph_;
-    const std::uint32_t pass = graph.plan().order[position_];
-    const auto accesses = graph.declared().accesses_of(pass);
-    const bool from_start = std::any_of(accesses.begin(), accesses.end(), [&](const detail::Access& access) {
-        return access.write && access.resource == handle.resource && access.version == 1 &&
-               access.usage != Usage::colour_target && access.usage != Usage::depth_target;
-    });
+    const auto suits = [](const detail::Access& access) {
+        return access.write && access.version == 1 && access.usage != Usage::colour_target &&
+               access.usage != Usage::depth_target;
+    };
     const detail::Resource& resource = runtime_.resource(handle);
-    if (from_start && resource.lifetime == Lifetime::persistent) return found;
+    if (resource.lifetime == Lifetime::persistent && declares(*runtime_.graph_, position_, handle, suits)) {
+        return found;
+    }
     throw GraphError(fmt::format(
         "pass '{}' reserves {}, but may only what is persistent and what it writes from version 0, "
         "not as a target",
-        graph.declared().passes[pass].name, resource.title()));
+        runtime_.state_->steps[position_].name, resource.title()));
 }
 
 void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {

@@ -10,8 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/graph/details/barriers.hpp"
-#include "engine/graph/details/objects.hpp"
+#include "engine/graph/details/plan.hpp"
 
 namespace candela {
 namespace detail {
@@ -68,8 +67,7 @@ void number_versions(const Declaration& declared, Plan& plan) {
 
 bool is_root(const Declaration& declared, std::uint32_t pass) {
     if (declared.passes[pass].side_effect) return true;
-    const auto accesses = declared.accesses_of(pass);
-    return std::any_of(accesses.begin(), accesses.end(), [&](const Access& access) {
+    return std::ranges::any_of(declared.accesses_of(pass), [&](const Access& access) {
         return access.write && declared.resources[access.resource].lifetime == Lifetime::imported;
     });
 }
@@ -147,9 +145,8 @@ CompileResult compile(FrameGraph&& graph) {
     if (!declared->errors.empty()) return {std::nullopt, std::move(declared->errors)};
     detail::number_versions(*declared, *plan);
     plan->order = detail::needed_passes(*declared, *plan);
-    detail::plan_lifetimes(*declared, *plan);
     detail::plan_objects(*declared, *plan);
-    plan->barrier = detail::plan_barriers(*declared, *plan);
+    detail::plan_barriers(*declared, *plan);
     return {CompiledGraph(std::move(declared), std::move(plan)), {}};
 }
 

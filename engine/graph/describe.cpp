@@ -199,12 +199,9 @@ Json pass_json(const GraphDescription& graph, const DescribedPass& pass) {
               {"kind", pass.gpu ? "gpu" : "cpu"},
               {"side_effect", pass.side_effect},
               {"barrier", to_string(pass.barrier)},
-              {"world", Json::array()},
+              {"world", Json::array(std::vector<Json>(pass.components.begin(), pass.components.end()))},
               {"reads", Json::array()},
               {"writes", Json::array()}};
-    for (const std::string& component : pass.components) {
-        json["world"].push_back(component);
-    }
     for (const DescribedAccess& access : pass.accesses) {
         Json entry{{"resource", name_of(graph, access.resource, access.history)},
                    {"version", access.version}};
@@ -291,12 +288,11 @@ std::string describe_dot(const GraphDescription& graph) {
 }
 
 std::string describe_json(const GraphDescription& graph) {
-    Json json{{"passes", Json::array()}, {"culled", Json::array()}, {"resources", Json::array()}};
+    Json json{{"passes", Json::array()},
+              {"culled", Json::array(std::vector<Json>(graph.culled.begin(), graph.culled.end()))},
+              {"resources", Json::array()}};
     for (const DescribedPass& pass : graph.passes) {
         json["passes"].push_back(pass_json(graph, pass));
-    }
-    for (const std::string& pass : graph.culled) {
-        json["culled"].push_back(pass);
     }
     for (const DescribedResource& resource : graph.resources) {
         json["resources"].push_back(resource_json(resource));

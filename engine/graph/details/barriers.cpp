@@ -1,8 +1,8 @@
-#include "engine/graph/details/barriers.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
+
+#include "engine/graph/details/plan.hpp"
 
 namespace candela::detail {
 namespace {
@@ -15,14 +15,40 @@ std::size_t index_of(Barrier bit) {
     return static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(bit)));
 }
 
+/// The barrier bit that orders an access after incoherent writes.
+Barrier barrier_for(ResourceKind kind, Usage usage) {
+    const bool texture = kind == ResourceKind::texture;
+    switch (usage) {
+        case Usage::sampled:
+        case Usage::compared:
+            return Barrier::texture_fetch;
+        case Usage::storage:
+            return texture ? Barrier::image_access : Barrier::storage;
+        case Usage::uniform:
+            return Barrier::uniform;
+        case Usage::vertex:
+            return Barrier::vertex_attrib;
+        case Usage::index:
+            return Barrier::element;
+        case Usage::indirect:
+            return Barrier::command;
+        case Usage::copy:
+            return texture ? Barrier::texture_update : Barrier::buffer_update;
+        case Usage::colour_target:
+        case Usage::depth_target:
+        case Usage::layer_target:
+            return Barrier::framebuffer;
+    }
+    return Barrier::none;
+}
+
 bool incoherent(const Access& access) {
     return access.write && access.usage == Usage::storage;
 }
 
 bool any_incoherent(const Declaration& declared, const Plan& plan) {
-    return std::any_of(plan.order.begin(), plan.order.end(), [&](std::uint32_t pass) {
-        const auto accesses = declared.accesses_of(pass);
-        return std::any_of(accesses.begin(), accesses.end(), incoherent);
+    return std::ranges::any_of(plan.order, [&](std::uint32_t pass) {
+        return std::ranges::any_of(declared.accesses_of(pass), incoherent);
     });
 }
 
@@ -83,35 +109,10 @@ class Timeline {
 
 }  // namespace
 
-Barrier barrier_for(ResourceKind kind, Usage usage) {
-    const bool texture = kind == ResourceKind::texture;
-    switch (usage) {
-        case Usage::sampled:
-        case Usage::compared:
-            return Barrier::texture_fetch;
-        case Usage::storage:
-            return texture ? Barrier::image_access : Barrier::storage;
-        case Usage::uniform:
-            return Barrier::uniform;
-        case Usage::vertex:
-            return Barrier::vertex_attrib;
-        case Usage::index:
-            return Barrier::element;
-        case Usage::indirect:
-            return Barrier::command;
-        case Usage::copy:
-            return texture ? Barrier::texture_update : Barrier::buffer_update;
-        case Usage::colour_target:
-        case Usage::depth_target:
-        case Usage::layer_target:
-            return Barrier::framebuffer;
-    }
-    return Barrier::none;
-}
-
-std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan) {
-    std::vector<Barrier> barriers(plan.order.size(), Barrier::none);
-    if (!any_incoherent(declared, plan)) return barriers;
+void plan_barriers(const Declaration& declared, Plan& plan) {
+    std::vector<Barrier>& barriers = plan.barrier;
+    barriers.assign(plan.order.size(), Barrier::none);
+    if (!any_incoherent(declared, plan)) return;
 
     // The object of a history is overwritten two frames after it was written, so after two frames every
     // hazard is known.
@@ -152,7 +153,6 @@ std::vector<Barrier> plan_barriers(const Declaration& declared, const Plan& plan
         barriers[bit.first] =
             static_cast<Barrier>(static_cast<std::uint32_t>(barriers[bit.first]) & ~(1U << index));
     }
-    return barriers;
 }
 
 }  // namespace candela::detail

@@ -1,6 +1,6 @@
-#include "engine/graph/details/objects.hpp"
-
 #include <unordered_set>
+
+#include "engine/graph/details/plan.hpp"
 
 namespace candela::detail {
 namespace {
@@ -84,7 +84,7 @@ class Objects {
 
 }  // namespace
 
-void plan_lifetimes(const Declaration& declared, Plan& plan) {
+void plan_objects(const Declaration& declared, Plan& plan) {
     plan.lifetime.assign(declared.resources.size(), {});
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {
         for (const Access& access : declared.accesses_of(plan.order[position])) {
@@ -93,9 +93,6 @@ void plan_lifetimes(const Declaration& declared, Plan& plan) {
             span.last = position;
         }
     }
-}
-
-void plan_objects(const Declaration& declared, Plan& plan) {
     plan.object.assign(declared.resources.size(), none);
     Objects objects(declared, plan);
     for (std::uint32_t position = 0; position < plan.order.size(); ++position) {

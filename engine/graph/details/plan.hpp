@@ -46,4 +46,17 @@ struct Plan {
     }
 };
 
+// The last steps of compiling, once `plan` has its order and versions.
+
+/// Fills in lifetimes and objects. Transients of the same kind and description share an object if their
+/// lifetimes do not overlap; a resource with a history has two objects; every other resource has its own.
+void plan_objects(const Declaration& declared, Plan& plan);
+
+/// Fills in the barriers, for a frame that is repeated in full.
+///
+/// Between an incoherent write and each later access of the same object there must be a barrier with the bit
+/// of the later access (OpenGL 4.5, section 7.13.2); likewise between a read and each later incoherent write.
+/// One barrier serves all such pairs that it lies between.
+void plan_barriers(const Declaration& declared, Plan& plan);
+
 }  // namespace candela::detail
