@@ -25,8 +25,9 @@ void check_passes(Declaration& declared) {
         while (table[at].data() && table[at] != pass.name) {
             at = (at + 1) & (table.size() - 1);
         }
-        if (table[at].data())
+        if (table[at].data()) {
             declared.error(ErrorCode::duplicate_pass, "two passes are called '{}'", pass.name);
+        }
         table[at] = pass.name;
     }
 }

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
-#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 

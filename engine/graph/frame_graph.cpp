@@ -29,10 +29,11 @@ std::uint32_t make_identity(const void* address) {
 /// `name` is stored in the arena.
 ResourceHandle add_resource(Declaration& declared, std::string_view name, const detail::Storage& storage,
                             Lifetime lifetime) {
-    const bool repeats = !declared.resources.empty() && *declared.resources.back().storage == storage;
+    const detail::Storage* const last =
+        declared.resources.empty() ? nullptr : declared.resources.back().storage;
     Resource& added = declared.resources.emplace_back();
     added.name = name;
-    added.storage = repeats ? (&added - 1)->storage : declared.arena.store(storage);
+    added.storage = last && *last == storage ? last : declared.arena.store(storage);
     added.lifetime = lifetime;
     return {declared.id, detail::size_of(declared.resources) - 1, 0};
 }

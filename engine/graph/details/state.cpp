@@ -6,104 +6,52 @@
 namespace candela::detail {
 namespace {
 
-class StateMaker {
- public:
-    explicit StateMaker(const CompiledGraph& graph) : declared_(graph.declared()), plan_(graph.plan()) {}
-
-    State make() {
-        const auto step_count = static_cast<std::uint32_t>(plan_.order.size());
-        state_.versions.assign(plan_.writer.size(), {.producer = step_count});
-        for (std::uint32_t position = 0; position < plan_.order.size(); ++position) {
-            add_step(position);
+Step make_step(const Declaration& declared, const Plan& plan, std::uint32_t position) {
+    const std::uint32_t pass = plan.order[position];
+    const PassNode& node = declared.passes[pass];
+    Step step{.invoke = node.invoke,
+              .function = node.function,
+              .name = node.name,
+              .barrier = plan.barrier[position],
+              .side_effect = node.side_effect,
+              .keeps_state = node.keeps_state};
+    for (const ComponentRead& read : declared.components_of(pass)) {
+        step.revisions.push_back({read.revision});
+    }
+    for (const Access& access : declared.accesses_of(pass)) {
+        const Resource& resource = declared.resources[access.resource];
+        const ResourceKind kind = resource.storage->kind;
+        const std::uint32_t slot = plan.object[access.resource];
+        const bool history = resource.history_of != none;
+        const bool replaces = access.write && access.version == 1;
+        if (access.write) {
+            step.outputs.push_back({plan.version(access.resource, access.version), slot,
+                                    kind == ResourceKind::value, resource.history != none && replaces});
+            step.writes_import |= resource.lifetime == Lifetime::imported;
         }
-        add_slots();
-        state_.need.resize(state_.steps.size() + 1);
-        state_.turned.resize(plan_.owner.size());
-        return std::move(state_);
-    }
-
- private:
-    void add_step(std::uint32_t position) {
-        const std::uint32_t pass = plan_.order[position];
-        const PassNode& node = declared_.passes[pass];
-        Step step;
-        step.invoke = node.invoke;
-        step.function = node.function;
-        step.name = node.name;
-        step.barrier = plan_.barrier[position];
-        step.side_effect = node.side_effect;
-        step.keeps_state = node.keeps_state;
-        for (const Access& access : declared_.accesses_of(pass)) {
-            const Resource& resource = declared_.resources[access.resource];
-            if (access.write) {
-                add_output(step, access, position);
-                step.writes_import |= resource.lifetime == Lifetime::imported;
-            }
-            step.keeps_state |= resource.history_of != none;
-            add_input(step, access, pass);
-            add_target(step, access);
-            add_bound(step, access);
-        }
-        for (const ComponentRead& read : declared_.components_of(pass)) {
-            step.revisions.push_back({read.revision});
-        }
-        state_.steps.push_back(std::move(step));
-    }
-
-    void add_output(Step& step, const Access& access, std::uint32_t position) {
-        const Resource& resource = declared_.resources[access.resource];
-        const std::uint32_t version = plan_.version(access.resource, access.version);
-        const bool swaps_history = resource.history != none && access.version == 1;
-        state_.versions[version].producer = position;
-        state_.versions[version].present = false;
-        step.outputs.push_back({version, plan_.object[access.resource],
-                                resource.storage->kind == ResourceKind::value, swaps_history});
-    }
-
-    void add_input(Step& step, const Access& access, std::uint32_t pass) const {
-        const bool history = declared_.resources[access.resource].history_of != none;
-        if (history || (access.write && access.version == 1)) return;
-        const std::uint32_t version = plan_.needed_version(declared_, access);
-        if (plan_.writer[version] != pass) step.inputs.push_back({version});
-    }
-
-    void add_target(Step& step, const Access& access) const {
-        if (declared_.resources[access.resource].storage->kind != ResourceKind::texture) return;
+        step.keeps_state |= history;
+        const std::uint32_t needed = plan.needed_version(declared, access);
+        if (!history && !replaces && plan.writer[needed] != pass) step.inputs.push_back({needed});
         const bool depth = access.usage == Usage::depth_target;
-        if (depth || access.usage == Usage::colour_target) {
-            step.targets.push_back({plan_.object[access.resource], depth});
+        if (kind == ResourceKind::texture && (depth || access.usage == Usage::colour_target)) {
+            step.targets.push_back({slot, depth});
         }
-    }
-
-    static void add_bound(Step& step, const Access& access) {
         if (access.point != Binding::unbound || access.usage == Usage::indirect) {
             step.bound.push_back({access.resource, {access.usage, access.point}});
         }
     }
+    return step;
+}
 
-    void add_slots() {
-        state_.holds.assign(plan_.owner.size(), none);
-        state_.slots.resize(plan_.owner.size());
-        for (std::uint32_t object = 0; object < plan_.owner.size(); ++object) {
-            const Resource& resource = declared_.resources[plan_.owner[object]];
-            Slot& slot = state_.slots[object];
-            slot.storage = *resource.storage;
-            slot.owned =
-                resource.storage->kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
-            slot.view = resource.part_of != none;
-            slot.declared = slot.view ? *declared_.resources[resource.part_of].storage : slot.storage;
-            if (slot.owned && resource.lifetime == Lifetime::persistent) slot.name = resource.name;
-        }
-        for (std::uint32_t index = 0; index < declared_.resources.size(); ++index) {
-            const bool imported = declared_.resources[index].lifetime == Lifetime::imported;
-            if (imported && plan_.object[index] != none) state_.imports.push_back(index);
-        }
-    }
-
-    const Declaration& declared_;
-    const Plan& plan_;
-    State state_;
-};
+Slot make_slot(const Declaration& declared, const Resource& resource) {
+    Slot slot;
+    slot.storage = *resource.storage;
+    slot.owned = slot.storage.kind != ResourceKind::value && resource.lifetime != Lifetime::imported;
+    slot.view = resource.part_of != none;
+    slot.declared = slot.view ? *declared.resources[resource.part_of].storage : slot.storage;
+    if (slot.owned && resource.lifetime == Lifetime::persistent) slot.name = resource.name;
+    return slot;
+}
 
 /// Transfers state from an old graph to a new one (see inherit).
 class StateTransfer {
@@ -116,19 +64,19 @@ class StateTransfer {
           old_declared_(graph_before.declared()),
           old_plan_(graph_before.plan()),
           old_(before),
-          taken_(before.slots.size(), 0),
+          taken_(before.slots.size(), none),
           old_version_(plan_.writer.size(), none),
           new_version_(old_plan_.writer.size(), none) {}
 
-    std::vector<std::uint8_t> inherit() {
+    std::vector<std::uint32_t> inherit() {
         take_slots();
         take_records();
         take_transients();
-        for (const auto& [slot, old_slot] : slot_pairs_) {
+        for (std::uint32_t old_slot = 0; old_slot < taken_.size(); ++old_slot) {
             const std::uint32_t old_version = old_.holds[old_slot];
             const std::uint32_t version = old_version == none ? none : new_version_[old_version];
-            if (version == none) continue;
-            state_.holds[slot] = version;
+            if (taken_[old_slot] == none || version == none) continue;
+            state_.holds[taken_[old_slot]] = version;
             state_.versions[version].present = old_.versions[old_version].present;
         }
         return std::move(taken_);
@@ -179,8 +127,7 @@ class StateTransfer {
 
     void take_slot(std::uint32_t slot, std::uint32_t old_slot) {
         state_.slots[slot] = old_.slots[old_slot];
-        taken_[old_slot] = 1;
-        slot_pairs_.push_back({slot, old_slot});
+        taken_[old_slot] = slot;
     }
 
     void pair_versions(std::uint32_t version, std::uint32_t old_version) {
@@ -220,7 +167,7 @@ class StateTransfer {
     void take_transient(std::uint32_t slot, std::uint32_t old_version) {
         const std::uint32_t old_slot = old_plan_.object[old_plan_.resource(old_version)];
         const auto is_transient = [](const Slot& of) { return of.owned && of.name.empty(); };
-        if (old_.holds[old_slot] == old_version && taken_[old_slot] == 0 &&
+        if (old_.holds[old_slot] == old_version && taken_[old_slot] == none &&
             is_transient(old_.slots[old_slot]) && is_transient(state_.slots[slot]) &&
             state_.slots[slot].object == 0) {
             take_slot(slot, old_slot);
@@ -271,20 +218,41 @@ class StateTransfer {
     const Declaration& old_declared_;
     const Plan& old_plan_;
     const State& old_;
-    std::vector<std::uint8_t> taken_;
+    std::vector<std::uint32_t> taken_;        // per old slot: the new one that took it over, or none
     std::vector<std::uint32_t> old_version_;  // per new version id: the old one of the same content, or none
     std::vector<std::uint32_t> new_version_;  // the inverse: per old version id
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> slot_pairs_;
 };
 
 }  // namespace
 
 State make_state(const CompiledGraph& graph) {
-    return StateMaker(graph).make();
+    const Declaration& declared = graph.declared();
+    const Plan& plan = graph.plan();
+    const std::uint32_t step_count = size_of(plan.order);
+    State state;
+    state.versions.assign(plan.writer.size(), {.producer = step_count});
+    for (std::uint32_t position = 0; position < step_count; ++position) {
+        state.steps.push_back(make_step(declared, plan, position));
+        for (const Output& output : state.steps.back().outputs) {
+            state.versions[output.version].producer = position;
+            state.versions[output.version].present = false;
+        }
+    }
+    for (const std::uint32_t owner : plan.owner) {
+        state.slots.push_back(make_slot(declared, declared.resources[owner]));
+    }
+    for (std::uint32_t index = 0; index < declared.resources.size(); ++index) {
+        const bool imported = declared.resources[index].lifetime == Lifetime::imported;
+        if (imported && plan.object[index] != none) state.imports.push_back(index);
+    }
+    state.holds.assign(plan.owner.size(), none);
+    state.turned.resize(plan.owner.size());
+    state.need.resize(step_count + 1);
+    return state;
 }
 
-std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
-                                  const State& before) {
+std::vector<std::uint32_t> inherit(const CompiledGraph& graph, State& state,
+                                   const CompiledGraph& graph_before, const State& before) {
     return StateTransfer(graph, state, graph_before, before).inherit();
 }
 

@@ -78,11 +78,11 @@ struct Step {
     void (*invoke)(void*, Execution&) = nullptr;
     void* function = nullptr;
     std::string_view name;
-    std::vector<Input> inputs;
-    std::vector<Output> outputs;
-    std::vector<Revision> revisions;
-    std::vector<Target> targets;
-    std::vector<Bound> bound;
+    std::vector<Input> inputs{};
+    std::vector<Output> outputs{};
+    std::vector<Revision> revisions{};
+    std::vector<Target> targets{};
+    std::vector<Bound> bound{};
     Barrier barrier = Barrier::none;
     bool side_effect = false;
     bool writes_import = false;
@@ -121,8 +121,8 @@ class OnExit {
 [[nodiscard]] State make_state(const CompiledGraph& graph);
 
 /// Takes over from `before` what both graphs declare in the same way: slots (objects and values), stamps, and
-/// the records of passes. Returns, for each slot of `before`, whether it was taken over.
-std::vector<std::uint8_t> inherit(const CompiledGraph& graph, State& state, const CompiledGraph& graph_before,
-                                  const State& before);
+/// the records of passes. Returns, for each slot of `before`, the slot that has taken it over, or none.
+std::vector<std::uint32_t> inherit(const CompiledGraph& graph, State& state,
+                                   const CompiledGraph& graph_before, const State& before);
 
 }  // namespace candela::detail

@@ -70,9 +70,10 @@ void GraphRuntime::switch_to(CompiledGraph graph) {
     if (verifying_) state.contents.resize(state.versions.size());
     std::vector<detail::Slot> unused = free_pool_;
     if (graph_) {
-        const std::vector<std::uint8_t> taken = detail::inherit(graph, state, *graph_, *state_);
+        const std::vector<std::uint32_t> taken = detail::inherit(graph, state, *graph_, *state_);
         for (std::size_t index = 0; index < taken.size(); ++index) {
-            if (!taken[index] && state_->slots[index].owned) unused.push_back(state_->slots[index]);
+            const detail::Slot& slot = state_->slots[index];
+            if (taken[index] == detail::none && slot.owned) unused.push_back(slot);
         }
     }
     provide_objects(graph, state, unused);
