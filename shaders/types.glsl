@@ -66,15 +66,13 @@ struct LightConstants {
 #define SHADOW_ORTHOGRAPHIC 2u
 #define SHADOW_NONE 3u
 
-// The shadow map of the light with the same index.
+// The shadow map of the light with the same index, or one of the faces of cubes, which follow those of the lights.
 struct Shadow {
-    mat4 from_world;  // to clip space; unused by cubes
-    vec3 axis;        // the map's viewing direction; unused by cubes
-    float texel;      // width of a texel at a depth of 1 metre, metres; directional: at any depth
-    float near_plane; // metres, of perspective maps
-    uint layer;       // of the map array, or cube of the cube array
-    uint kind;        // SHADOW_*; the light has no shadow map: SHADOW_NONE, and nothing else counts
-    float ray_offset; // metres above a surface, where rays to the light start
+    mat4 from_world;   // to clip space; unused by cubes
+    float depth_scale; // change of depth per change of the inverse distance along the map's axis, metres; orthographic: 0
+    uint layer;        // of the map; cubes: index of the Shadow of their first face, whose layer is one of the cubes' array
+    uint kind;         // SHADOW_*; the light has no shadow map: SHADOW_NONE, and nothing else counts
+    float ray_offset;  // metres above a surface, where rays to the light start
 };
 
 // The camera's view of the current frame. A uniform block: shaders/view/view.glsl.

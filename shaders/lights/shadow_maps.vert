@@ -1,6 +1,13 @@
-// Vertex stage of the shadow maps of opaque surfaces.
+// Vertex stage of the shadow maps.
 #include "surfaces/mesh.glsl"
 
-uniform mat4 clip_from_world;
+layout(std430, binding = BINDING_MATERIALS) readonly restrict buffer Materials { Material materials[]; };
 
-void main() { gl_Position = clip_from_world * vec4(world_position(instances[vertex_instance]), 1.0); }
+out vec3 vertex_in_world;
+flat out uint vertex_has_holes;
+
+void main() {
+    Instance instance = instances[vertex_instance];
+    vertex_in_world = world_position(instance);
+    vertex_has_holes = materials[instance.material].alpha_cutoff > 0.0 ? 1u : 0u;
+}

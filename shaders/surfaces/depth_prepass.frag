@@ -1,5 +1,5 @@
 // Writes depth, and with WITH_NORMALS also normals, packed as in the G-buffer. With MASKED it discards fragments in the
-// holes of alpha masks. Shadow maps of masked surfaces use it too.
+// holes of alpha masks.
 #include "surfaces/mesh_surface.glsl"
 
 #ifdef WITH_NORMALS

@@ -1,11 +1,5 @@
 #include "surfaces/mesh.glsl"
-
-#ifdef SHADOW_MAP
-uniform mat4 clip_from_world;  // of the light's view
-#else
 #include "view/view.glsl"
-mat4 clip_from_world = view.clip_from_world;
-#endif
 
 invariant gl_Position;  // depth pre-pass and later passes must compute identical depths
 
@@ -20,5 +14,5 @@ void main() {
     uv = vertex_uv;
     colour_off_white = vertex_colour - 1.0;
     material_index = instance.material;
-    gl_Position = clip_from_world * vec4(world_position(instance), 1.0);
+    gl_Position = view.clip_from_world * vec4(world_position(instance), 1.0);
 }

@@ -45,9 +45,30 @@ class DirectLight : public PathFixture {
                     .rel_mse};
     }
 
+    /// Adds a box from `lower` to `upper`.
+    static void add_box(World& world, glm::vec3 lower, glm::vec3 upper) {
+        Transform pose = at((lower + upper) * 0.5F);
+        pose.scale = (upper - lower) * 0.5F;
+        add(world, pose, MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F), true))});
+    }
+
+    /// Ground of this half width, lit by a sun or by a lamp, and a camera `away` from the origin.
+    static Scene lit_ground(float half, bool sun, glm::vec3 away) {
+        Scene scene;
+        add(scene.world, Transform{}, MeshInstance{square(half, diffuse(glm::vec3(0.7F)))});
+        scene.camera = add(scene.world, looking(away, {0.0F, 0.4F, 0.0F}), Camera{});
+        const Transform light = looking({3.0F, 4.0F, 2.2F}, {0.0F, 0.0F, 0.0F});
+        if (sun) {
+            add(scene.world, light, DirectionalLight{.illuminance = 3.0F});
+        } else {
+            add(scene.world, light, PointLight{.intensity = 60.0F});
+        }
+        return scene;
+    }
+
     /// The required bounds must hold at every resolution of the shadow maps. Rays decide wherever an edge may
     /// be near, so the error must not depend on the resolution either: by less than a hundredth, which is
-    /// left for objects that texels miss.
+    /// left for pixels on edges.
     void check_scene(const Scene& scene, const std::vector<std::uint32_t>& resolutions) {
         const reference::Estimate truth = trace(reference::Scene(scene.world), scene.camera,
                                                 {.size = sampled_size, .samples = 2, .bounces = 0});
@@ -83,6 +104,40 @@ TEST_SUITE("reference: the renderer's direct light") {
 
     TEST_CASE_FIXTURE(DirectLight, "many lights in a hall") {
         check_scene(shipped_scene("hall-256"), {128, 256});
+    }
+
+    TEST_CASE_FIXTURE(DirectLight, "poles, however thin they are and however large the ground") {
+        // On the larger ground, a texel of the sun's map is 1 m wide and more.
+        for (const float half : {6.0F, 500.0F}) {
+            for (const bool sun : {true, false}) {
+                CAPTURE(half);
+                CAPTURE(sun);
+                Scene scene = lit_ground(half, sun, {0.5F, 2.0F, 2.5F});
+                float x = -1.2F;
+                for (const float width : {0.002F, 0.005F, 0.01F, 0.03F, 0.1F, 0.3F}) {
+                    add_box(scene.world, {x, 0.0F, -0.3F}, {x + width, 1.2F, width - 0.3F});
+                    x += 0.4F;
+                }
+                check_scene(scene, {512, 1024});
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(DirectLight, "the eaves of a house on a plot and on a plain") {
+        for (const float half : {20.0F, 500.0F}) {
+            CAPTURE(half);
+            Scene scene = lit_ground(half, true, {9.0F, 3.0F, 9.0F});
+            add_box(scene.world, {-4.0F, 0.0F, -4.0F}, {4.0F, 2.8F, 4.0F});
+            add_box(scene.world, {-4.5F, 2.8F, -4.5F}, {4.5F, 3.0F, 4.5F});
+            check_scene(scene, {512, 1024});
+        }
+    }
+
+    TEST_CASE_FIXTURE(DirectLight, "a slit that is narrower than a texel") {
+        Scene scene = lit_ground(500.0F, true, {0.3F, 1.5F, 2.0F});
+        add_box(scene.world, {-3.0F, 1.8F, -3.0F}, {0.49F, 1.9F, 3.0F});
+        add_box(scene.world, {0.51F, 1.8F, -3.0F}, {3.0F, 1.9F, 3.0F});
+        check_scene(scene, {512, 1024});
     }
 
     TEST_CASE_FIXTURE(DirectLight, "thin fins") {

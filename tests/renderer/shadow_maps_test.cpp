@@ -213,6 +213,37 @@ TEST_SUITE("shadow maps") {
         }
     }
 
+    TEST_CASE_FIXTURE(ShadowMapTests,
+                      "from any distance, a light reaches what faces it, and nothing in a room") {
+        Scene room;
+        add(room.world, at({0.0F, 1.0F, 0.0F}),
+            MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F), true))});
+        room.camera = add(room.world, looking({-0.8F, 1.7F, -0.7F}, {0.3F, 0.6F, 0.4F}), Camera{});
+        const glm::vec3 direction = glm::normalize(glm::vec3(0.8F, 0.5F, 0.33F));
+        for (const float distance : {2.0F, 30.0F, 500.0F, 1e4F, 1e5F}) {
+            for (const int kind : {0, 1, 2}) {
+                CAPTURE(distance);
+                CAPTURE(kind);
+                const Transform pose = looking(glm::vec3(0.0F, 1.0F, 0.0F) + distance * direction, {0, 1, 0});
+                const float intensity = distance * distance;
+                for (Scene* scene : {&scene_, &room}) {
+                    if (scene->world.alive(scene->light)) scene->world.destroy(scene->light);
+                    scene->light = add(scene->world, pose);
+                    if (kind == 0) scene->world.set(scene->light, PointLight{.intensity = intensity});
+                    if (kind == 1) scene->world.set(scene->light, SpotLight{.intensity = intensity});
+                    if (kind == 2) scene->world.set(scene->light, DirectionalLight{});
+                }
+                shadows(false, 512);
+                const Picture lit = picture(scene_);
+                CHECK(mean(lit) > 0.01);
+                CHECK(mean(picture(room)) > 0.01);
+                shadows(true, 512);
+                CHECK(picture(scene_) == lit);
+                CHECK(mean(picture(room)) == 0.0);
+            }
+        }
+    }
+
     TEST_CASE_FIXTURE(ShadowMapTests, "a light that casts no shadow lights occluded surfaces") {
         light_up(at({0.2F, 2.0F, 0.1F}), PointLight{.casts_shadow = false});
         shadows(true, 128);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -23,9 +24,11 @@ void gather_directional_lights(const World& world, SceneCheck& check, const Scen
 
 /// The light is in front of the scene; the map reaches as far behind its centre.
 ShadowShape shadow_of_directional(const gpu::Light& light, const SceneMetrics& metrics) {
+    const float least = least_depth(metrics);
     return {.kind = SHADOW_ORTHOGRAPHIC,
-            .half_extent = light.shape,
-            .depth = 2.0F * glm::length(metrics.centre() - light.position)};
+            .axis = light.direction,
+            .half_extent = glm::max(light.shape, glm::vec2(least)),
+            .far = std::max(2.0F * glm::length(metrics.centre() - light.position), least)};
 }
 
 }  // namespace

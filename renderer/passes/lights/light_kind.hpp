@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -23,12 +24,14 @@ struct LightBounds {
     float radius;
 };
 
-/// The map that a light's shadows need: a cube, or a flat map along the light's direction.
+/// The map that a light's shadows need: a cube or a flat map.
 struct ShadowShape {
     std::uint32_t kind = SHADOW_CUBE;
+    glm::vec3 axis{0.0F};         ///< of a flat map: its viewing direction, unit
     float tangent = 0.0F;         ///< perspective: of the half angle
     glm::vec2 half_extent{0.0F};  ///< orthographic: metres
-    float depth = 0.0F;           ///< orthographic: metres from the light to the end of the scene
+    float near = 0.0F;            ///< metres from the light to where depth is 1; orthographic: 0
+    float far = 0.0F;             ///< metres from the light to where depth is 0; may be infinite
 };
 
 /// All that the CPU needs to know of a kind of light. Each kind is one C++ file, which defines one of these,
@@ -41,6 +44,21 @@ struct LightKind {
     LightBounds (*bounds)(const gpu::Light& light);
     ShadowShape (*shadow)(const gpu::Light& light, const SceneMetrics& metrics);
 };
+
+/// Of the widest half angle of flat maps, 60 degrees. Beyond it, most texels would cover the rim.
+inline constexpr float cos_widest_map = 0.5F;
+
+/// A length that is small in the scene, metres: the near plane of maps around a light that is in it.
+[[nodiscard]] inline float least_depth(const SceneMetrics& metrics) {
+    return std::max(1e-3F * metrics.radius(), 1e-9F);
+}
+
+/// A flat map that contains the scene's bounding sphere, for lights from which it is narrow enough; else a
+/// cube.
+[[nodiscard]] ShadowShape shadow_around(glm::vec3 position, const SceneMetrics& metrics);
+/// A flat map of the cone around `axis`.
+[[nodiscard]] ShadowShape shadow_in_cone(glm::vec3 position, glm::vec3 axis, float tangent,
+                                         const SceneMetrics& metrics);
 
 extern const LightKind point_light;
 extern const LightKind spot_light;

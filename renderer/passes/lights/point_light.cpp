@@ -37,6 +37,7 @@ const LightKind point_light{
         [](const gpu::Light& light) {
             return LightBounds{light.position, light.range};
         },
-    .shadow = [](const gpu::Light& /*light*/, const SceneMetrics& /*metrics*/) { return ShadowShape{}; }};
+    .shadow = [](const gpu::Light& light,
+                 const SceneMetrics& metrics) { return shadow_around(light.position, metrics); }};
 
 }  // namespace candela

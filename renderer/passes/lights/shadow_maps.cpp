@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -23,33 +22,39 @@ namespace {
 
 constexpr std::uint32_t cube_faces = 6;
 constexpr std::uint32_t most_layers = 2048;  // of an array texture, on every driver (OpenGL 4.5, table 23.53)
-constexpr float slope_offset = 1.0F;         // texels: shaders/lights/shadow.glsl relies on it
 constexpr std::uint64_t bytes_per_depth = 4;
-// Near plane of perspective maps, relative to the scene's radius. Nearer geometry is clamped to it, not
-// clipped.
-constexpr float relative_near_plane = 1e-3F;
 
-/// Projection with reversed depth and no far plane: depth = near / distance. `tangent` is the tangent of the
+/// A matrix to clip space, and gpu::Shadow::depth_scale.
+struct MapProjection {
+    glm::dmat4 from_view;
+    double depth_scale = 0.0;
+};
+
+/// With reversed depth: 1 at `near`, 0 at `far`, in metres; `far` may be infinite. `tangent` is that of the
 /// half angle.
-glm::mat4 reversed_perspective(float tangent, float near_plane) {
-    glm::mat4 m(0.0F);
-    m[0][0] = m[1][1] = 1.0F / tangent;
-    m[2][3] = -1.0F;
-    m[3][2] = near_plane;
-    return m;
+MapProjection perspective(double tangent, double near, double far) {
+    const double depth_scale = near / (1.0 - near / far);
+    glm::dmat4 m(0.0);
+    m[0][0] = m[1][1] = 1.0 / tangent;
+    m[2][2] = depth_scale / far;
+    m[2][3] = -1.0;
+    m[3][2] = depth_scale;
+    return {m, depth_scale};
 }
 
-/// Orthographic projection with reversed depth: 1 at the viewer, 0 at `depth` metres in front of it.
-glm::mat4 reversed_orthographic(glm::vec2 half_extent, float depth) {
-    glm::mat4 m(1.0F);
-    m[0][0] = 1.0F / half_extent.x;
-    m[1][1] = 1.0F / half_extent.y;
-    m[2][2] = 1.0F / depth;
-    m[3][2] = 1.0F;
-    return m;
+/// With reversed depth: 1 at the viewer, 0 at `depth` metres in front of it.
+MapProjection orthographic(glm::dvec2 half_extent, double depth) {
+    glm::dmat4 m(1.0);
+    m[0][0] = 1.0 / half_extent.x;
+    m[1][1] = 1.0 / half_extent.y;
+    m[2][2] = 1.0 / depth;
+    m[3][2] = 1.0;
+    return {m};
 }
 
-glm::mat4 look_along(glm::vec3 position, glm::vec3 direction, glm::vec3 up) {
+/// In double precision, so that a scene that is far from the light has its own precision, not that of its
+/// distance.
+glm::dmat4 look_along(glm::dvec3 position, glm::dvec3 direction, glm::dvec3 up) {
     return glm::lookAt(position, position + direction, up);
 }
 
@@ -65,65 +70,57 @@ const std::array<Face, cube_faces> faces{{{{1, 0, 0}, {0, -1, 0}},
                                           {{0, 0, 1}, {0, -1, 0}},
                                           {{0, 0, -1}, {0, -1, 0}}}};
 
-const gpu::Shadow no_shadow{.from_world = glm::mat4(1.0F),
-                            .axis = glm::vec3(0.0F),
-                            .texel = 0.0F,
-                            .near_plane = 0.0F,
-                            .layer = 0,
-                            .kind = SHADOW_NONE,
-                            .ray_offset = 0.0F};
+const gpu::Shadow no_shadow{
+    .from_world = glm::mat4(1.0F), .depth_scale = 0.0F, .layer = 0, .kind = SHADOW_NONE, .ray_offset = 0.0F};
 
-/// Lengths that the maps of all lights have in common, metres.
-struct MapLengths {
-    float near_plane;
-    float ray_offset;
-};
-
-gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const MapLengths& lengths,
-                     std::uint32_t resolution) {
-    const gpu::Shadow shadow{.from_world = glm::mat4(1.0F),
-                             .axis = glm::vec3(0.0F),
-                             .texel = 2.0F / static_cast<float>(resolution),
-                             .near_plane = lengths.near_plane,
-                             .layer = plan.cubes,
-                             .kind = SHADOW_CUBE,
-                             .ray_offset = lengths.ray_offset};
-    const glm::mat4 projection = reversed_perspective(1.0F, lengths.near_plane);
-    for (std::uint32_t face = 0; face < cube_faces; ++face) {
-        const glm::mat4 view = look_along(light.position, faces[face].direction, faces[face].up);
-        plan.views.push_back({projection * view, true, plan.cubes * cube_faces + face});
-    }
-    ++plan.cubes;
-    return shadow;
+ShadowPlan::View view_of(const gpu::Light& light, const MapProjection& projection, const glm::dmat4& view) {
+    return {.clip_from_world = glm::mat4(projection.from_view * view),
+            .light_position = light.position,
+            .depth_scale = static_cast<float>(projection.depth_scale)};
 }
 
-gpu::Shadow add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape,
-                    const MapLengths& lengths, std::uint32_t resolution) {
-    const float near_plane = lengths.near_plane;
-    const auto texels = static_cast<float>(resolution);
-    const float margin = 1.0F + 4.0F / texels;  // two texels on each side, for the filter
-    const glm::mat4 view =
-        look_along(light.position, light.direction, basis_around(light.direction).bitangent);
-    gpu::Shadow shadow{.from_world = glm::mat4(1.0F),
-                       .axis = light.direction,
-                       .texel = 0.0F,
-                       .near_plane = near_plane,
-                       .layer = plan.maps,
-                       .kind = shape.kind,
-                       .ray_offset = lengths.ray_offset};
-    if (shape.kind == SHADOW_PERSPECTIVE) {
-        const float tangent = margin * shape.tangent;
-        shadow.texel = 2.0F * tangent / texels;
-        shadow.from_world = reversed_perspective(tangent, near_plane) * view;
-    } else {
-        // look_along's x axis is cross(direction, up) = ± tangent; its extent is that of the tangent.
-        const glm::vec2 half = glm::max(shape.half_extent * margin, glm::vec2(near_plane));
-        shadow.texel = 2.0F * std::max(half.x, half.y) / texels;
-        shadow.from_world = reversed_orthographic(half, std::max(shape.depth, near_plane)) * view;
+gpu::Shadow shadow_of(const ShadowPlan::View& view, float ray_offset) {
+    return {.from_world = view.clip_from_world,
+            .depth_scale = view.depth_scale,
+            .layer = view.layer,
+            .kind = view.depth_scale > 0.0F ? SHADOW_PERSPECTIVE : SHADOW_ORTHOGRAPHIC,
+            .ray_offset = ray_offset};
+}
+
+/// The faces are wider than the cube's by half a texel on each side, so that the four texels around any
+/// direction are all in one face.
+gpu::Shadow add_cube(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset,
+                     std::uint32_t resolution) {
+    const MapProjection projection = perspective(resolution / (resolution - 1.0), shape.near, shape.far);
+    gpu::Shadow cube = no_shadow;
+    cube.layer = static_cast<std::uint32_t>(plan.shadows.size());
+    cube.kind = SHADOW_CUBE;
+    cube.ray_offset = ray_offset;
+    for (std::uint32_t face = 0; face < cube_faces; ++face) {
+        ShadowPlan::View view =
+            view_of(light, projection, look_along(light.position, faces[face].direction, faces[face].up));
+        view.cube = true;
+        view.layer = plan.cubes * cube_faces + face;
+        plan.shadows.push_back(shadow_of(view, ray_offset));
+        plan.views.push_back(view);
     }
-    plan.views.push_back({shadow.from_world, false, plan.maps});
-    ++plan.maps;
-    return shadow;
+    ++plan.cubes;
+    return cube;
+}
+
+gpu::Shadow add_map(ShadowPlan& plan, const gpu::Light& light, const ShadowShape& shape, float ray_offset,
+                    std::uint32_t resolution) {
+    const double margin = 1.0 + 4.0 / resolution;  // two texels on each side, for the four around a receiver
+    const MapProjection projection =
+        shape.kind == SHADOW_PERSPECTIVE
+            ? perspective(margin * shape.tangent, shape.near, shape.far)
+            // look_along's x axis is cross(direction, up) = ± tangent; its extent is that of the tangent.
+            : orthographic(margin * glm::dvec2(shape.half_extent), shape.far);
+    ShadowPlan::View view = view_of(
+        light, projection, look_along(light.position, shape.axis, basis_around(shape.axis).bitangent));
+    view.layer = plan.maps++;
+    plan.views.push_back(view);
+    return shadow_of(view, ray_offset);
 }
 
 /// Light indices by decreasing flux; lights of equal flux keep their order.
@@ -138,33 +135,13 @@ std::vector<std::uint32_t> by_importance(const LightTable& lights) {
     return order;
 }
 
-TextureDesc cube_desc(std::uint32_t resolution, std::uint32_t cubes) {
-    return {{resolution, resolution}, Format::depth32f, TextureShape::cube_array, cubes * cube_faces};
+TextureDesc array_desc(std::uint32_t resolution, std::uint32_t layers) {
+    return {{resolution, resolution}, Format::depth32f, TextureShape::array, layers};
 }
 
-TextureDesc map_desc(std::uint32_t resolution, std::uint32_t maps) {
-    return {{resolution, resolution}, Format::depth32f, TextureShape::array, maps};
-}
-
-struct ShadowPrograms {
-    const gl::Program& opaque;
-    const gl::Program& masked;
-};
-
-void draw_view(Gpu& gpu, Execution& run, const SceneData& scene, const ShadowPrograms& programs,
-               const glm::mat4& clip_from_world) {
-    constexpr gl::RasterState state{.depth_test = gl::DepthTest::nearer,
-                                    .clamps_depth = true,
-                                    .slope_offset = -slope_offset};  // away from the light: depth is reversed
-    const gl::Uniforms uniforms{{"clip_from_world", clip_from_world}};
-    programs.opaque.use(uniforms);
-    draw_depth(gpu, run, scene, state);
-    programs.masked.use(uniforms);
-    draw_masked_depth(gpu, run, scene, state);
-}
-
-/// Gives the texture this description. Returns whether it keeps its content.
-bool reserve(Execution& run, TextureHandle texture, const TextureDesc& desc) {
+/// Gives the texture this many layers, or one texel if there are none. Returns whether it keeps its content.
+bool reserve(Execution& run, TextureHandle texture, std::uint32_t resolution, std::uint32_t layers) {
+    const TextureDesc desc = layers > 0 ? array_desc(resolution, layers) : array_desc(1, 1);
     const bool kept = run.desc(texture) == desc;
     run.reserve(texture, desc);
     return kept;
@@ -174,10 +151,8 @@ bool reserve(Execution& run, TextureHandle texture, const TextureDesc& desc) {
 std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out,
                                         const ShadowSettings& settings) {
     const ShadowPlan& plan = run.value(out.plan);
-    const bool keeps_cubes = reserve(
-        run, out.cubes, plan.cubes > 0 ? cube_desc(settings.cube_resolution, plan.cubes) : cube_desc(1, 1));
-    const bool keeps_maps =
-        reserve(run, out.maps, plan.maps > 0 ? map_desc(settings.map_resolution, plan.maps) : map_desc(1, 1));
+    const bool keeps_cubes = reserve(run, out.cubes, settings.cube_resolution, plan.cubes * cube_faces);
+    const bool keeps_maps = reserve(run, out.maps, settings.map_resolution, plan.maps);
     const DrawnShadows* const last = run.previous(out.drawn);
     if (last == nullptr || surfaces_changed) return plan.views;
     std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
@@ -197,7 +172,8 @@ struct ShadowNode {
     SceneData scene;
     ShadowMaps out;
     ShadowSettings settings;
-    ShadowPrograms programs;
+    const gl::Program& program;
+    ValueHandle<SceneMetrics> metrics;
 };
 
 void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vector<ShadowPlan::View>& due) {
@@ -205,13 +181,20 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
     const ShadowSettings& settings = node.settings;
     run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
 
+    // Rays end nearer to the light.
+    const float least_distance = 0.5F * run.value(node.metrics).ray_offset();
     bind_meshes(gpu, run, node.scene);
     LayerTarget target(gpu);
     for (const ShadowPlan::View& view : due) {
-        target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer,
-                         view.cube ? settings.cube_resolution : settings.map_resolution);
+        const std::uint32_t resolution = view.cube ? settings.cube_resolution : settings.map_resolution;
+        target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer, resolution);
         target.clear();
-        draw_view(gpu, run, node.scene, node.programs, view.clip_from_world);
+        node.program.use({{"clip_from_world", view.clip_from_world},
+                          {"depth_scale", view.depth_scale},
+                          {"light_position", view.light_position},
+                          {"least_w", view.depth_scale > 0.0F ? least_distance : 0.5F},
+                          {"texel", 2.0F / static_cast<float>(resolution)}});
+        draw_solid(gpu, run, node.scene, {.depth_test = gl::DepthTest::nearer});
     }
 }
 
@@ -240,14 +223,15 @@ PlannedShadows add_shadow_plan(FrameGraph& graph, const Gpu& gpu, ValueHandle<Li
 
 /// Of the map in this layer; none if no light uses it.
 std::optional<DepthTerms> depth_terms(const ShadowPlan& plan, bool cubes, std::uint32_t layer) {
-    const std::uint32_t map = cubes ? layer / cube_faces : layer;
-    const auto found = std::ranges::find_if(plan.shadows, [&](const gpu::Shadow& shadow) {
-        return shadow.kind != SHADOW_NONE && shadow.layer == map && (shadow.kind == SHADOW_CUBE) == cubes;
-    });
-    if (found == plan.shadows.end()) return std::nullopt;
-    if (found->kind != SHADOW_ORTHOGRAPHIC) return perspective_terms(found->near_plane);
-    const glm::mat4& clip = found->from_world;
-    return linear_terms(1.0F / glm::length(glm::vec3(clip[0][2], clip[1][2], clip[2][2])));
+    const auto found = std::ranges::find_if(
+        plan.views, [&](const ShadowPlan::View& view) { return view.cube == cubes && view.layer == layer; });
+    if (found == plan.views.end()) return std::nullopt;
+    const glm::mat4& clip = found->clip_from_world;
+    const float slope = glm::length(glm::vec3(clip[0][2], clip[1][2], clip[2][2]));  // of z along the axis
+    if (found->depth_scale == 0.0F) return linear_terms(1.0F / slope);
+    DepthTerms terms = perspective_terms(found->depth_scale);
+    terms[0] = slope;
+    return terms;
 }
 
 }  // namespace
@@ -256,8 +240,6 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
                         const ShadowSettings& settings) {
     ShadowPlan plan;
     plan.shadows.assign(lights.entries.size(), no_shadow);
-    const MapLengths lengths{.near_plane = std::max(relative_near_plane * metrics.radius(), 1e-9F),
-                             .ray_offset = metrics.ray_offset()};
     const auto bytes = [](std::uint64_t resolution, std::uint64_t layers) {
         return resolution * resolution * layers * bytes_per_depth;
     };
@@ -275,8 +257,10 @@ ShadowPlan plan_shadows(const LightTable& lights, const SceneMetrics& metrics,
             continue;
         }
         budget -= cost;
-        plan.shadows[i] = cube ? add_cube(plan, entry.light, lengths, settings.cube_resolution)
-                               : add_map(plan, entry.light, shape, lengths, settings.map_resolution);
+        const gpu::Shadow shadow =
+            cube ? add_cube(plan, entry.light, shape, metrics.ray_offset(), settings.cube_resolution)
+                 : add_map(plan, entry.light, shape, metrics.ray_offset(), settings.map_resolution);
+        plan.shadows[i] = shadow;  // a cube has added its faces to the list
     }
     return plan;
 }
@@ -289,16 +273,15 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
         const std::vector<ResourceHandle> surfaces = read_meshes(pass, scene);
         pass.read(planned.plan);
         pass.parameter(settings);
-        const ShadowPrograms programs{
-            .opaque = gpu.program({"lights/shadow_maps.vert"}),
-            .masked = gpu.program({"surfaces/mesh_surface.vert", "surfaces/depth_prepass.frag"},
-                                  {"MASKED", "SHADOW_MAP"})};
+        pass.read(metrics);
+        const gl::Program& program =
+            gpu.program({"lights/shadow_maps.vert", "lights/shadow_maps.geom", "lights/shadow_maps.frag"});
         const ShadowMaps out{
             .plan = planned.plan,
             .shadows = planned.shadows,
-            .cubes = pass.update(graph.texture("shadow cubes", cube_desc(1, 1), Lifetime::persistent),
+            .cubes = pass.update(graph.texture("shadow cubes", array_desc(1, 1), Lifetime::persistent),
                                  Usage::layer_target),
-            .maps = pass.update(graph.texture("shadow maps", map_desc(1, 1), Lifetime::persistent),
+            .maps = pass.update(graph.texture("shadow maps", array_desc(1, 1), Lifetime::persistent),
                                 Usage::layer_target),
             .drawn = pass.update(graph.value<DrawnShadows>("drawn shadows"))};
         for (const bool cubes : {true, false}) {
@@ -307,9 +290,9 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                            return depth_terms(drawn, cubes, layer);
                        }));
         }
-        pass.run([=, &gpu](Execution& run) {
+        pass.run([=, &gpu, &program](Execution& run) {
             const auto due = due_views(run, run.changed(surfaces), out, settings);
-            draw_views(gpu, run, {scene, out, settings, programs}, due);
+            draw_views(gpu, run, {scene, out, settings, program, metrics}, due);
         });
         return out;
     });
@@ -317,8 +300,8 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
 
 void read_shadow_maps(Pass& pass, const ShadowMaps& shadows) {
     pass.read(shadows.shadows, {Usage::storage, BINDING_SHADOWS});
-    pass.read(shadows.cubes, {Usage::compared, UNIT_SHADOW_CUBES});
-    pass.read(shadows.maps, {Usage::compared, UNIT_SHADOW_MAPS});
+    pass.read(shadows.cubes, {Usage::sampled, UNIT_SHADOW_CUBES});
+    pass.read(shadows.maps, {Usage::sampled, UNIT_SHADOW_MAPS});
 }
 
 }  // namespace candela

@@ -17,11 +17,13 @@ struct ShadowPlan {
     /// One rendering of scene depth: a flat map, or a face of a cube map.
     struct View {
         glm::mat4 clip_from_world;  ///< metres to clip space with reversed depth in [0, 1]
+        glm::vec3 light_position;
+        float depth_scale = 0.0F;  ///< as gpu::Shadow::depth_scale
         bool cube = false;
-        std::uint32_t layer = 0;  ///< of the cube array (face layer % 6 of cube layer / 6) or the map array
+        std::uint32_t layer = 0;  ///< of the array of cubes or of maps
         bool operator==(const View&) const = default;
     };
-    std::vector<gpu::Shadow> shadows;  ///< by light of the table
+    std::vector<gpu::Shadow> shadows;  ///< by light of the table, then the faces of cubes
     std::vector<View> views;
     std::uint32_t cubes = 0;  ///< cubes and flat maps: how many lights have one
     std::uint32_t maps = 0;
@@ -39,8 +41,8 @@ struct DrawnShadows {
 /// The shadow maps of all lights.
 struct ShadowMaps {
     ValueHandle<ShadowPlan> plan;
-    BufferHandle<gpu::Shadow> shadows;  ///< by light of the table
-    TextureHandle cubes;                ///< cube array, depth32f, reversed: 1 at the near plane
+    BufferHandle<gpu::Shadow> shadows;  ///< as in the plan
+    TextureHandle cubes;                ///< 2D array, depth32f, reversed; six layers for each light
     TextureHandle maps;                 ///< 2D array, depth32f, reversed
     ValueHandle<DrawnShadows> drawn;
 };
@@ -51,12 +53,12 @@ struct ShadowMaps {
 
 /// Adds nodes `shadow-plan` (CPU: plan_shadows, then upload of the shadows) and `shadow-maps` (raster): depth
 /// of the scene as seen from every light that has a map (shadow mapping: Williams, "Casting Curved Shadows on
-/// Curved Surfaces", 1978). A point light has the six faces of a cube, a spot light the cone or a cube, a
-/// directional light the rectangle that the scene covers. Where a map shows an edge, shading traces a ray
-/// (shaders/lights/shadow.glsl, which also derives the bias). Both sides of all triangles are drawn, without
-/// holes of masks and without blended surfaces. Views whose content is unchanged are kept: if a light moves,
-/// only its views are drawn; if a mesh moves, all are; if the camera moves, none. Depends on meshes,
-/// materials, lights and the scene's metrics.
+/// Curved Surfaces", 1978). A point light has the six faces of a cube, or one map if the scene is far away, a
+/// spot light the cone or the same as a point light, a directional light the rectangle that the scene covers.
+/// The maps are conservative, and where one does not decide, shading traces a ray: shaders/theory.md, "Shadow
+/// maps". Both sides of all triangles are drawn, but no blended surfaces. Views whose content is unchanged
+/// are kept: if a light moves, only its views are drawn; if a mesh moves, all are; if the camera moves, none.
+/// Depends on meshes, materials, lights and the scene's metrics.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

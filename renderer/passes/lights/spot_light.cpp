@@ -11,9 +11,6 @@
 namespace candela {
 namespace {
 
-// Widest half angle with a flat map. Beyond it, most texels would cover the rim of the cone.
-constexpr float widest_map = std::numbers::pi_v<float> / 3.0F;
-
 /// 1 - cos(angle) without cancellation, so that it is exact for narrow cones.
 float one_minus_cos(float angle) {
     const float half_chord = std::sin(0.5F * angle);
@@ -55,10 +52,14 @@ LightBounds bounds_of_spot(const gpu::Light& light) {
     return {light.position + light.direction * radius, radius};
 }
 
-ShadowShape shadow_of_spot(const gpu::Light& light, const SceneMetrics& /*metrics*/) {
-    if (light.cos_outer < std::cos(widest_map)) return {};
+/// Of the cone or of what the light would need without it, whichever is narrower.
+ShadowShape shadow_of_spot(const gpu::Light& light, const SceneMetrics& metrics) {
+    const ShadowShape around = shadow_around(light.position, metrics);
     const float outer = light.shape.y / light.shape.x;
-    return {.kind = SHADOW_PERSPECTIVE, .tangent = std::sqrt(outer * (2.0F - outer)) / (1.0F - outer)};
+    const float tangent = std::sqrt(outer * (2.0F - outer)) / (1.0F - outer);
+    const bool wide =
+        light.cos_outer < cos_widest_map || (around.kind == SHADOW_PERSPECTIVE && around.tangent < tangent);
+    return wide ? around : shadow_in_cone(light.position, light.direction, tangent, metrics);
 }
 
 }  // namespace

@@ -123,10 +123,10 @@ bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
     return a.material.alpha != AlphaMode::blend && a.material == b.material && a.mirrored == b.mirrored;
 }
 
-/// Number of drawables whose alpha mode is at most `last`, in the order of the enum.
-std::uint32_t count_until(const std::vector<SceneLayout::Drawable>& drawables, AlphaMode last) {
-    return static_cast<std::uint32_t>(std::ranges::count_if(
-        drawables, [&](const auto& drawable) { return drawable.primitive->material->alpha_mode <= last; }));
+std::uint32_t count_solids(const std::vector<SceneLayout::Drawable>& drawables) {
+    return static_cast<std::uint32_t>(std::ranges::count_if(drawables, [](const auto& drawable) {
+        return drawable.primitive->material->alpha_mode != AlphaMode::blend;
+    }));
 }
 
 std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,
@@ -156,8 +156,7 @@ SceneLayout upload_scene(const Gpu& gpu, Execution& run, const SceneData& out, c
     layout.geometry = geometry;
     layout.drawables = list_drawables(geometry, store);
     layout.groups = group_draws(geometry, layout.drawables, store.materials);
-    layout.opaque_count = count_until(layout.drawables, AlphaMode::opaque);
-    layout.solid_count = count_until(layout.drawables, AlphaMode::mask);
+    layout.solid_count = count_solids(layout.drawables);
     for (const SceneLayout::Drawable& drawable : layout.drawables) {
         if (geometry.items[drawable.item].deformed) store.meshes.add_deformed(drawable);
     }

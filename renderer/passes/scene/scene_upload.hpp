@@ -70,7 +70,6 @@ struct SceneLayout {
     std::vector<gpu::DrawCommand> draws;  ///< by drawable
     std::vector<Group> groups;            ///< in drawing order
     std::vector<std::shared_ptr<const Material>> materials;  ///< null where an index is not in use
-    std::uint32_t opaque_count = 0;                          ///< number of opaque drawables
     std::uint32_t solid_count = 0;  ///< number of opaque and masked drawables: they stop light
 
     /// The groups of one alpha mode.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cstdint>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/loop_parts.hpp"
@@ -12,10 +13,6 @@ namespace {
 
 std::uint32_t light_count(const LightTable& lights) {
     return static_cast<std::uint32_t>(lights.entries.size());
-}
-
-bool is_sun_with_shadow(const LightTable::Entry& entry) {
-    return entry.casts_shadow && entry.light.kind == LIGHT_DIRECTIONAL;
 }
 
 }  // namespace
@@ -61,11 +58,11 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
 }
 
 std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting) {
-    constexpr std::int64_t few_suns = 8;
+    constexpr std::uint32_t few = MOST_SHADOW_RAYS / 4;  // an invocation shades up to four surfaces
     const LightTable& lights = run.value(lighting.lights.table);
     const bool many_rays =
-        lighting.shadow_rays && std::ranges::count_if(lights.entries, is_sun_with_shadow) > few_suns;
-    return loop_parts(shows_direct(lighting.show) ? light_count(lights) : 0, many_rays ? 8 : 8192);
+        lighting.shadow_rays && std::ranges::count_if(lights.entries, &LightTable::Entry::casts_shadow) > few;
+    return loop_parts(shows_direct(lighting.show) ? light_count(lights) : 0, many_rays ? few : 8192);
 }
 
 }  // namespace candela

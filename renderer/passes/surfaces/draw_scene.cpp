@@ -34,9 +34,9 @@ void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     vertices.bind();
 }
 
-void draw_depth(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state) {
+void draw_solid(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state) {
     gpu.device().set_raster_state(state);
-    multi_draw(gpu.gl(), 0, run.value(scene.layout).opaque_count);
+    multi_draw(gpu.gl(), 0, run.value(scene.layout).solid_count);
 }
 
 void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state) {
@@ -44,12 +44,6 @@ void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state
     state.clockwise_front = group.mirrored;
     gpu.device().set_raster_state(state);
     multi_draw(gpu.gl(), group.first_draw, group.draw_count);
-}
-
-void draw_masked_depth(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state) {
-    for (const SceneLayout::Group& group : run.value(scene.layout).groups_of(AlphaMode::mask)) {
-        draw_group(gpu, group, state);
-    }
 }
 
 SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
