@@ -21,7 +21,6 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
         case Usage::copy:
             return true;
         case Usage::sampled:
-        case Usage::compared:
             return texture && !write;
         case Usage::uniform:
         case Usage::vertex:
@@ -39,8 +38,8 @@ bool allowed(ResourceKind kind, Usage usage, bool write) {
 
 /// Whether shaders find resources of this usage at binding points.
 bool has_point(ResourceKind kind, Usage usage) {
-    return usage == Usage::sampled || usage == Usage::compared || usage == Usage::storage ||
-           usage == Usage::uniform || (usage == Usage::copy && kind == ResourceKind::buffer);
+    return usage == Usage::sampled || usage == Usage::storage || usage == Usage::uniform ||
+           (usage == Usage::copy && kind == ResourceKind::buffer);
 }
 
 void check_binding(Declaration& declared, const Resource& resource, Binding binding, bool write) {

@@ -82,8 +82,8 @@ std::uint64_t byte_size(const BufferDesc& desc) {
 }
 
 std::string_view to_string(Usage usage) {
-    static constexpr std::array<std::string_view, 11> names{
-        "sampled",  "compared",      "storage",      "uniform",      "vertex", "index",
+    static constexpr std::array<std::string_view, 10> names{
+        "sampled",  "storage",       "uniform",      "vertex",       "index",
         "indirect", "colour target", "depth target", "layer target", "copy"};
     return names.at(static_cast<std::size_t>(usage));
 }

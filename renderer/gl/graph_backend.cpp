@@ -31,8 +31,7 @@ std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t digest) 
 
 }  // namespace
 
-GraphBackend::GraphBackend(Device& device)
-    : device_(&device), timer_(device), comparison_(device, "depth comparison", {.compare = GL_GEQUAL}) {}
+GraphBackend::GraphBackend(Device& device) : device_(&device), timer_(device) {}
 
 ObjectId GraphBackend::create_texture(std::string_view name, const TextureDesc& desc) {
     Texture texture(*device_, name, desc);
@@ -98,7 +97,7 @@ void GraphBackend::bind_texture(ObjectId texture, const TextureDesc& desc, Bindi
         return;
     }
     gl.BindTextureUnit(binding.point, texture);
-    gl.BindSampler(binding.point, binding.usage == Usage::compared ? comparison_.name() : 0);
+    gl.BindSampler(binding.point, 0);
 }
 
 void GraphBackend::bind_buffer(ObjectId buffer, Binding binding) {

@@ -49,9 +49,6 @@ class GraphBackend final : public Backend {
     Device* device_;
     Timer timer_;
     bool in_debug_group_ = false;  // the running pass has pushed its group
-    /// For Usage::compared: bilinear, of reversed depth, so that a texel passes where the reference is at
-    /// least its depth.
-    Sampler comparison_;
     std::unordered_map<ObjectId, Texture> textures_;
     std::unordered_map<ObjectId, Buffer> buffers_;
     std::map<Attachments, Framebuffer> framebuffers_;

@@ -175,10 +175,6 @@ Sampler::Sampler(Device& device, std::string_view label, const SamplerDesc& desc
     for (const auto& [parameter, value] : parameters) {
         gl().SamplerParameteri(name(), static_cast<GLenum>(parameter), value);
     }
-    if (desc.compare != GL_NONE) {
-        gl().SamplerParameteri(name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-        gl().SamplerParameteri(name(), GL_TEXTURE_COMPARE_FUNC, desc.compare);
-    }
     const float anisotropy = std::min(desc.anisotropy, device.limits().anisotropy);
     if (anisotropy > 1.0F) gl().SamplerParameterf(name(), GL_TEXTURE_MAX_ANISOTROPY, anisotropy);
 }

@@ -104,7 +104,6 @@ struct SamplerDesc {
     GLint mag_filter = GL_LINEAR;
     GLint wrap_u = GL_CLAMP_TO_EDGE;
     GLint wrap_v = GL_CLAMP_TO_EDGE;
-    GLint compare = GL_NONE;  ///< depth comparison with the reference: GL_LEQUAL, ...; GL_NONE: none
     float anisotropy = 1.0F;  ///< clamped to the driver's limit
     bool operator==(const SamplerDesc&) const = default;
 };

@@ -21,11 +21,6 @@ void set_depth_test(const Functions& gl, DepthTest test) {
     gl.DepthFunc(depth_func(test));
 }
 
-void set_slope_offset(const Functions& gl, float offset) {
-    set_enabled(gl, GL_POLYGON_OFFSET_FILL, offset != 0.0F);
-    gl.PolygonOffset(offset, 0.0F);
-}
-
 void set_blending(const Functions& gl, Blending blending) {
     set_enabled(gl, GL_BLEND, blending != Blending::off);
     switch (blending) {
@@ -64,8 +59,6 @@ void RasterStates::reset(const Functions& gl) {
 void RasterStates::set(const Functions& gl, const RasterState& state) {
     if (state.depth_test != now_.depth_test) set_depth_test(gl, state.depth_test);
     if (state.writes_depth != now_.writes_depth) gl.DepthMask(state.writes_depth ? GL_TRUE : GL_FALSE);
-    if (state.clamps_depth != now_.clamps_depth) set_enabled(gl, GL_DEPTH_CLAMP, state.clamps_depth);
-    if (state.slope_offset != now_.slope_offset) set_slope_offset(gl, state.slope_offset);
     if (state.blending != now_.blending) set_blending(gl, state.blending);
     if (state.culling != now_.culling) set_culling(gl, state.culling);
     if (state.clockwise_front != now_.clockwise_front) gl.FrontFace(state.clockwise_front ? GL_CW : GL_CCW);

@@ -21,8 +21,6 @@ enum class Culling : std::uint8_t { off, back, front };
 struct RasterState {
     DepthTest depth_test = DepthTest::off;
     bool writes_depth = true;
-    bool clamps_depth = false;  ///< draws what is outside the near and far plane at their depth
-    float slope_offset = 0.0F;  ///< added to depth: texels times the slope of the triangle
     Blending blending = Blending::off;
     Culling culling = Culling::off;
     bool clockwise_front = false;  ///< winding of front faces

@@ -47,15 +47,12 @@ TEST_SUITE("gl graph backend") {
     TEST_CASE_FIXTURE(GlFixture, "objects are bound at their binding points") {
         GraphBackend backend(device);
         const TextureDesc colour{.size = {8, 4}, .format = Format::rgba16f};
-        const TextureDesc depth{.size = {8, 4}, .format = Format::depth32f};
         const ObjectId sampled = backend.create_texture("sampled", colour);
-        const ObjectId compared = backend.create_texture("compared", depth);
         const ObjectId image = backend.create_texture("image", colour);
         const ObjectId list = backend.create_buffer("list", {.count = 10, .stride = 16});
         const ObjectId constants = backend.create_buffer("constants", {.count = 1, .stride = 16});
         backend.begin_pass("pass", 0, nullptr);
         backend.bind_texture(sampled, colour, {Usage::sampled, 2});
-        backend.bind_texture(compared, depth, {Usage::compared, 3});
         backend.bind_texture(image, colour, {Usage::storage, 0});
         backend.bind_buffer(list, {Usage::storage, 5});
         backend.bind_buffer(constants, {Usage::uniform, 1});
@@ -73,8 +70,6 @@ TEST_SUITE("gl graph backend") {
         };
         CHECK(texture_at(2, GL_TEXTURE_BINDING_2D) == sampled);
         CHECK(texture_at(2, GL_SAMPLER_BINDING) == 0);
-        CHECK(texture_at(3, GL_TEXTURE_BINDING_2D) == compared);
-        CHECK(texture_at(3, GL_SAMPLER_BINDING) != 0);
         CHECK(bound(GL_IMAGE_BINDING_NAME, 0) == image);
         CHECK(bound(GL_IMAGE_BINDING_FORMAT, 0) == GL_RGBA16F);
         CHECK(bound(GL_SHADER_STORAGE_BUFFER_BINDING, 5) == list);

@@ -12,11 +12,9 @@ using namespace candela::gl;
 namespace {
 
 constexpr std::array states{
-    RasterState{},
-    RasterState{.depth_test = DepthTest::nearer},
+    RasterState{}, RasterState{.depth_test = DepthTest::nearer},
     RasterState{.depth_test = DepthTest::equal, .writes_depth = false, .blending = Blending::add},
     RasterState{.depth_test = DepthTest::always, .culling = Culling::back},
-    RasterState{.depth_test = DepthTest::nearer, .clamps_depth = true, .slope_offset = -1.0F},
     RasterState{.blending = Blending::cover, .culling = Culling::front, .clockwise_front = true}};
 
 constexpr std::array<GLenum, 5> capabilities{GL_DEPTH_TEST, GL_DEPTH_CLAMP, GL_POLYGON_OFFSET_FILL, GL_BLEND,
@@ -42,9 +40,6 @@ std::vector<GLint> state_of(const Functions& gl) {
     state.push_back(gl.IsEnabled(GL_DEPTH_TEST) == GL_TRUE ? get(gl, GL_DEPTH_FUNC) : 0);
     state.push_back(gl.IsEnabled(GL_CULL_FACE) == GL_TRUE ? get(gl, GL_CULL_FACE_MODE) : 0);
     state.push_back(gl.IsEnabled(GL_BLEND) == GL_TRUE ? get(gl, GL_BLEND_EQUATION_RGB) : 0);
-    GLfloat offset = 0.0F;
-    gl.GetFloatv(GL_POLYGON_OFFSET_FACTOR, &offset);
-    state.push_back(gl.IsEnabled(GL_POLYGON_OFFSET_FILL) == GL_TRUE ? static_cast<GLint>(offset) : 0);
     return state;
 }
 
@@ -56,13 +51,11 @@ TEST_SUITE("gl raster state") {
         device.reset_raster_state();
         device.set_raster_state({.depth_test = DepthTest::equal,
                                  .writes_depth = false,
-                                 .clamps_depth = true,
-                                 .slope_offset = -2.0F,
                                  .blending = Blending::cover,
                                  .culling = Culling::front,
                                  .clockwise_front = true});
-        CHECK(state_of(gl) == std::vector<GLint>{1, 1, 1, 1, 1, 0, GL_CW, GL_ONE, GL_ONE_MINUS_SRC1_COLOR,
-                                                 GL_ONE, GL_ZERO, GL_EQUAL, GL_FRONT, GL_FUNC_ADD, -2});
+        CHECK(state_of(gl) == std::vector<GLint>{1, 0, 0, 1, 1, 0, GL_CW, GL_ONE, GL_ONE_MINUS_SRC1_COLOR,
+                                                 GL_ONE, GL_ZERO, GL_EQUAL, GL_FRONT, GL_FUNC_ADD});
     }
 
     TEST_CASE_FIXTURE(GlFixture, "a state is the same whichever one was set before") {
@@ -84,7 +77,7 @@ TEST_SUITE("gl raster state") {
         device.reset_raster_state();
         const std::vector<GLint> initial = state_of(gl);
         CHECK(initial ==
-              std::vector<GLint>{0, 0, 0, 0, 0, 1, GL_CCW, GL_ONE, GL_ZERO, GL_ONE, GL_ZERO, 0, 0, 0, 0});
+              std::vector<GLint>{0, 0, 0, 0, 0, 1, GL_CCW, GL_ONE, GL_ZERO, GL_ONE, GL_ZERO, 0, 0, 0});
         for (const GLenum capability : capabilities) {
             gl.Enable(capability);
         }

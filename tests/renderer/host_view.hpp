@@ -67,8 +67,10 @@ class Host {
           flat(device, "host's", {.size = {4, 4}}),
           layers(device, "host's", {.size = {4, 4}, .shape = TextureShape::array, .layers = 3}),
           cubes(device, "host's", {.size = {4, 4}, .shape = TextureShape::cube_array, .layers = 6}),
-          sampler(device, "host's", {.min_filter = GL_NEAREST, .wrap_u = GL_REPEAT, .compare = GL_NEVER}),
+          sampler(device, "host's", {.min_filter = GL_NEAREST, .wrap_u = GL_REPEAT}),
           framebuffer(device, "host's") {
+        gl.SamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+        gl.SamplerParameteri(sampler.name(), GL_TEXTURE_COMPARE_FUNC, GL_NEVER);
         framebuffer.attach_colour(0, flat.name());
     }
 

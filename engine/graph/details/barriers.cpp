@@ -20,7 +20,6 @@ Barrier barrier_for(ResourceKind kind, Usage usage) {
     const bool texture = kind == ResourceKind::texture;
     switch (usage) {
         case Usage::sampled:
-        case Usage::compared:
             return Barrier::texture_fetch;
         case Usage::storage:
             return texture ? Barrier::image_access : Barrier::storage;

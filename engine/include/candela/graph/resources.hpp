@@ -87,7 +87,6 @@ struct BufferDesc {
 /// How a pass accesses a GPU resource. Whether it reads or writes follows from `Pass::read` or `Pass::write`.
 enum class Usage : std::uint8_t {
     sampled,        ///< read: texture fetches
-    compared,       ///< read: texture fetches that compare with a reference depth
     storage,        ///< read or write: shader storage buffer or image; writes are incoherent (need barriers)
     uniform,        ///< read: uniform buffer
     vertex,         ///< read: vertex attributes
@@ -109,7 +108,7 @@ struct Binding {
     constexpr Binding(Usage access, std::uint32_t place) : usage(access), point(place) {}
 
     Usage usage{};
-    /// The texture unit (sampled, compared), the image unit (storage, of textures), or the index of the
+    /// The texture unit (sampled), the image unit (storage, of textures), or the index of the
     /// storage or uniform block. A buffer that a pass uploads (copy) and reads in its own shaders is bound as
     /// a storage block. `unbound`: the pass binds the resource itself, or no shader sees it.
     std::uint32_t point = unbound;
