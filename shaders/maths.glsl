@@ -33,9 +33,10 @@ vec2 hemi_octahedral_encode(vec3 n) {
     return vec2(p.x + p.y, p.x - p.y);
 }
 
-vec3 hemi_octahedral_decode(vec2 p) {
+// The point on the octahedron |x| + |y| + z = 1.
+vec3 hemi_octahedral_point(vec2 p) {
     vec2 q = vec2(p.x + p.y, p.x - p.y) * 0.5;
-    return normalize(vec3(q, 1.0 - abs(q.x) - abs(q.y)));
+    return vec3(q, 1.0 - abs(q.x) - abs(q.y));
 }
 
 // sRGB transfer functions: IEC 61966-2-1.

@@ -232,6 +232,8 @@ struct VplConstants {
     uint map_tiles;           // slots along a side of a layer
     float map_side;           // texels along a side of a layer
     float map_near;           // metres, the octahedral distance at which map depth is 1
+    vec3 focus_centre;        // metres; depth maps of VPLs far from this sphere see only its surroundings
+    float focus_radius;       // metres; 0: there is no such sphere
 };
 
 #ifndef __cplusplus  // C++ has it in engine/bvh/bvh.hpp

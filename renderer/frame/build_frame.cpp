@@ -46,7 +46,7 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
     std::vector<ValueHandle<CameraView>> requested;
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
         begin_view(graph, i);
-        frame.views[i].camera = add_view(graph, frame.views[i].request);
+        frame.views[i].camera = frame.views[i].requested = add_view(graph, frame.views[i].request);
         requested.push_back(frame.views[i].camera);
     }
     end_view(graph);
@@ -104,17 +104,20 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
         const ValueHandle<PathPlan> plan =
             add_vpl_paths(graph, frame.metrics, lit.lights.table, refinement, settings);
         frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer, wanted.bound);
-        return {frame.vpls->counts, std::get<TracedVpls>(frame.vpls->records).vpls};
+        return {frame.vpls->counts, std::get<TracedVpls>(frame.vpls->records).vpls, std::nullopt};
     }
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
     const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
-    const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, settings);
+    std::vector<ValueHandle<CameraView>> views;
+    for (const ViewHandles& view : frame.views) views.push_back(view.requested);
+    const auto foci = add_surfel_focus(graph, lit.scene, lit.tracing, views, settings.count);
+    const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, foci, settings);
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
     SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};
     if (lit.sky) sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     frame.vpls =
         add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, wanted.shown);
-    return {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, motion}};
+    return {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, motion}, foci};
 }
 
 /// The light of the wanted VPLs, if any.
@@ -124,9 +127,9 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
     const WantedVpls wanted = wanted_vpls(configuration, contents);
     if (!wanted.any()) return std::nullopt;
     const MappedVpls mapped = place_vpls(graph, gpu, wanted, lit, refinement, frame);
-    VplLight light{
-        .vpls = *frame.vpls,
-        .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->counts, configuration.visibility)};
+    VplLight light{.vpls = *frame.vpls,
+                   .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->counts, mapped.foci,
+                                               configuration.visibility)};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
         if (contents.emitters || contents.sky) light.rays = lit.tracing;

@@ -26,6 +26,7 @@ struct ViewHandles {
     ValueHandle<Target> target;                          ///< imported
     TextureHandle picture;                               ///< imported: what is drawn to `target`
     std::optional<HostSurfaceInputs> host;               ///< imported; none: Candela draws the surfaces
+    ValueHandle<CameraView> requested;                   ///< without refinement's samples
     ValueHandle<CameraView> camera;                      ///< with refinement's samples
     std::optional<ValueHandle<std::uint32_t>> averaged;  ///< see Refined; none without refinement
     std::uint32_t interleave = 1;           ///< n: a pixel evaluates one in n² VPLs; 1: all of them

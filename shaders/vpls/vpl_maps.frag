@@ -12,11 +12,10 @@ void main() {
     MappedVpl vpl = mapped_vpl(vpl_index);
     vec3 origin = vpl_map_origin(vpl.position, vpl.normal);
     vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl_index).corner)) / float(vpl_constants.map_resolution);
-    vec3 local = hemi_octahedral_decode(at * 2.0 - 1.0);
-    vec3 tangent, bitangent;
-    basis_around(vpl.normal, tangent, bitangent);
-    vec3 direction = local.x * tangent + local.y * bitangent + local.z * vpl.normal;
+    MapFrame frame = vpl_map_frame(vpl.position, vpl.normal);
+    vec3 local = normalize(vpl_map_point(frame, at * 2.0 - 1.0));
+    vec3 direction = local * frame.map_from_world;
     if (!may_have_changed(origin, direction, 1.0 / 0.0)) discard;
     Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
-    gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(hit.t * local);
+    gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(frame, hit.t * local);
 }

@@ -12,7 +12,8 @@ flat out uint vpl_index;
 void main() {
     if (!has_map(vpl_id[0])) return;
     MappedVpl vpl = mapped_vpl(vpl_id[0]);
-    if (!may_have_changed_above(vpl.position, vpl.normal)) return;
+    bool sees_above = !is_perspective(vpl_map_frame(vpl.position, vpl.normal));
+    if (sees_above && !may_have_changed_above(vpl.position, vpl.normal)) return;
     VplTile tile = vpl_tile(vpl_id[0]);
     for (uint i = 0u; i < 4u; ++i) {
         uvec2 texel = tile.corner + uvec2(i & 1u, i >> 1u) * vpl_constants.map_resolution;

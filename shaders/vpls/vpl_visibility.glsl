@@ -45,10 +45,9 @@ struct MapTexels {
 
 vec4 bilinear_weights(vec2 at) { return vec4(1.0 - at.x, at.x, 1.0 - at.x, at.x) * vec4(1.0 - at.yy, at.yy); }
 
-// `at`: in the map's space.
-MapTexels texels_around(uint map, vec3 at) {
+MapTexels texels_around(uint map, vec2 place) {
     float side = float(vpl_constants.map_resolution);
-    vec2 inside = (hemi_octahedral_encode(at) * 0.5 + 0.5) * side - 0.5;
+    vec2 inside = (place * 0.5 + 0.5) * side - 0.5;
     vec2 first = clamp(floor(inside), 0.0, side - 2.0);
     VplTile tile = vpl_tile(map);
     vec2 middle = (vec2(tile.corner) + first + 1.0) / vec2(textureSize(vpl_maps, 0).xy);
@@ -64,31 +63,32 @@ bool see_one_plane(MapTexels texels) {
 }
 
 // Whether the plane that the texels see is not between the map's origin and the position.
-bool is_before_plane(MapTexels texels, vec3 at) {
-    return vpl_map_depth(at) >= dot(bilinear_weights(texels.at), texels.depth);
+bool is_before_plane(MapTexels texels, MapFrame frame, vec3 at) {
+    return vpl_map_depth(frame, at) >= dot(bilinear_weights(texels.at), texels.depth);
 }
 
 // Share of the texels whose surfaces are not nearer than the distance. The inverse of a unit direction's octahedral
 // length is the length of its point on the octahedron.
-float share_beyond(MapTexels texels, float distance) {
+float share_beyond(MapTexels texels, MapFrame frame, float distance) {
     float texel = 2.0 / float(vpl_constants.map_resolution);
     vec4 u = texel * (texels.first.x + vec4(0.5, 1.5, 0.5, 1.5)) - 1.0;
     vec4 v = texel * (texels.first.y + vec4(0.5, 0.5, 1.5, 1.5)) - 1.0;
-    vec4 x = 0.5 * (u + v);
-    vec4 y = 0.5 * (u - v);
-    vec4 z = 1.0 - abs(x) - abs(y);
+    vec4 x = is_perspective(frame) ? frame.tangent * u : 0.5 * (u + v);
+    vec4 y = is_perspective(frame) ? frame.tangent * v : 0.5 * (u - v);
+    vec4 z = is_perspective(frame) ? vec4(1.0) : 1.0 - abs(x) - abs(y);
     vec4 nearest = vpl_constants.map_near * sqrt(x * x + y * y + z * z);
     vec4 share = bilinear_weights(clamp(texels.at, 0.0, 1.0));
     return dot(share, vec4(greaterThanEqual(nearest, distance * texels.depth)));
 }
 
-// The map covers the hemisphere above the VPL's surface only.
-vec3 above_horizon(vec3 at) { return vec3(at.xy, max(at.z, 0.0)); }
+// A hemi-octahedral map covers the hemisphere above the VPL's surface only.
+vec3 above_horizon(MapFrame frame, vec3 at) { return is_perspective(frame) ? at : vec3(at.xy, max(at.z, 0.0)); }
 
 // Sine of the largest angle δ between a direction and the centres of the texels that its bilinear look-up reads, in a
 // map of N = `texels` texels along a side: sin δ ≤ 2√2 s / N with s = |x| + |y| + z. The factor 1 + 5/N allows for the
 // lift, which turns the look-up by δ; s is never above √3. See theory.md, "Footprint of a look-up".
-float footprint_sine(vec3 direction, float texels) {
+float footprint_sine(MapFrame frame, vec3 direction, float texels) {
+    if (is_perspective(frame)) return 2.8284271 * frame.tangent / texels;
     float s = abs(direction.x) + abs(direction.y) + direction.z;
     return min(2.8284271 * min(s * (1.0 + 5.0 / texels), 1.7320508) / texels, 0.9);
 }
@@ -101,23 +101,25 @@ float lift_above_map(float aside, float distance, float sine) {
     return (aside + 0.1 * distance) * sine * inversesqrt(1.0 - sine * sine) + 4.0 * vpl_constants.ray_offset;
 }
 
+const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspective map
+
 // Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane in the surface's direction,
 // it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons. `map`: its slot.
 float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
-    vec3 tangent, bitangent;
-    basis_around(normal, tangent, bitangent);
-    mat3 map_from_world = transpose(mat3(tangent, bitangent, normal));
-    vec3 facing = map_from_world * face_normal(surface);
-    vec3 at = map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(position, normal));
+    MapFrame frame = vpl_map_frame(position, normal);
+    vec3 facing = frame.map_from_world * face_normal(surface);
+    vec3 at = frame.map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(position, normal));
     float distance = length(at);
     float height = dot(facing, at);
     float aside = sqrt(max(distance * distance - height * height, 0.0));
-    float sine = footprint_sine(above_horizon(at) / distance, float(vpl_constants.map_resolution));
+    float sine = footprint_sine(frame, above_horizon(frame, at) / distance, float(vpl_constants.map_resolution));
     vec3 lifted = at + lift_above_map(aside, distance, sine) * facing;
-    vec3 seen = above_horizon(lifted);
-    MapTexels texels = texels_around(map, seen);
-    if (see_one_plane(texels)) return is_before_plane(texels, seen) ? 1.0 : 0.0;
-    return share_beyond(texels, min(length(lifted), distance));
+    vec3 seen = above_horizon(frame, lifted);
+    vec2 place = vpl_map_place(frame, seen);
+    if (is_perspective(frame) && (seen.z <= 0.0 || any(greaterThan(abs(place), vec2(1.0))))) return OUTSIDE;
+    MapTexels texels = texels_around(map, place);
+    if (see_one_plane(texels)) return is_before_plane(texels, frame, seen) ? 1.0 : 0.0;
+    return share_beyond(texels, frame, min(length(lifted), distance));
 }
 
 #elif defined(VPL_VISIBILITY_RAYS)

@@ -71,6 +71,15 @@ class SurfelTests : public RenderFixture {
     }
 };
 
+/// A closed box with a lamp inside, on a ground of 1 km in the sun. The camera is in the box.
+Scene room_on_ground() {
+    Scene scene = furnace_box(0.7F);
+    add(scene.world, at({0.0F, -1.5F, 0.0F}), MeshInstance{square(500.0F, diffuse(glm::vec3(0.8F)))});
+    add(scene.world, looking({0.0F, 0.0F, 0.0F}, {0.3F, -1.0F, 0.2F}),
+        DirectionalLight{.illuminance = 10.0F});
+    return scene;
+}
+
 }  // namespace
 
 TEST_SUITE("surfels: placement") {
@@ -135,6 +144,35 @@ TEST_SUITE("surfels: placement") {
                 CHECK((set.points[surfel.first_point + p].position.x < 1.0F) == (set.item_of[i] == 0));
             }
         }
+    }
+
+    TEST_CASE("surfels are dense in a focus, less so beyond it, and cover all of the surface") {
+        constexpr float half = 500.0F;
+        constexpr float radius = 5.0F;
+        SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+        add_parallelogram(plane, 0, {-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0});
+        plane.foci = {{{glm::vec3(3.0F, -2.0F, 0.0F), radius}}};
+        const SurfelSet set = place_surfels(plane, {.reflecting = 1000}, test_seed());
+        const auto radii = [&](const gpu::Surfel& surfel) {
+            return glm::distance(surfel.position, plane.foci[0][0].centre) / radius;
+        };
+        // Far away a single point represents 10,000 m², 1 % of the plane.
+        CHECK(total_area(set) == doctest::Approx(4.0 * half * half).epsilon(0.05));
+        // The density falls with the third power of the distance r: within R there are πR² parts of the
+        // surfels, beyond it ∫ 2πr (R/r)³ dr = 2πR² (1 - R/500 m). It is constant within parts of half a
+        // distance.
+        const auto inside =
+            std::ranges::count_if(set.surfels, [&](const auto& surfel) { return radii(surfel) < 1.0F; });
+        CHECK(static_cast<double>(inside) / static_cast<double>(set.surfels.size()) ==
+              doctest::Approx(1.0 / 3.0).epsilon(0.2));
+        // Cells are as wide as the inverse root of the density: 100 m away, 20^1.5 = 89 times as wide.
+        double near = 0.0, far = 0.0, near_count = 0.0, far_count = 0.0;
+        for (const gpu::Surfel& surfel : set.surfels) {
+            const double width = std::sqrt(static_cast<double>(surfel.area));
+            if (radii(surfel) < 1.0F) near += width, ++near_count;
+            if (radii(surfel) > 15.0F && radii(surfel) < 25.0F) far += width, ++far_count;
+        }
+        CHECK((far / far_count) / (near / near_count) > 30.0);
     }
 
     TEST_CASE("another seed gives another set, and empty input gives none") {
@@ -226,6 +264,53 @@ TEST_SUITE("surfels: light") {
             most = std::max(most, light);
         }
         CHECK(most - least < 0.1 * least);
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "a room on a ground of 1 km has the indirect light that it has alone") {
+        Configuration configuration = surfels(256, 64);
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 64};
+        configure(configuration);
+        const Scene room = furnace_box(0.7F);
+        const double alone = mean(render(room, {32, 24}));
+        // Another set of surfels: its light differs by a few per cent.
+        CHECK(mean(render(room_on_ground(), {32, 24})) == doctest::Approx(alone).epsilon(0.06));
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "light from the ground far around a closed room does not leak into it") {
+        Configuration configuration = surfels(256, 64);
+        configuration.visibility = {.method = VplVisibility::none, .map_resolution = 64};
+        configure(configuration);
+        Scene scene = room_on_ground();
+        scene.world.destroy(scene.light);
+        const double unblocked = mean(render(scene, {32, 24}));
+        REQUIRE(unblocked > 0.1);
+        configuration.visibility.method = VplVisibility::rays;
+        configure(configuration);
+        CHECK(mean(render(scene, {32, 24})) == 0.0);
+        // Texels of maps on the outline of the room see past it. A hundred metres away, the whole room is
+        // smaller than a texel of a map of the hemisphere, and about 30 texels wide in one of the focus.
+        configuration.visibility.method = VplVisibility::maps;
+        configure(configuration);
+        CHECK(mean(render(scene, {32, 24})) < 0.03 * unblocked);
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "surfels stay while the camera moves a little, and forget where it was") {
+        configure(surfels(64));
+        Scene scene = room_on_ground();
+        const Transform start = scene.world.get<Transform>(scene.camera);
+        const auto move_by = [&](glm::vec3 offset) {
+            Transform moved = start;
+            moved.translation += offset;
+            scene.world.set(scene.camera, moved);
+            return render(scene, {32, 24});
+        };
+        static_cast<void>(move_by(glm::vec3(0.0F)));
+        static_cast<void>(move_by({0.01F, 0.02F, -0.01F}));
+        CHECK_FALSE(ran("surfel-spread"));
+        static_cast<void>(move_by({30.0F, 2.0F, 0.0F}));
+        CHECK(ran("surfel-visibility"));
+        const Picture after = move_by({0.3F, 0.1F, -0.4F});
+        CHECK(after == from_scratch(scene, {32, 24}));
     }
 
     TEST_CASE_FIXTURE(SurfelTests, "with more surfels less of a closed box's flux is lost") {

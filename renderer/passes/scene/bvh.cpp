@@ -115,6 +115,8 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
             pass.update(growing_buffer<gpu::BvhNode>(graph, "bvh nodes"), Usage::copy),
             pass.update(growing_buffer<gpu::TraceTriangle>(graph, "triangles"), Usage::copy)};
         const auto metrics = pass.write(graph.value<SceneMetrics>("scene metrics"));
+        const auto hierarchy =
+            pass.write(graph.value<std::shared_ptr<const SceneHierarchy>>("traced hierarchy"));
         pass.run([=, &gpu, layout_handle = scene.layout, placement_handle = scene.placement](Execution& run) {
             const SceneLayout& layout = run.value(layout_handle);
             const std::shared_ptr<UploadedHierarchy> uploaded =
@@ -128,12 +130,14 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
             warn_of_rounding(gpu.log(), now);
             run.set(metrics, now);
             run.set(kept, uploaded);
+            run.set(hierarchy, std::shared_ptr<const SceneHierarchy>(uploaded, &uploaded->scene));
         });
         return Tracing{.nodes = buffers.nodes,
                        .triangles = buffers.triangles,
                        .materials = scene.materials,
                        .texels = scene.texels,
-                       .metrics = metrics};
+                       .metrics = metrics,
+                       .hierarchy = hierarchy};
     });
 }
 

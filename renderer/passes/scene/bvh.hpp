@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <candela/graph/frame_graph.hpp>
 #include "engine/bvh/bvh.hpp"
@@ -18,6 +19,8 @@ struct Tracing {
     BufferHandle<gpu::Material> materials;
     BufferHandle<std::uint32_t> texels;
     ValueHandle<SceneMetrics> metrics;
+    ValueHandle<std::shared_ptr<const SceneHierarchy>>
+        hierarchy;  ///< changed in place: readers must depend on the scene's layout and placement as well
 };
 
 /// Adds node `bvh` (CPU, then upload): a bounding-volume hierarchy over the triangles that stop light, in

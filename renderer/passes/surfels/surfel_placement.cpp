@@ -1,6 +1,8 @@
 #include "renderer/passes/surfels/surfel_placement.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bitset>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -8,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <unordered_map>
 
 #include "renderer/passes/view/r2_sequence.hpp"
@@ -15,30 +18,84 @@
 namespace candela {
 namespace {
 
-/// One side of a triangle.
+/// One side of a triangle, or of a part of it.
 struct Side {
     const gpu::TraceTriangle* triangle;
     glm::vec3 normal;  // unit
     std::uint32_t item;
     bool back;
+    /// Barycentric weights of b and c of the triangle at the corners of the part.
+    std::array<glm::vec2, 3> corners{glm::vec2(0.0F, 0.0F), glm::vec2(1.0F, 0.0F), glm::vec2(0.0F, 1.0F)};
+    float density = 1.0F;  // of surfels: see density_at
+
+    [[nodiscard]] glm::vec3 at(glm::vec2 weights) const {
+        return triangle->a + weights.x * triangle->edge_ab + weights.y * triangle->edge_ac;
+    }
 };
 
 /// A point of a cell, with the item and the triangle that it lies on.
 struct PlacedPoint : gpu::CellPoint {
     std::uint32_t item = 0;
     SurfacePoint place;
+    float density = 1.0F;  // of surfels there
 };
 
 /// Sides of triangles: both of double-sided ones.
 struct Sides {
     std::vector<Side> sides;
-    std::vector<double> area_before;  // by side: area of all sides before it, m²; then the total
+    std::vector<double>
+        weight_before;    // by side: area times density of all sides before it, m²; then the total
+    double weight = 0.0;  // of all
+
+    void add(const Side& side, double area) {
+        sides.push_back(side);
+        weight_before.push_back(weight);
+        weight += area * static_cast<double>(side.density);
+    }
 };
+
+/// The longest edge of a triangle: from the corner of that index to the next.
+struct Edge {
+    std::size_t from;
+    float length;
+};
+
+Edge longest_edge(const std::array<glm::vec3, 3>& corners) {
+    Edge longest{0, 0.0F};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float length = glm::distance(corners[i], corners[(i + 1) % 3]);
+        if (length > longest.length) longest = {i, length};
+    }
+    return longest;
+}
+
+/// Adds a side of that area in parts so small that the density of surfels hardly varies within one.
+void add_in_parts(Sides& all, Side side, double area, std::span<const Focus> foci) {
+    const std::array<glm::vec3, 3> corners{side.at(side.corners[0]), side.at(side.corners[1]),
+                                           side.at(side.corners[2])};
+    const glm::vec3 centre = (corners[0] + corners[1] + corners[2]) / 3.0F;
+    const Edge longest = longest_edge(corners);
+    const auto varies = [&](const Focus& focus) {
+        return longest.length >
+               0.5F * std::max(focus.radius, glm::distance(centre, focus.centre) - longest.length);
+    };
+    if (std::ranges::none_of(foci, varies)) {
+        side.density = density_at(foci, centre);
+        all.add(side, area);
+        return;
+    }
+    const std::size_t to = (longest.from + 1) % 3;
+    const glm::vec2 middle = 0.5F * (side.corners[longest.from] + side.corners[to]);
+    for (const std::size_t moved : {longest.from, to}) {
+        Side half = side;
+        half.corners[moved] = middle;
+        add_in_parts(all, half, 0.5 * area, foci);
+    }
+}
 
 /// The sides of the triangles that emit light, or of those that do not.
 Sides sides_of(const SceneTriangles& scene, bool emitting) {
     Sides all;
-    double area = 0.0;
     for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
         const gpu::TraceTriangle& triangle = scene.triangles[i];
         if (scene.emits[triangle.material] != emitting) continue;
@@ -46,13 +103,14 @@ Sides sides_of(const SceneTriangles& scene, bool emitting) {
         const float twice_area = glm::length(cross);
         if (!(twice_area > 0.0F)) continue;
         const glm::vec3 front = cross / twice_area;
+        const std::uint32_t item = scene.item_of[i];
+        const auto foci = scene.foci.empty() ? std::span<const Focus>() : std::span(scene.foci[item]);
         for (int side = 0; side < (scene.double_sided[triangle.material] ? 2 : 1); ++side) {
-            all.sides.push_back({&triangle, side == 0 ? front : -front, scene.item_of[i], side == 1});
-            all.area_before.push_back(area);
-            area += 0.5 * static_cast<double>(twice_area);
+            add_in_parts(all, {&triangle, side == 0 ? front : -front, item, side == 1},
+                         0.5 * static_cast<double>(twice_area), foci);
         }
     }
-    all.area_before.push_back(area);
+    all.weight_before.push_back(all.weight);
     return all;
 }
 
@@ -82,42 +140,51 @@ std::uint32_t colour_at(const gpu::TraceTriangle& triangle, glm::vec2 b) {
                              b.y * glm::unpackUnorm4x8(triangle.colour_c));
 }
 
-/// `count` points, distributed evenly by area.
+/// `count` points, distributed evenly by area times density.
 std::vector<PlacedPoint> spread_points(const Sides& all, std::uint32_t count, std::uint32_t seed) {
     std::vector<PlacedPoint> points;
-    const double share = all.area_before.back() / count;
+    const double share = all.weight / count;
     const double start = hash(seed + 1) * (1.0 / 4294967296.0);
-    std::size_t side = 0;
+    std::size_t index_of_side = 0;
     std::uint32_t index = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double at = (i + start) * share;
-        while (side + 1 < all.sides.size() && at >= all.area_before[side + 1]) {
-            ++side;
+        while (index_of_side + 1 < all.sides.size() && at >= all.weight_before[index_of_side + 1]) {
+            ++index_of_side;
             index = 0;
         }
-        const auto side_seed = static_cast<std::uint32_t>(side) * 0x85ebca6bU + seed;
-        const glm::vec2 b = point_in_triangle(index++, side_seed);
-        const gpu::TraceTriangle& t = *all.sides[side].triangle;
-        points.push_back({{.position = t.a + b.x * t.edge_ab + b.y * t.edge_ac,
+        const Side& side = all.sides[index_of_side];
+        const auto side_seed = static_cast<std::uint32_t>(index_of_side) * 0x85ebca6bU + seed;
+        const glm::vec2 in_part = point_in_triangle(index++, side_seed);
+        const auto& corners = side.corners;
+        const glm::vec2 b =
+            corners[0] + in_part.x * (corners[1] - corners[0]) + in_part.y * (corners[2] - corners[0]);
+        const gpu::TraceTriangle& t = *side.triangle;
+        points.push_back({{.position = side.at(b),
                            .material = t.material,
-                           .normal = all.sides[side].normal,
-                           .area = static_cast<float>(share),
+                           .normal = side.normal,
+                           .area = static_cast<float>(share) / side.density,
                            .uv = t.uv_a + b.x * (t.uv_b - t.uv_a) + b.y * (t.uv_c - t.uv_a),
                            .surfel = 0,
                            .colour = colour_at(t, b)},
-                          all.sides[side].item,
-                          {t.id & ~TRIANGLE_MASKED, b, all.sides[side].back}});
+                          side.item,
+                          {t.id & ~TRIANGLE_MASKED, b, side.back},
+                          side.density});
     }
     return points;
 }
 
-/// A hash grid of surfels, for finding nearby ones.
+/// A hash grid of surfels, for finding nearby ones. Where they are less dense, they are in a level of larger
+/// cells.
 class SurfelGrid {
  public:
+    /// `cell`: size of the cells where the density is 1, metres.
     explicit SurfelGrid(float cell) : cell_(cell) {}
 
     void add(const PlacedPoint& surfel) {
-        cells_[key(coordinates(surfel.position), surfel.item)].push_back(
+        const int level = level_of(surfel);
+        levels_[static_cast<std::size_t>(level)] = true;
+        cells_[key(coordinates(surfel.position, level), surfel.item, level)].push_back(
             static_cast<std::uint32_t>(surfels_.size()));
         surfels_.push_back(surfel);
     }
@@ -128,38 +195,60 @@ class SurfelGrid {
     /// The surfel must be on the same item, the cosine between the normals at least `least_cosine`, and the
     /// distance of the point from the surfel's plane at most `off_plane` grid cells.
     [[nodiscard]] int nearest_like(const PlacedPoint& point, float least_cosine, float off_plane) const {
-        const glm::ivec3 centre = coordinates(point.position);
-        float best = std::numeric_limits<float>::infinity();
-        int found = -1;
+        Nearest nearest;
+        const int level = level_of(point);
+        for (int near = std::max(level - 1, 0); near <= std::min(level + 1, last_level); ++near) {
+            if (levels_[static_cast<std::size_t>(near)]) find(point, near, least_cosine, off_plane, nearest);
+        }
+        return nearest.surfel;
+    }
+
+ private:
+    static constexpr int last_level = 31;
+
+    struct Nearest {
+        int surfel = -1;
+        float distance2 = std::numeric_limits<float>::infinity();
+    };
+
+    /// Replaces `nearest` by a nearer one of a level, if there is one.
+    void find(const PlacedPoint& point, int level, float least_cosine, float off_plane,
+              Nearest& nearest) const {
+        const glm::ivec3 centre = coordinates(point.position, level);
         for (int i = 0; i < 27; ++i) {
-            const auto cell = cells_.find(key(centre + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1, point.item));
+            const auto cell =
+                cells_.find(key(centre + glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1, point.item, level));
             if (cell == cells_.end()) continue;
             for (const std::uint32_t candidate : cell->second) {
                 const PlacedPoint& surfel = surfels_[candidate];
                 const glm::vec3 apart = point.position - surfel.position;
                 const float distance2 = glm::dot(apart, apart);
-                if (distance2 < best && surfel.item == point.item &&
+                if (distance2 < nearest.distance2 && surfel.item == point.item &&
                     glm::dot(point.normal, surfel.normal) >= least_cosine &&
-                    std::abs(glm::dot(apart, surfel.normal)) <= off_plane * cell_) {
-                    best = distance2;
-                    found = static_cast<int>(candidate);
+                    std::abs(glm::dot(apart, surfel.normal)) <= off_plane * cell_size(level)) {
+                    nearest = {static_cast<int>(candidate), distance2};
                 }
             }
         }
-        return found;
     }
 
- private:
-    [[nodiscard]] glm::ivec3 coordinates(glm::vec3 position) const {
-        return glm::ivec3(glm::floor(position / cell_));
+    /// Cells of a level are twice as wide as those of the one before.
+    static int level_of(const PlacedPoint& point) {
+        return std::clamp(static_cast<int>(-0.5F * std::log2(point.density)), 0, last_level);
+    }
+    [[nodiscard]] float cell_size(int level) const { return std::ldexp(cell_, level); }
+    [[nodiscard]] glm::ivec3 coordinates(glm::vec3 position, int level) const {
+        return glm::ivec3(glm::floor(position / cell_size(level)));
     }
     /// Different cells may have the same key: callers check what they find.
-    static std::uint64_t key(glm::ivec3 at, std::uint32_t item) {
+    static std::uint64_t key(glm::ivec3 at, std::uint32_t item, int level) {
         const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0xffffU; };
-        return part(at.x) | part(at.y) << 16U | part(at.z) << 32U | std::uint64_t{item} << 48U;
+        const std::uint64_t place = part(at.x) | part(at.y) << 16U | part(at.z) << 32U;
+        return (place | std::uint64_t{item} << 48U) ^ static_cast<std::uint64_t>(level) << 58U;
     }
 
     float cell_;
+    std::bitset<last_level + 1> levels_;  // those that have surfels
     std::vector<PlacedPoint> surfels_;
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
 };
@@ -187,7 +276,7 @@ std::vector<PlacedPoint> middles(const std::vector<PlacedPoint>& points,
                                  const std::vector<PlacedPoint>& surfels) {
     std::vector<glm::vec4> sums(surfels.size(), glm::vec4(0.0F));
     for (std::size_t i = 0; i < points.size(); ++i) {
-        sums[owners[i]] += glm::vec4(points[i].position, 1.0F);
+        sums[owners[i]] += glm::vec4(points[i].position, 1.0F) / points[i].density;  // by area
     }
     std::vector<PlacedPoint> chosen = surfels;
     std::vector<float> best(surfels.size(), std::numeric_limits<float>::infinity());
@@ -245,7 +334,7 @@ SurfelSet collect(const SurfelGrid& grid, const std::vector<PlacedPoint>& points
 SurfelSet spread_surfels(const Sides& all, std::uint32_t count, std::uint32_t points_a_surfel,
                          std::uint32_t seed) {
     constexpr int rounds = 2;
-    const auto spacing = static_cast<float>(std::sqrt(all.area_before.back() / count));
+    const auto spacing = static_cast<float>(std::sqrt(all.weight / count));
     const std::vector<PlacedPoint> points = spread_points(all, points_a_surfel * count, hash(seed));
     SurfelGrid grid = grid_of(spread_points(all, count, hash(seed ^ 0x5bd1e995U)), spacing);
     std::vector<std::uint32_t> owners = assign(grid, points);

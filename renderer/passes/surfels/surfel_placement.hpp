@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/surfels/surfel_focus.hpp"
 
 namespace candela {
 
@@ -33,6 +34,8 @@ struct SceneTriangles {
     std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
     std::vector<bool> double_sided;      ///< by material index
     std::vector<bool> emits;             ///< by material index
+    /// By item, in the triangles' space. An item without any has the density of a focus everywhere.
+    std::vector<std::vector<Focus>> foci{};
 };
 
 /// Average number of points of a cell, of surfels that only reflect light and of those that emit it.
@@ -53,11 +56,12 @@ struct SurfelCounts {
     bool operator==(const SurfelCounts&) const = default;
 };
 
-/// Places surfels evenly by area on the triangles that reflect light, and likewise on those that emit it, on
-/// both sides where the material is double-sided. Each has a cell of points_a_surfel or points_an_emitter
-/// points on average. A cell lies on one side of one item, where the surface is nearly flat; a point that
-/// fits no surfel becomes a surfel of its own. The points follow the R2 sequence; the surfels are relaxed by
-/// Lloyd's algorithm (1982). Equal arguments give equal results.
+/// Places surfels on the triangles that reflect light, and likewise on those that emit it, on both sides
+/// where the material is double-sided: evenly by area, or as dense as the foci ask for (density_at). Each has
+/// a cell of points_a_surfel or points_an_emitter points on average. A cell lies on one side of one item,
+/// where the surface is nearly flat; a point that fits no surfel becomes a surfel of its own. The points
+/// follow the R2 sequence; the surfels are relaxed by Lloyd's algorithm (1982). Equal arguments give equal
+/// results.
 [[nodiscard]] SurfelSet place_surfels(const SceneTriangles& scene, const SurfelCounts& counts,
                                       std::uint32_t seed);
 

@@ -28,6 +28,7 @@ struct SurfelKey {
     std::vector<glm::mat3> shapes;
     SurfelCounts counts;
     std::uint32_t seed = 0;
+    std::vector<std::vector<Focus>> foci;  // by item, in its shape space
     bool operator==(const SurfelKey&) const = default;
 };
 
@@ -49,11 +50,12 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
 
 /// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
 /// deformation came first.
-SceneTriangles triangles_of(const SceneLayout& layout, const std::vector<glm::mat3>& shapes) {
+SceneTriangles triangles_of(const SceneLayout& layout, const SurfelKey& key) {
     SceneTriangles scene;
+    scene.foci = key.foci;
     for (const SceneLayout::Drawable& drawable : layout.solids()) {
         const std::vector<Vertex>& vertices = drawable.primitive->vertices;
-        const glm::mat4 shape(shapes[drawable.item]);
+        const glm::mat4 shape(key.shapes[drawable.item]);
         const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto id = static_cast<std::uint32_t>(scene.triangles.size());
@@ -68,19 +70,66 @@ SceneTriangles triangles_of(const SceneLayout& layout, const std::vector<glm::ma
     return scene;
 }
 
-SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
-                     const SurfelCounts& counts, std::uint32_t seed) {
-    SurfelKey key{layout.geometry, shapes_of(placement), counts, seed};
-    if (last != nullptr && last->key == key) return *last;
-    auto set =
-        std::make_shared<const SurfelSet>(place_surfels(triangles_of(layout, key.shapes), counts, seed));
-    return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
-}
-
 /// Transform from an item's shape space to the world: a rotation, a translation, and the rounding error of
 /// the shape matrix.
 glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
     return world * glm::mat4(glm::inverse(shape));
+}
+
+/// Boxes around the solid parts of the items, world space.
+std::vector<Box> item_boxes(const SceneLayout& layout, const ScenePlacement& placement) {
+    std::vector<Box> boxes(placement.world.size());
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        const Box& local = bounds_of(drawable, placement.deformed);
+        for (unsigned i = 0; i < 8; ++i) {
+            boxes[drawable.item].grow(
+                glm::vec3(placement.world[drawable.item] * glm::vec4(local.corner(i), 1.0F)));
+        }
+    }
+    return boxes;
+}
+
+bool is_inside(const Focus& focus, const Box& box) {
+    const glm::vec3 farthest =
+        glm::max(glm::abs(box.lower - focus.centre), glm::abs(box.upper - focus.centre));
+    return glm::length(farthest) <= focus.radius;
+}
+
+/// A focus in the shape space of an item. It is rounded, more so if the item is far from it, so that it stays
+/// the same, bit for bit, while the item moves a little.
+Focus rounded(const Focus& focus, const Box& item, const glm::mat4& shape_from_world) {
+    const float distance = glm::distance(focus.centre, glm::clamp(focus.centre, item.lower, item.upper));
+    const float step = 0.25F * std::exp2(std::floor(std::log2(std::max(focus.radius, distance))));
+    const glm::vec3 centre(shape_from_world * glm::vec4(focus.centre, 1.0F));
+    return {step * glm::round(centre / step), focus.radius};
+}
+
+/// The foci in the shape spaces of the items; none for an item inside one of them, and for flat items, which
+/// have no inverse.
+std::vector<std::vector<Focus>> foci_by_item(const SceneLayout& layout, const ScenePlacement& placement,
+                                             const std::vector<glm::mat3>& shapes,
+                                             const std::vector<Focus>& foci) {
+    std::vector<std::vector<Focus>> local(shapes.size());
+    if (foci.empty()) return local;
+    const std::vector<Box> boxes = item_boxes(layout, placement);
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        const auto contains = [&](const Focus& focus) { return is_inside(focus, boxes[i]); };
+        const bool is_empty = !(boxes[i].lower.x <= boxes[i].upper.x);
+        if (is_empty || glm::determinant(shapes[i]) == 0.0F || std::ranges::any_of(foci, contains)) continue;
+        const glm::mat4 shape_from_world = glm::inverse(world_from_shape(placement.world[i], shapes[i]));
+        for (const Focus& focus : foci) local[i].push_back(rounded(focus, boxes[i], shape_from_world));
+    }
+    return local;
+}
+
+SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
+                     const std::vector<Focus>& foci, const SurfelCounts& counts, std::uint32_t seed) {
+    std::vector<glm::mat3> shapes = shapes_of(placement);
+    std::vector<std::vector<Focus>> local = foci_by_item(layout, placement, shapes, foci);
+    SurfelKey key{layout.geometry, std::move(shapes), counts, seed, std::move(local)};
+    if (last != nullptr && last->key == key) return *last;
+    auto set = std::make_shared<const SurfelSet>(place_surfels(triangles_of(layout, key), counts, seed));
+    return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
 }
 
 /// Moves surfels and points with the triangles that they were placed on, of items that are deformed.
@@ -172,10 +221,11 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
 
 ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
                                       std::optional<ValueHandle<Refinement>> refinement,
-                                      const VplSettings& settings) {
+                                      ValueHandle<std::vector<Focus>> foci, const VplSettings& settings) {
     return graph.add("surfel-spread", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
+        pass.read(foci);
         if (refinement) pass.read(*refinement);
         const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
                                   .emitting = emitting_surfels(settings.count)};
@@ -185,8 +235,8 @@ ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
         const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
         pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
             const std::uint32_t set = refinement ? run.value(*refinement).surfel_set : 0;
-            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), counts,
-                                settings.seed + set));
+            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), run.value(foci),
+                                counts, settings.seed + set));
         });
         return out;
     });
@@ -219,8 +269,9 @@ glm::mat3 shape_of(const glm::mat4& world) {
 }
 
 Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
-                    std::optional<ValueHandle<Refinement>> refinement, const VplSettings& settings) {
-    const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, settings);
+                    std::optional<ValueHandle<Refinement>> refinement, ValueHandle<std::vector<Focus>> foci,
+                    const VplSettings& settings) {
+    const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, foci, settings);
     return graph.add("surfels", [&](Pass& pass) {
         pass.read(spread_surfels);
         pass.read(scene.layout);

@@ -8,6 +8,7 @@
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/surfels/surfel_focus.hpp"
 #include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
@@ -21,6 +22,7 @@ struct VplAtlas {
     /// Octahedral distance in metres at which depth is 1 (shaders/vpls/vpl_atlas.glsl); rarely changes while
     /// objects move.
     float near = 1.0F;
+    Focus focus{};  ///< maps of VPLs that are far from it see it alone; radius 0: there is none
     bool operator==(const VplAtlas&) const = default;
 };
 
@@ -34,9 +36,11 @@ struct VplCommon {
     BufferHandle<gpu::VplConstants> constants;
 };
 
-/// Adds node `vpl-constants` (CPU, then upload): VplCommon. Depends on the scene's metrics and the counts.
+/// Adds node `vpl-constants` (CPU, then upload): VplCommon. Depends on the scene's metrics, the
+/// counts and the foci of the surfels, if it is they that have maps.
 [[nodiscard]] VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu,
                                           ValueHandle<SceneMetrics> metrics, ValueHandle<VplCounts> counts,
+                                          std::optional<ValueHandle<std::vector<Focus>>> foci,
                                           const VplVisibilitySettings& settings);
 
 /// For a pass whose shader includes vpl_constants.glsl.

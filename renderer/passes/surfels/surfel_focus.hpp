@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include <candela/graph/frame_graph.hpp>
+#include <candela/view.hpp>
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/scene/scene_upload.hpp"
+
+namespace candela {
+
+/// A sphere in which surfels are densest. Outside it, their density falls with the third power of the
+/// distance r from its centre: a cell of area a on the ground has the form factor a h / (π r³) at the height
+/// h above the centre, which is then the same for all cells, however far away.
+struct Focus {
+    glm::vec3 centre{0.0F};
+    float radius = 0.0F;  ///< metres
+    bool operator==(const Focus&) const = default;
+};
+
+/// Density of surfels at a place, in (0, 1]: 1 in any of the spheres, or if there are none.
+[[nodiscard]] float density_at(std::span<const Focus> foci, const glm::vec3& place);
+
+/// Adds node `surfel-focus` (CPU): where surfels should be dense, one sphere for each view. It is around the
+/// eye, and its radius is one to two times the median distance of the surfaces that rays hit, of those
+/// through the picture or those in all directions, whichever is greater. It changes in steps only, so that
+/// surfels stay where they are while a camera moves a little. There are no spheres if `count` surfels, spread
+/// evenly, are dense enough for a view. Depends on the views, and on the scene's layout and placement.
+[[nodiscard]] ValueHandle<std::vector<Focus>> add_surfel_focus(
+    FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
+    const std::vector<ValueHandle<CameraView>>& views, std::uint32_t count);
+
+}  // namespace candela
