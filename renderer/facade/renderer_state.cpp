@@ -202,9 +202,11 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     const gl::HostState host_state(gpu_.gl());
     FrameShape shape{.views = {}, .quality = {}, .contents = contents_now(world)};
     std::vector<ViewRequest> requests;
+    std::vector<ViewRequest> without_jitter;
     for (const RenderView& view : views) {
         shape.views.push_back({view.target.size, view.surfaces.has_value(), view.keep});
         requests.push_back({view.camera, view.target.size, view.jitter});
+        without_jitter.push_back({view.camera, view.target.size});
     }
     shape.quality = quality_now(world, std::move(requests));
     if (shape != shape_) switch_to(configuration_, shape, extensions_);
@@ -218,6 +220,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     }
     set_refinement_clock();
     if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);
+    if (frame_.requests) runtime_.set(*frame_.requests, std::move(without_jitter));
 
     const auto start = std::chrono::steady_clock::now();
     const std::uint64_t index = next_frame_++;

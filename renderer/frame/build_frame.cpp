@@ -46,7 +46,7 @@ std::optional<ValueHandle<Refinement>> add_cameras(FrameGraph& graph, const Conf
     std::vector<ValueHandle<CameraView>> requested;
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
         begin_view(graph, i);
-        frame.views[i].camera = frame.views[i].requested = add_view(graph, frame.views[i].request);
+        frame.views[i].camera = add_view(graph, frame.views[i].request);
         requested.push_back(frame.views[i].camera);
     }
     end_view(graph);
@@ -108,9 +108,8 @@ MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
     }
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
     const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
-    std::vector<ValueHandle<CameraView>> views;
-    for (const ViewHandles& view : frame.views) views.push_back(view.requested);
-    const auto foci = add_surfel_focus(graph, lit.scene, lit.tracing, views, settings.count);
+    frame.requests = graph.import_value<std::vector<ViewRequest>>("view requests");
+    const auto foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests, settings.count);
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, foci, settings);
     const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
     SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};

@@ -26,7 +26,6 @@ struct ViewHandles {
     ValueHandle<Target> target;                          ///< imported
     TextureHandle picture;                               ///< imported: what is drawn to `target`
     std::optional<HostSurfaceInputs> host;               ///< imported; none: Candela draws the surfaces
-    ValueHandle<CameraView> requested;                   ///< without refinement's samples
     ValueHandle<CameraView> camera;                      ///< with refinement's samples
     std::optional<ValueHandle<std::uint32_t>> averaged;  ///< see Refined; none without refinement
     std::uint32_t interleave = 1;           ///< n: a pixel evaluates one in n² VPLs; 1: all of them
@@ -41,6 +40,8 @@ struct FrameHandles {
     SceneLights lights;
     /// Imported: see add_scene_motion; none without surfels.
     std::optional<ValueHandle<std::uint64_t>> epoch;
+    /// Imported: of all views, with the size of the target and without jitter; none without surfels.
+    std::optional<ValueHandle<std::vector<ViewRequest>>> requests;
     std::optional<Vpls> vpls;                                      ///< none without indirect light
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::vector<ViewHandles> views;                                ///< at least one

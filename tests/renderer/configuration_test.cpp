@@ -320,7 +320,8 @@ TEST_SUITE("configuration") {
         const std::string scene =
             "scene-gather scene-upload instance-upload bvh lights shadow-plan shadow-maps light-upload view ";
         const std::string vpls =
-            "scene-motion surfel-spread surfels surfel-visibility surfel-light surfel-bounce vpl-constants ";
+            "scene-motion surfel-focus surfel-spread surfels surfel-visibility surfel-light surfel-bounce "
+            "vpl-constants ";
         const std::string deferred = "view-upload view-cull gbuffer deferred transparent tone-map";
         const std::string forward = "view-upload view-cull forward transparent tone-map";
         CHECK(passes_of(ShadingPath::deferred, true) == scene + vpls + deferred);

@@ -109,24 +109,26 @@ float density_at(std::span<const Focus> foci, const glm::vec3& place) {
 
 ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneData& scene,
                                                  const Tracing& tracing,
-                                                 const std::vector<ValueHandle<CameraView>>& views,
+                                                 ValueHandle<std::vector<ViewRequest>> requests,
                                                  std::uint32_t count) {
     return graph.add("surfel-focus", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
         pass.read(tracing.hierarchy);
         pass.read(tracing.metrics);
-        for (const ValueHandle<CameraView> view : views) pass.read(view);
+        pass.read(requests);
+        pass.read<Camera>();
+        pass.read<Transform>();
         pass.parameter(count);
         const auto out = pass.write(graph.value<std::vector<Focus>>("surfel foci"));
         pass.run([=](Execution& run) {
             const TracedScene traced{*run.value(tracing.hierarchy), run.value(scene.layout),
                                      run.value(scene.placement)};
-            const float spacing =
-                std::sqrt(run.value(tracing.metrics).area / static_cast<float>(std::max(count, 1U)));
+            const float area = run.value(tracing.metrics).area;
+            const float spacing = std::sqrt(area / static_cast<float>(std::max(count, 1U)));
             std::vector<Focus> foci;
-            for (const ValueHandle<CameraView> view : views) {
-                const auto focus = focus_of(run.value(view), traced, spacing);
+            for (const ViewRequest& request : run.value(requests)) {
+                const auto focus = focus_of(requested_view(run.world(), request), traced, spacing);
                 if (!focus) return run.set(out, std::vector<Focus>{});
                 foci.push_back(*focus);
             }

@@ -7,9 +7,9 @@
 #include <glm/vec3.hpp>
 
 #include <candela/graph/frame_graph.hpp>
-#include <candela/view.hpp>
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/view/view.hpp"
 
 namespace candela {
 
@@ -29,9 +29,11 @@ struct Focus {
 /// eye, and its radius is one to two times the median distance of the surfaces that rays hit, of those
 /// through the picture or those in all directions, whichever is greater. It changes in steps only, so that
 /// surfels stay where they are while a camera moves a little. There are no spheres if `count` surfels, spread
-/// evenly, are dense enough for a view. Depends on the views, and on the scene's layout and placement.
-[[nodiscard]] ValueHandle<std::vector<Focus>> add_surfel_focus(
-    FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
-    const std::vector<ValueHandle<CameraView>>& views, std::uint32_t count);
+/// evenly, are dense enough for a view. Depends on `requests` (imported: all views), Camera, Transform, and
+/// the scene's layout and placement.
+[[nodiscard]] ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneData& scene,
+                                                               const Tracing& tracing,
+                                                               ValueHandle<std::vector<ViewRequest>> requests,
+                                                               std::uint32_t count);
 
 }  // namespace candela

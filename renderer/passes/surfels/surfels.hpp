@@ -31,11 +31,11 @@ struct Surfels {
     BufferHandle<gpu::CellPoint> points;
 };
 
-/// Adds nodes `surfel-spread` (CPU: places surfels on the items, densely in the foci; with refinement, those of
-/// the current surfel set) and `surfels` (CPU, then upload: their positions in the world). Surfels belong to the items of the
-/// scene and move with them, and with the triangles of a deformed one; all are placed again when an item is
-/// added, removed or changes its shape. They depend on the scene's layout and placement, on the
-/// foci and on the refinement; `surfel-spread` also on its own last result.
+/// Adds nodes `surfel-spread` (CPU: places surfels on the items, densely in the foci; with refinement, those
+/// of the current surfel set) and `surfels` (CPU, then upload: their positions in the world). Surfels belong
+/// to the items of the scene and move with them, and with the triangles of a deformed one; all are placed
+/// again when an item is added, removed or changes its shape. They depend on the scene's layout and
+/// placement, on the foci and on the refinement; `surfel-spread` also on its own last result.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                   std::optional<ValueHandle<Refinement>> refinement,
                                   ValueHandle<std::vector<Focus>> foci, const VplSettings& settings);

@@ -28,12 +28,13 @@ struct MappedVpls {
 
 /// Adds node `vpl-maps` (raster; fragments trace rays): a depth map of the hemisphere above each VPL, in the
 /// hemi-octahedral mapping (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-/// Vectors", 2014), or, of a VPL that is far from VplAtlas::focus, a perspective one of the focus. Each texel traces a ray through the BVH. In contrast to rasterised meshes, large
-/// triangles are therefore exact in a curved mapping whatever their tessellation, and a map costs as many
-/// rays as it has texels, however large the scene is. One draw covers all maps. With surfels, only texels
-/// whose rays pass through changed boxes are traced again. Depends on the VPLs, the BVH and the constants;
-/// with surfels also on motion and on its own last result. Returns a 2D array of depth32f, reversed: 1 near
-/// the VPL, 0 where there is no surface (shaders/vpls/vpl_atlas.glsl).
+/// Vectors", 2014), or, of a VPL that is far from VplAtlas::focus, a perspective one of the focus. Each texel
+/// traces a ray through the BVH. In contrast to rasterised meshes, large triangles are therefore exact in a
+/// curved mapping whatever their tessellation, and a map costs as many rays as it has texels, however large
+/// the scene is. One draw covers all maps. With surfels, only texels whose rays pass through changed boxes
+/// are traced again. Depends on the VPLs, the BVH and the constants; with surfels also on motion and on its
+/// own last result. Returns a 2D array of depth32f, reversed: 1 near the VPL, 0 where there is no surface
+/// (shaders/vpls/vpl_atlas.glsl).
 [[nodiscard]] TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                          const MappedVpls& vpls, const VplCommon& common);
 
