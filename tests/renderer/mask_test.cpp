@@ -184,6 +184,26 @@ TEST_SUITE("masks") {
         }
     }
 
+    TEST_CASE_FIXTURE(Masks, "light passes through holes that are finer than a traced image of a colour is") {
+        Image stripes{.width = 1024, .height = 1024, .texels = {}};
+        for (std::uint32_t i = 0; i < stripes.width * stripes.height; ++i) {
+            stripes.texels.emplace_back(255, 255, 255, i / 2 % 2 * 255);
+        }
+        Scene scene = ground();
+        add(scene.world, at({0, static_cast<float>(shading_height), 0}),
+            MeshInstance{square(static_cast<float>(half),
+                                masked(0.9F, factor_alpha, std::make_shared<const Image>(stripes)))});
+        scene.world.set(scene.camera, looking({0.4F, 1.3F, 1.0F}, {0, 0, 0}));
+        scene.world.set(scene.light, looking({0.1F, 1, 0}, {0, 0, 0}));
+        scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F});
+        // A stripe is two texels wide. Alpha rises linearly between the middles of neighbouring texels, and
+        // reaches the cutoff after 0.375 of a texel: 1.75 texels of four are holes.
+        const double lit = mean(direct_light(scene, ShadingPath::deferred, false));
+        const double through = mean(direct_light(scene, ShadingPath::deferred));
+        // 6,144 pixels: five times the deviation of the mean of as many random places.
+        CHECK(std::abs(through / lit - 1.75 / 4.0) < 0.03);
+    }
+
     TEST_CASE_FIXTURE(Masks,
                       "light passes through the holes: shadows of directional, spot and point lights") {
         // The square is above the camera and invisible.

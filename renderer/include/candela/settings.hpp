@@ -85,7 +85,7 @@ void for_each_setting(Config& c, const Visitor& visit) {
     row("shadows.enabled", "", c.shadows.enabled, {},
         "whether surfaces block the light of lights that cast shadows");
     row("shadows.cube_resolution", "", c.shadows.cube_resolution, {16, 8192},
-        "texels along an edge of the shadow maps of point lights and wide spot lights", c.shadows.enabled);
+        "texels along an edge of the shadow maps of nearby point and wide spot lights", c.shadows.enabled);
     row("shadows.map_resolution", "", c.shadows.map_resolution, {16, 8192},
         "texels along an edge of the shadow maps of other lights", c.shadows.enabled);
     row("shadows.budget_mib", "", c.shadows.budget_mib, {0, 1 << 16}, "MiB for all shadow maps together",

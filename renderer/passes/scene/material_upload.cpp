@@ -46,18 +46,22 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
     return std::make_shared<const MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
 }
 
-/// Scales an image down to `traced_image_size` if it is larger. Alpha is filtered linearly and does not
-/// weight the colours, because most materials ignore it.
+bool is_opaque(const Image& image) {
+    return std::ranges::all_of(image.texels, [](const glm::u8vec4& texel) { return texel.a == 255; });
+}
+
+/// Scales an image down to `traced_image_size` if it is larger. One with alpha stays as it is: the shadows of
+/// masked surfaces are found by rays.
 Image reduce(const Image& image) {
     const std::uint32_t longer = std::max(image.width, image.height);
-    if (longer <= traced_image_size) return image;
+    if (longer <= traced_image_size || !is_opaque(image)) return image;
     Image reduced = image;
     reduced.width = std::max(1U, image.width * traced_image_size / longer);
     reduced.height = std::max(1U, image.height * traced_image_size / longer);
     reduced.texels.resize(static_cast<std::size_t>(reduced.width) * reduced.height);
     stbir_resize_uint8_srgb(&image.texels[0].x, static_cast<int>(image.width), static_cast<int>(image.height),
                             0, &reduced.texels[0].x, static_cast<int>(reduced.width),
-                            static_cast<int>(reduced.height), 0, 4, 3, STBIR_FLAG_ALPHA_PREMULTIPLIED);
+                            static_cast<int>(reduced.height), 0, 4, STBIR_ALPHA_CHANNEL_NONE, 0);
     return reduced;
 }
 
