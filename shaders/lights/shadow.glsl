@@ -62,7 +62,8 @@ bool is_blocked(Shadow shadow, vec3 origin, Light light) {
 }
 
 // Rays that the invocation may still cast: software drivers stop long loops (see max_vpls_per_invocation in
-// renderer/passes/indirect/vpl_light.hpp). lighting_parts sees to it that they suffice, except for blended surfaces.
+// renderer/passes/indirect/vpl_light.hpp). lighting_parts sees to it that they suffice for up to 512 lights, except
+// on blended surfaces.
 int shadow_rays_left = MOST_SHADOW_RAYS;
 
 // Share of the light lights[index] that reaches the surface, which must face it. It is neither 0 nor 1 only

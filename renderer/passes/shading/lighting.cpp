@@ -59,10 +59,12 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
 
 std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting) {
     constexpr std::uint32_t few = MOST_SHADOW_RAYS / 4;  // an invocation shades up to four surfaces
+    constexpr std::uint32_t most_parts = 64;
     const LightTable& lights = run.value(lighting.lights.table);
+    const std::uint32_t count = shows_direct(lighting.show) ? light_count(lights) : 0;
     const bool many_rays =
         lighting.shadow_rays && std::ranges::count_if(lights.entries, &LightTable::Entry::casts_shadow) > few;
-    return loop_parts(shows_direct(lighting.show) ? light_count(lights) : 0, many_rays ? few : 8192);
+    return loop_parts(count, many_rays ? std::clamp(count / most_parts, few, 8192U) : 8192U);
 }
 
 }  // namespace candela

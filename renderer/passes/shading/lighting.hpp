@@ -47,9 +47,10 @@ struct Lighting {
 void read_lighting(Pass& pass, const Lighting& lighting);
 
 /// The dispatches or draws of a shading pass. Each adds the light of some entries of the light lists; the
-/// first one also adds the indirect light. With at most 8,192 entries, or 8 if more than 8 lights cast
-/// shadows, the loops of an invocation stay within the limit described at `loop_parts`, and a ray can be cast
-/// wherever a shadow map does not decide: see MOST_SHADOW_RAYS.
+/// first one also adds the indirect light. With at most 8,192 entries the loops of an invocation stay within
+/// the limit described at `loop_parts`. If more than 8 lights cast shadows, 8 entries are few enough for a
+/// ray wherever a shadow map does not decide (see MOST_SHADOW_RAYS). That is kept up to 512 lights; with
+/// more, there are about 64 parts, and rays may run out.
 [[nodiscard]] std::vector<gl::Uniforms> lighting_parts(const Execution& run, const Lighting& lighting);
 
 }  // namespace candela
