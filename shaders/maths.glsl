@@ -26,19 +26,6 @@ vec3 octahedral_decode(vec2 p) {
     return normalize(n);
 }
 
-// Hemi-octahedral map of the hemisphere around +z to [-1, 1]²: the octahedral map rotated by 45 degrees and scaled to
-// fill the square. Same paper.
-vec2 hemi_octahedral_encode(vec3 n) {
-    vec2 p = n.xy / (abs(n.x) + abs(n.y) + n.z);
-    return vec2(p.x + p.y, p.x - p.y);
-}
-
-// The point on the octahedron |x| + |y| + z = 1.
-vec3 hemi_octahedral_point(vec2 p) {
-    vec2 q = vec2(p.x + p.y, p.x - p.y) * 0.5;
-    return vec3(q, 1.0 - abs(q.x) - abs(q.y));
-}
-
 // sRGB transfer functions: IEC 61966-2-1.
 vec3 srgb_decode(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));

@@ -22,10 +22,12 @@ VplTile vpl_tile(uint map) {
 // Where the depth map of a VPL at that position is seen from.
 vec3 vpl_map_origin(vec3 position, vec3 normal) { return position + vpl_constants.ray_offset * normal; }
 
-// The space of a map, with its origin at vpl_map_origin.
+// How a map sees the world. A direction in its space meets the surface bend (|x| + |y|) + z = 1 in the point that the map
+// stores: the octahedron, or the plane z = 1 (theory.md, "One plane in a VPL map").
 struct MapFrame {
     mat3 map_from_world;
-    float tangent;  // of half the field of view of a perspective map, which looks along +z; 0: hemi-octahedral around +z
+    float bend;   // 1: hemi-octahedral, around +z (Cigolle et al. 2014); 0: perspective, along +z
+    float width;  // half a diagonal of the square that the map covers on that surface
 };
 
 MapFrame vpl_map_frame(vec3 position, vec3 normal) {
@@ -36,24 +38,25 @@ MapFrame vpl_map_frame(vec3 position, vec3 normal) {
     vec3 axis = is_far ? to_focus * inversesqrt(distance2) : normal;
     vec3 tangent, bitangent;
     basis_around(axis, tangent, bitangent);
-    // The cone around the sphere: sin = radius / distance.
-    return MapFrame(transpose(mat3(tangent, bitangent, axis)), is_far ? sqrt(radius2 / (distance2 - radius2)) : 0.0);
+    // The square is around the circle in which the plane cuts the cone around the sphere: sin = radius / distance.
+    float width = is_far ? sqrt(2.0 * radius2 / (distance2 - radius2)) : 1.0;
+    return MapFrame(transpose(mat3(tangent, bitangent, axis)), is_far ? 0.0 : 1.0, width);
 }
 
-bool is_perspective(MapFrame frame) { return frame.tangent > 0.0; }
+// Length of a vector along the surface's shape: 1 on it.
+float vpl_map_length(MapFrame frame, vec3 at) { return frame.bend * (abs(at.x) + abs(at.y)) + at.z; }
 
-// Where depth 1 is in the direction of a place in the map, in [-1, 1]², in units of map_near.
-vec3 vpl_map_point(MapFrame frame, vec2 place) {
-    return is_perspective(frame) ? vec3(frame.tangent * place, 1.0) : hemi_octahedral_point(place);
-}
-
-// Place in the map of a direction in its space.
+// Place in the map, in [-1, 1]², of a direction in its space. Its sides are diagonal to x and y.
 vec2 vpl_map_place(MapFrame frame, vec3 at) {
-    return is_perspective(frame) ? at.xy / (at.z * frame.tangent) : hemi_octahedral_encode(at);
+    vec2 p = at.xy / (frame.width * vpl_map_length(frame, at));
+    return vec2(p.x + p.y, p.x - p.y);
+}
+
+// The point of the surface at a place in the map.
+vec3 vpl_map_point(MapFrame frame, vec2 place) {
+    vec2 p = frame.width * 0.5 * vec2(place.x + place.y, place.x - place.y);
+    return vec3(p, 1.0 - frame.bend * abs(p.x) - frame.bend * abs(p.y));
 }
 
 // `at`: in the map's space, metres from its origin.
-float vpl_map_depth(MapFrame frame, vec3 at) {
-    float distance = is_perspective(frame) ? at.z : abs(at.x) + abs(at.y) + at.z;
-    return min(vpl_constants.map_near / distance, 1.0);
-}
+float vpl_map_depth(MapFrame frame, vec3 at) { return min(vpl_constants.map_near / vpl_map_length(frame, at), 1.0); }

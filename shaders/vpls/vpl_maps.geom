@@ -12,7 +12,7 @@ flat out uint vpl_index;
 void main() {
     if (!has_map(vpl_id[0])) return;
     MappedVpl vpl = mapped_vpl(vpl_id[0]);
-    bool sees_above = !is_perspective(vpl_map_frame(vpl.position, vpl.normal));
+    bool sees_above = vpl_map_frame(vpl.position, vpl.normal).bend > 0.0;
     if (sees_above && !may_have_changed_above(vpl.position, vpl.normal)) return;
     VplTile tile = vpl_tile(vpl_id[0]);
     for (uint i = 0u; i < 4u; ++i) {

@@ -73,24 +73,23 @@ float share_beyond(MapTexels texels, MapFrame frame, float distance) {
     float texel = 2.0 / float(vpl_constants.map_resolution);
     vec4 u = texel * (texels.first.x + vec4(0.5, 1.5, 0.5, 1.5)) - 1.0;
     vec4 v = texel * (texels.first.y + vec4(0.5, 0.5, 1.5, 1.5)) - 1.0;
-    vec4 x = is_perspective(frame) ? frame.tangent * u : 0.5 * (u + v);
-    vec4 y = is_perspective(frame) ? frame.tangent * v : 0.5 * (u - v);
-    vec4 z = is_perspective(frame) ? vec4(1.0) : 1.0 - abs(x) - abs(y);
+    vec4 x = frame.width * 0.5 * (u + v);
+    vec4 y = frame.width * 0.5 * (u - v);
+    vec4 z = 1.0 - frame.bend * abs(x) - frame.bend * abs(y);
     vec4 nearest = vpl_constants.map_near * sqrt(x * x + y * y + z * z);
     vec4 share = bilinear_weights(clamp(texels.at, 0.0, 1.0));
     return dot(share, vec4(greaterThanEqual(nearest, distance * texels.depth)));
 }
 
-// A hemi-octahedral map covers the hemisphere above the VPL's surface only.
-vec3 above_horizon(MapFrame frame, vec3 at) { return is_perspective(frame) ? at : vec3(at.xy, max(at.z, 0.0)); }
+// A map covers the hemisphere along its axis only.
+vec3 above_horizon(vec3 at) { return vec3(at.xy, max(at.z, 0.0)); }
 
 // Sine of the largest angle δ between a direction and the centres of the texels that its bilinear look-up reads, in a
-// map of N = `texels` texels along a side: sin δ ≤ 2√2 s / N with s = |x| + |y| + z. The factor 1 + 5/N allows for the
+// map of N = `texels` texels along a side: sin δ ≤ 2√2 w s / N with w = MapFrame::width and s = vpl_map_length. The factor 1 + 5/N allows for the
 // lift, which turns the look-up by δ; s is never above √3. See theory.md, "Footprint of a look-up".
 float footprint_sine(MapFrame frame, vec3 direction, float texels) {
-    if (is_perspective(frame)) return 2.8284271 * frame.tangent / texels;
-    float s = abs(direction.x) + abs(direction.y) + direction.z;
-    return min(2.8284271 * min(s * (1.0 + 5.0 / texels), 1.7320508) / texels, 0.9);
+    float s = vpl_map_length(frame, direction);
+    return min(2.8284271 * min(s * (1.0 + 5.0 / texels), 1.7320508) / texels * frame.width, 0.9);
 }
 
 // Metres to lift the surface along its normal before the look-up: ρ tan δ, with ρ the distance `aside` from the foot of
@@ -112,11 +111,11 @@ float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
     float distance = length(at);
     float height = dot(facing, at);
     float aside = sqrt(max(distance * distance - height * height, 0.0));
-    float sine = footprint_sine(frame, above_horizon(frame, at) / distance, float(vpl_constants.map_resolution));
+    float sine = footprint_sine(frame, above_horizon(at) / distance, float(vpl_constants.map_resolution));
     vec3 lifted = at + lift_above_map(aside, distance, sine) * facing;
-    vec3 seen = above_horizon(frame, lifted);
+    vec3 seen = above_horizon(lifted);
     vec2 place = vpl_map_place(frame, seen);
-    if (is_perspective(frame) && (seen.z <= 0.0 || any(greaterThan(abs(place), vec2(1.0))))) return OUTSIDE;
+    if (max(abs(place.x), abs(place.y)) > 1.001) return OUTSIDE;
     MapTexels texels = texels_around(map, place);
     if (see_one_plane(texels)) return is_before_plane(texels, frame, seen) ? 1.0 : 0.0;
     return share_beyond(texels, frame, min(length(lifted), distance));
