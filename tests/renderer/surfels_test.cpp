@@ -313,6 +313,16 @@ TEST_SUITE("surfels: light") {
         CHECK(after == from_scratch(scene, {32, 24}));
     }
 
+    TEST_CASE_FIXTURE(SurfelTests, "a camera close to a wall does not draw the surfels of a room to it") {
+        configure(surfels(512));
+        Scene scene = cornell_box();
+        static_cast<void>(render(scene, {16, 16}));
+        scene.world.set(scene.camera, looking({-0.95F, 0.6F, -0.4F}, {-1.0F, 0.6F, -0.4F}));
+        static_cast<void>(render(scene, {16, 16}));
+        CHECK(ran("surfel-focus"));
+        CHECK_FALSE(ran("surfels"));
+    }
+
     TEST_CASE_FIXTURE(SurfelTests, "with more surfels less of a closed box's flux is lost") {
         const Scene scene = furnace_box(0.5F);
         double before = 1.0;

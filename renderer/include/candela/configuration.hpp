@@ -37,7 +37,7 @@ enum class VplPlacement : std::uint8_t {
     /// Where light paths from the lights hit surfaces: Keller, "Instant Radiosity" (1997). Paths start
     /// neither at surfaces that emit light nor in the sky: a world with one of these always has surfels.
     paths,
-    surfels  ///< evenly on all surfaces, independent of the lights; they gather their light
+    surfels  ///< on all surfaces, independent of the lights; they gather their light
 };
 
 /// Largest VplSettings::count with VplPlacement::surfels. The form factors between them then take 256 MiB.

@@ -53,7 +53,7 @@ void for_each_setting(Config& c, const Visitor& visit) {
     row("indirect", "--indirect", c.indirect, {}, "light that surfaces reflect onto others, by VPLs");
 
     row("vpls.placement", "--vpl-placement", c.vpls.placement, {},
-        "surfels: VPLs evenly on all surfaces, which stay while lights move; paths: where paths from the "
+        "surfels: VPLs on all surfaces, which stay while lights move; paths: where paths from the "
         "lights hit surfaces, traced again after every move. A scene with a sky or surfaces that emit light "
         "always has surfels",
         c.indirect);

@@ -25,22 +25,35 @@ struct TracedScene {
     const ScenePlacement& placement;
 };
 
-/// Distance along the ray to the nearest surface, in lengths of its direction; infinite if there is none.
-float distance_along(const TracedScene& scene, const Ray& ray) {
+/// Where a ray meets the nearest surface.
+struct SurfaceHit {
+    float distance;    // along the ray, metres: its direction has unit length
+    glm::vec3 normal;  // unit, on the side that the ray comes from
+};
+
+std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& ray) {
     float nearest = ray.t_max;
+    Triangle hit_triangle{};
     traverse(scene.hierarchy.top.bvh, ray, [&](std::uint32_t leaf) {
         const std::uint32_t object = scene.hierarchy.top.leaves[leaf].object;
         const SceneLayout::Drawable& drawable = scene.layout.drawables[object];
         const std::span<const Vertex> vertices = vertices_of(drawable, scene.placement.deformed);
         const glm::mat4& world = scene.placement.world[drawable.item];
         traverse(scene.hierarchy.objects[object].bvh, ray, [&](std::uint32_t i) {
-            const auto hit = intersect(place_triangle(scene.layout, drawable, vertices, i, world), i, ray);
-            if (hit) nearest = std::min(nearest, hit->t);
+            const Triangle triangle = place_triangle(scene.layout, drawable, vertices, i, world);
+            const auto hit = intersect(triangle, i, ray);
+            if (hit && hit->t < nearest) {
+                nearest = hit->t;
+                hit_triangle = triangle;
+            }
             return nearest;
         });
         return nearest;
     });
-    return nearest;
+    if (!std::isfinite(nearest)) return std::nullopt;
+    const glm::vec3 cross = glm::cross(hit_triangle.b - hit_triangle.a, hit_triangle.c - hit_triangle.a);
+    const glm::vec3 normal = glm::normalize(cross);
+    return SurfaceHit{nearest, glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
 }
 
 constexpr int rays_a_side = 8;
@@ -61,34 +74,60 @@ std::vector<Ray> rays_through(const CameraView& view) {
     return rays;
 }
 
-/// Rays in all directions, spread evenly along a spiral on the sphere.
+/// Direction i of `ray_count` that are spread evenly, along a spiral on the sphere.
+glm::vec3 direction_on_sphere(int i) {
+    const float z = static_cast<float>(2 * i + 1) / static_cast<float>(ray_count) - 1.0F;
+    const float angle = static_cast<float>(i) * std::numbers::pi_v<float> * (3.0F - std::sqrt(5.0F));
+    const float ring = std::sqrt(1.0F - z * z);
+    return {ring * std::cos(angle), ring * std::sin(angle), z};
+}
+
 std::vector<Ray> rays_around(const glm::vec3& eye) {
     std::vector<Ray> rays;
-    for (int i = 0; i < ray_count; ++i) {
-        const float z = static_cast<float>(2 * i + 1) / static_cast<float>(ray_count) - 1.0F;
-        const float angle = static_cast<float>(i) * std::numbers::pi_v<float> * (3.0F - std::sqrt(5.0F));
-        const float ring = std::sqrt(1.0F - z * z);
-        rays.push_back({eye, {ring * std::cos(angle), ring * std::sin(angle), z}});
-    }
+    for (int i = 0; i < ray_count; ++i) rays.push_back({eye, direction_on_sphere(i)});
     return rays;
 }
 
-/// Median distance of the surfaces that the rays hit, metres; 0 if they hit none.
-float median_distance(const TracedScene& scene, const std::vector<Ray>& rays) {
+/// What rays found.
+struct Surroundings {
+    float distance = 0.0F;     // median of those that hit a surface, metres; 0 if none did
+    float hit_share = 0.0F;    // of the rays
+    std::vector<Ray> onwards;  // from where they hit, in directions distributed by the cosine to the normal
+};
+
+Surroundings surroundings(const TracedScene& scene, const std::vector<Ray>& rays, float ray_offset) {
+    Surroundings found;
     std::vector<float> distances;
-    for (const Ray& ray : rays) {
-        const float distance = distance_along(scene, ray);
-        if (std::isfinite(distance)) distances.push_back(distance);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Ray& ray = rays[i];
+        const auto hit = nearest_surface(scene, ray);
+        if (!hit) continue;
+        distances.push_back(hit->distance);
+        const glm::vec3 onwards =
+            hit->normal + 0.999F * direction_on_sphere(static_cast<int>(i * 29 % rays.size()));
+        found.onwards.push_back(
+            {ray.origin + hit->distance * ray.direction + ray_offset * hit->normal, glm::normalize(onwards)});
     }
-    if (distances.empty()) return 0.0F;
+    if (distances.empty()) return found;
+    found.hit_share = static_cast<float>(distances.size()) / static_cast<float>(rays.size());
     const auto middle = distances.begin() + std::ssize(distances) / 2;
     std::ranges::nth_element(distances, middle);
-    return *middle;
+    found.distance = *middle;
+    return found;
 }
 
-std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, float spacing) {
-    const float distance =
-        std::max(median_distance(scene, rays_through(view)), median_distance(scene, rays_around(view.eye)));
+/// How far the surfaces are that a view sees, and those that light them.
+float view_distance(const CameraView& view, const TracedScene& scene, float ray_offset) {
+    const Surroundings seen = surroundings(scene, rays_through(view), ray_offset);
+    const Surroundings around = surroundings(scene, rays_around(view.eye), ray_offset);
+    const Surroundings beyond = surroundings(scene, seen.onwards, ray_offset);
+    const float indoors = beyond.hit_share > 0.5F ? beyond.distance : 0.0F;
+    return std::max({seen.distance, around.distance, indoors});
+}
+
+std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, const SceneMetrics& metrics,
+                              float spacing) {
+    const float distance = view_distance(view, scene, metrics.ray_offset());
     if (!(distance > 0.0F)) return std::nullopt;
     const float radius = 2.0F * std::exp2(std::floor(std::log2(distance)));
     if (least_spacings * spacing <= radius) return std::nullopt;
@@ -101,8 +140,9 @@ std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, 
 float density_at(std::span<const Focus> foci, const glm::vec3& place) {
     if (foci.empty()) return 1.0F;
     float radii = std::numeric_limits<float>::infinity();
-    for (const Focus& focus : foci)
+    for (const Focus& focus : foci) {
         radii = std::min(radii, glm::distance(place, focus.centre) / focus.radius);
+    }
     radii = std::max(radii, 1.0F);
     return 1.0F / (radii * radii * radii);
 }
@@ -124,11 +164,11 @@ ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneD
         pass.run([=](Execution& run) {
             const TracedScene traced{*run.value(tracing.hierarchy), run.value(scene.layout),
                                      run.value(scene.placement)};
-            const float area = run.value(tracing.metrics).area;
-            const float spacing = std::sqrt(area / static_cast<float>(std::max(count, 1U)));
+            const SceneMetrics& metrics = run.value(tracing.metrics);
+            const float spacing = std::sqrt(metrics.area / static_cast<float>(std::max(count, 1U)));
             std::vector<Focus> foci;
             for (const ViewRequest& request : run.value(requests)) {
-                const auto focus = focus_of(requested_view(run.world(), request), traced, spacing);
+                const auto focus = focus_of(requested_view(run.world(), request), traced, metrics, spacing);
                 if (!focus) return run.set(out, std::vector<Focus>{});
                 foci.push_back(*focus);
             }

@@ -26,11 +26,11 @@ struct Focus {
 [[nodiscard]] float density_at(std::span<const Focus> foci, const glm::vec3& place);
 
 /// Adds node `surfel-focus` (CPU): where surfels should be dense, one sphere for each view. It is around the
-/// eye, and its radius is one to two times the median distance of the surfaces that rays hit, of those
-/// through the picture or those in all directions, whichever is greater. It changes in steps only, so that
-/// surfels stay where they are while a camera moves a little. There are no spheres if `count` surfels, spread
-/// evenly, are dense enough for a view. Depends on `requests` (imported: all views), Camera, Transform, and
-/// the scene's layout and placement.
+/// eye. Its radius is one to two times a distance, the greatest of three medians that rays find: of the
+/// surfaces in the picture, of those all around the eye, and, indoors, from what is in the picture to what
+/// lights it. It changes in steps only, so that surfels stay where they are while a camera moves a little.
+/// There are no spheres if `count` surfels, spread evenly, are dense enough for a view. Depends on `requests`
+/// (imported: all views), Camera, Transform, and the scene's layout and placement.
 [[nodiscard]] ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneData& scene,
                                                                const Tracing& tracing,
                                                                ValueHandle<std::vector<ViewRequest>> requests,

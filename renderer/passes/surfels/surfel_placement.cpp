@@ -43,8 +43,8 @@ struct PlacedPoint : gpu::CellPoint {
 /// Sides of triangles: both of double-sided ones.
 struct Sides {
     std::vector<Side> sides;
-    std::vector<double>
-        weight_before;    // by side: area times density of all sides before it, m²; then the total
+    /// By side: the weight, which is area times density, of all sides before it, m²; then that of all.
+    std::vector<double> weight_before;
     double weight = 0.0;  // of all
 
     void add(const Side& side, double area) {
