@@ -38,17 +38,19 @@ float geometry_term(TracedVpl vpl, Surface surface) {
 }
 
 // π times the irradiance from the VPL, whose index is that of its depth map.
-vec3 irradiance_from_traced(uint index, TracedVpl vpl, Surface surface) {
+vec3 irradiance_from_traced(uint index, TracedVpl vpl, VplPose pose, Surface surface) {
     if (vpl.state == VPL_ESCAPED) return vec3(0.0);
     float geometry = geometry_term(vpl, surface);
-    if (geometry > 0.0) geometry *= visibility_of_vpl(index, vpl.position, vpl.normal, surface);
+    if (geometry > 0.0) geometry *= visibility_of_vpl(index, pose, surface);
     return vpl.flux * geometry;
 }
 
-// Adds π times the irradiance from the VPL of that index. Loops over the surfaces inside, so that it is fetched once.
+// Adds π times the irradiance from the VPL of that index. Loops over the surfaces inside, so that it is fetched, and the
+// frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
     TracedVpl vpl = traced_vpls[index];
-    for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_traced(index, vpl, surfaces[s]);
+    VplPose pose = vpl_pose(vpl.position, vpl.normal);
+    for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_traced(index, vpl, pose, surfaces[s]);
 }
 
 #else
@@ -80,11 +82,11 @@ vec3 unoccluded_from_cell(LitSurfel surfel, Surface surface) {
 }
 
 // π times the irradiance from a surfel, whose index is that of its depth map.
-vec3 irradiance_from_surfel(uint index, LitSurfel surfel, Surface surface) {
+vec3 irradiance_from_surfel(uint index, LitSurfel surfel, VplPose pose, Surface surface) {
     if (surfel.flux == vec3(0.0)) return vec3(0.0);
     vec3 unoccluded = unoccluded_from_cell(surfel, surface);
     if (unoccluded == vec3(0.0)) return vec3(0.0);
-    return unoccluded * visibility_of_vpl(index, surfel.position, surfel.normal, surface);
+    return unoccluded * visibility_of_vpl(index, pose, surface);
 }
 
 #ifdef EMITTERS
@@ -113,11 +115,12 @@ vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
 #endif
 
 // Adds π times the irradiance from the VPL of that index: the kinds follow one another. Kinds whose light is not shown
-// send none. Loops over the surfaces inside, so that the VPL is fetched once.
+// send none. Loops over the surfaces inside, so that the VPL is fetched, and the frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
         LitSurfel surfel = lit_surfels[index];
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_surfel(index, surfel, surfaces[s]);
+        VplPose pose = vpl_pose(surfel.position, surfel.normal);
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_surfel(index, surfel, pose, surfaces[s]);
         return;
     }
 #ifdef EMITTERS

@@ -34,6 +34,16 @@ float visibility_by_ray(vec3 position, vec3 normal, Surface surface) { return 1.
 
 #include "vpls/vpl_atlas.glsl"
 
+// What the look-ups of all surfaces share.
+struct VplPose {
+    vec3 origin;  // of the map, metres
+    MapFrame frame;
+};
+
+VplPose vpl_pose(vec3 position, vec3 normal) {
+    return VplPose(vpl_map_origin(position, normal), vpl_map_frame(position, normal));
+}
+
 layout(binding = UNIT_VPL_MAPS) uniform sampler2DArray vpl_maps;
 
 // The four texels around a direction: (0, 0), (1, 0), (0, 1) and (1, 1).
@@ -85,8 +95,9 @@ float share_beyond(MapTexels texels, MapFrame frame, float distance) {
 vec3 above_horizon(vec3 at) { return vec3(at.xy, max(at.z, 0.0)); }
 
 // Sine of the largest angle δ between a direction and the centres of the texels that its bilinear look-up reads, in a
-// map of N = `texels` texels along a side: sin δ ≤ 2√2 w s / N with w = MapFrame::width and s = vpl_map_length. The factor 1 + 5/N allows for the
-// lift, which turns the look-up by δ; s is never above √3. See theory.md, "Footprint of a look-up".
+// map of N = `texels` texels along a side: sin δ ≤ 2√2 w s / N with w = MapFrame::width and s = vpl_map_length. The
+// factor 1 + 5/N allows for the lift, which turns the look-up by δ; s is never above √3. See theory.md, "Footprint of a
+// look-up".
 float footprint_sine(MapFrame frame, vec3 direction, float texels) {
     float s = vpl_map_length(frame, direction);
     return min(2.8284271 * min(s * (1.0 + 5.0 / texels), 1.7320508) / texels * frame.width, 0.9);
@@ -104,10 +115,10 @@ const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspect
 
 // Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane in the surface's direction,
 // it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons. `map`: its slot.
-float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
-    MapFrame frame = vpl_map_frame(position, normal);
+float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
+    MapFrame frame = pose.frame;
     vec3 facing = frame.map_from_world * face_normal(surface);
-    vec3 at = frame.map_from_world * (visible_position(surface, vpl_constants.ray_offset) - vpl_map_origin(position, normal));
+    vec3 at = frame.map_from_world * (visible_position(surface, vpl_constants.ray_offset) - pose.origin);
     float distance = length(at);
     float height = dot(facing, at);
     float aside = sqrt(max(distance * distance - height * height, 0.0));
@@ -121,14 +132,25 @@ float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
     return share_beyond(texels, frame, min(length(lifted), distance));
 }
 
-#elif defined(VPL_VISIBILITY_RAYS)
+#else
 
-float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) {
-    return visibility_by_ray(position, normal, surface);
+struct VplPose {
+    vec3 position;  // metres
+    vec3 normal;
+};
+
+VplPose vpl_pose(vec3 position, vec3 normal) { return VplPose(position, normal); }
+
+#if defined(VPL_VISIBILITY_RAYS)
+
+float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
+    return visibility_by_ray(pose.position, pose.normal, surface);
 }
 
 #else
 
-float visibility_of_vpl(uint map, vec3 position, vec3 normal, Surface surface) { return 1.0; }
+float visibility_of_vpl(uint map, VplPose pose, Surface surface) { return 1.0; }
+
+#endif
 
 #endif
