@@ -123,7 +123,7 @@ class Declarer {
 
     template <class GpuHandle>
     void access(Pass& pass, GpuHandle handle) {
-        const Binding binding(static_cast<Usage>(choices_(11)), static_cast<std::uint32_t>(choices_(16)));
+        const Binding binding(static_cast<Usage>(choices_(10)), static_cast<std::uint32_t>(choices_(16)));
         switch (choices_(3)) {
             case 0:
                 pass.read(handle, binding);

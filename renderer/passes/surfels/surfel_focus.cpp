@@ -84,6 +84,7 @@ glm::vec3 direction_on_sphere(int i) {
 
 std::vector<Ray> rays_around(const glm::vec3& eye) {
     std::vector<Ray> rays;
+    rays.reserve(ray_count);
     for (int i = 0; i < ray_count; ++i) rays.push_back({eye, direction_on_sphere(i)});
     return rays;
 }
