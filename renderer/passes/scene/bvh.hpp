@@ -19,8 +19,8 @@ struct Tracing {
     BufferHandle<gpu::Material> materials;
     BufferHandle<std::uint32_t> texels;
     ValueHandle<SceneMetrics> metrics;
-    ValueHandle<std::shared_ptr<const SceneHierarchy>>
-        hierarchy;  ///< changed in place: readers must depend on the scene's layout and placement as well
+    /// On the CPU. Changed in place: who reads it must read the scene's layout and placement, too.
+    ValueHandle<std::shared_ptr<const SceneHierarchy>> hierarchy;
 };
 
 /// Adds node `bvh` (CPU, then upload): a bounding-volume hierarchy over the triangles that stop light, in
