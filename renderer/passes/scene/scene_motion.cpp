@@ -4,18 +4,11 @@
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/passes/scene/world_triangles.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
 namespace {
-
-Box placed(const Box& box, const glm::mat4& world) {
-    Box around;
-    for (unsigned i = 0; i < 8; ++i) {
-        around.grow(glm::vec3(world * glm::vec4(box.corner(i), 1.0F)));
-    }
-    return around;
-}
 
 /// World-space boxes around the solid drawables of the items that moved, at their old and new places.
 std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& before,
@@ -26,8 +19,8 @@ std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& be
         const glm::mat4& to = now.world[drawable.item];
         if (from != to ||
             vertices_of(drawable, before.deformed).data() != vertices_of(drawable, now.deformed).data()) {
-            boxes.push_back(placed(bounds_of(drawable, before.deformed), from));
-            boxes.push_back(placed(bounds_of(drawable, now.deformed), to));
+            boxes.push_back(place_box(bounds_of(drawable, before.deformed), from));
+            boxes.push_back(place_box(bounds_of(drawable, now.deformed), to));
         }
     }
     return boxes;

@@ -47,6 +47,14 @@ std::vector<Triangle> place_triangles(const SceneLayout& layout, const SceneLayo
     return triangles;
 }
 
+Box place_box(const Box& box, const glm::mat4& world) {
+    Box around;
+    for (unsigned i = 0; i < 8; ++i) {
+        around.grow(transformed(world, box.corner(i)));
+    }
+    return around;
+}
+
 gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
                                   std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world,
                                   std::uint32_t id) {

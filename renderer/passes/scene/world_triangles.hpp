@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
@@ -18,6 +19,9 @@ namespace candela {
 [[nodiscard]] std::vector<Triangle> place_triangles(const SceneLayout& layout,
                                                     const SceneLayout::Drawable& drawable,
                                                     std::span<const Vertex> vertices, const glm::mat4& world);
+
+/// The box around a placed box, in world space; empty if it is.
+[[nodiscard]] Box place_box(const Box& box, const glm::mat4& world);
 
 /// Triangle i in the form that shaders read, with this id.
 [[nodiscard]] gpu::TraceTriangle trace_triangle(const SceneLayout& layout,

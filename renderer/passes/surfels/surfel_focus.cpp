@@ -27,7 +27,8 @@ struct TracedScene {
 
 /// Where a ray meets the nearest surface.
 struct SurfaceHit {
-    float distance;    // along the ray, metres: its direction has unit length
+    float distance;  // along the ray, metres: its direction has unit length
+    glm::vec3 place;
     glm::vec3 normal;  // unit, on the side that the ray comes from
 };
 
@@ -53,7 +54,8 @@ std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& r
     if (!std::isfinite(nearest)) return std::nullopt;
     const glm::vec3 cross = glm::cross(hit_triangle.b - hit_triangle.a, hit_triangle.c - hit_triangle.a);
     const glm::vec3 normal = glm::normalize(cross);
-    return SurfaceHit{nearest, glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
+    return SurfaceHit{nearest, ray.origin + nearest * ray.direction,
+                      glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
 }
 
 constexpr int rays_a_side = 8;
@@ -89,41 +91,44 @@ std::vector<Ray> rays_around(const glm::vec3& eye) {
     return rays;
 }
 
-/// What rays found.
-struct Surroundings {
-    float distance = 0.0F;     // median of those that hit a surface, metres; 0 if none did
-    float hit_share = 0.0F;    // of the rays
-    std::vector<Ray> onwards;  // from where they hit, in directions distributed by the cosine to the normal
-};
-
-Surroundings surroundings(const TracedScene& scene, const std::vector<Ray>& rays, float ray_offset) {
-    Surroundings found;
-    std::vector<float> distances;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        const Ray& ray = rays[i];
-        const auto hit = nearest_surface(scene, ray);
-        if (!hit) continue;
-        distances.push_back(hit->distance);
-        const glm::vec3 onwards =
-            hit->normal + 0.999F * direction_on_sphere(static_cast<int>(i * 29 % rays.size()));
-        found.onwards.push_back(
-            {ray.origin + hit->distance * ray.direction + ray_offset * hit->normal, glm::normalize(onwards)});
+/// Of those rays that meet one.
+std::vector<SurfaceHit> nearest_surfaces(const TracedScene& scene, const std::vector<Ray>& rays) {
+    std::vector<SurfaceHit> hits;
+    for (const Ray& ray : rays) {
+        if (const auto hit = nearest_surface(scene, ray)) hits.push_back(*hit);
     }
-    if (distances.empty()) return found;
-    found.hit_share = static_cast<float>(distances.size()) / static_cast<float>(rays.size());
-    const auto middle = distances.begin() + std::ssize(distances) / 2;
-    std::ranges::nth_element(distances, middle);
-    found.distance = *middle;
-    return found;
+    return hits;
 }
 
-/// How far the surfaces are that a view sees, and those that light them.
+/// Rays onwards from where rays hit, in directions distributed by the cosine to the normal.
+std::vector<Ray> rays_onwards(const std::vector<SurfaceHit>& hits, float ray_offset) {
+    std::vector<Ray> rays;
+    rays.reserve(hits.size());
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        // A point of a sphere that touches the surface. Neighbours get different ones; 0.999: never in the
+        // surface.
+        const glm::vec3 direction =
+            hits[i].normal + 0.999F * direction_on_sphere(static_cast<int>(i * 29 % ray_count));
+        rays.push_back({hits[i].place + ray_offset * hits[i].normal, glm::normalize(direction)});
+    }
+    return rays;
+}
+
+/// 0 if there are none.
+float median_distance(std::vector<SurfaceHit> hits) {
+    if (hits.empty()) return 0.0F;
+    const auto middle = hits.begin() + std::ssize(hits) / 2;
+    std::ranges::nth_element(hits, middle, {}, &SurfaceHit::distance);
+    return middle->distance;
+}
+
+/// How far the surfaces are that a view sees, and, indoors, those that light them.
 float view_distance(const CameraView& view, const TracedScene& scene, float ray_offset) {
-    const Surroundings seen = surroundings(scene, rays_through(view), ray_offset);
-    const Surroundings around = surroundings(scene, rays_around(view.eye), ray_offset);
-    const Surroundings beyond = surroundings(scene, seen.onwards, ray_offset);
-    const float indoors = beyond.hit_share > 0.5F ? beyond.distance : 0.0F;
-    return std::max({seen.distance, around.distance, indoors});
+    const std::vector<SurfaceHit> seen = nearest_surfaces(scene, rays_through(view));
+    const std::vector<SurfaceHit> around = nearest_surfaces(scene, rays_around(view.eye));
+    const std::vector<SurfaceHit> beyond = nearest_surfaces(scene, rays_onwards(seen, ray_offset));
+    const float indoors = 2 * beyond.size() > seen.size() ? median_distance(beyond) : 0.0F;
+    return std::max({median_distance(seen), median_distance(around), indoors});
 }
 
 std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, const SceneMetrics& metrics,

@@ -80,11 +80,8 @@ glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
 std::vector<Box> item_boxes(const SceneLayout& layout, const ScenePlacement& placement) {
     std::vector<Box> boxes(placement.world.size());
     for (const SceneLayout::Drawable& drawable : layout.solids()) {
-        const Box& local = bounds_of(drawable, placement.deformed);
-        for (unsigned i = 0; i < 8; ++i) {
-            boxes[drawable.item].grow(
-                glm::vec3(placement.world[drawable.item] * glm::vec4(local.corner(i), 1.0F)));
-        }
+        boxes[drawable.item].grow(
+            place_box(bounds_of(drawable, placement.deformed), placement.world[drawable.item]));
     }
     return boxes;
 }
