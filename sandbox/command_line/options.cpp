@@ -258,8 +258,8 @@ void declare_settings(CommandLine& line, Options& options) {
 
 void declare_files(CommandLine& line, Options& options) {
     add_text(line, "--animate", options.animate, "FILE.json|NAME",
-             "a script of light, mesh and camera motion, or the name of a shipped one: door-opens, "
-             "flicker-walk, orbit-camera, orbit-light, teleport, toggle");
+             "a script of light, mesh and camera motion, or the name of a shipped one: boxes-fall, "
+             "door-opens, flicker-walk, orbit-camera, orbit-light, teleport, toggle, walk-in");
     line.add_value(
         "--config", "FILE.json|NAME",
         "configuration, or the name of one of --list-configs; flags override it; in a window a file is "

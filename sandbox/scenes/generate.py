@@ -4,7 +4,7 @@
     generate.py [--out DIR] [--lights N] [NAME...]
 
 Without names it writes the shipped scenes, by default next to this script. Lengths are in metres, +Y is up, lights
-have the units of KHR_lights_punctual, colours are linear. Every scene has one camera, named "camera".
+have the units of KHR_lights_punctual, colours are linear. A scene with one camera names it "camera".
 """
 
 import argparse
@@ -15,9 +15,11 @@ sys.dont_write_bytecode = True  # otherwise importing the modules would leave fi
 
 from atrium import atrium
 from court import court
+from fields import boxes, plane
 from glass import glass
 from halls import fins, hall
-from rooms import cornell, corner, furnace, lamp, neon, two_rooms
+from house import house, street
+from rooms import apartment, cornell, corner, furnace, lamp, neon, rooms, two_rooms
 
 SHIPPED = {
     "cornell": cornell,
@@ -30,9 +32,14 @@ SHIPPED = {
     "glass": glass,
     "fins": fins,
     "hall-256": lambda: hall(256),
+    "house": house,
+    "plane": plane,
+    "apartment": apartment,
+    "rooms-12": lambda: rooms(12),
+    "boxes": boxes,
 }
 # Not shipped: large, or one of many sizes.
-ON_DEMAND = {"atrium": atrium, "hall-4096": lambda: hall(4096)}
+ON_DEMAND = {"atrium": atrium, "hall-4096": lambda: hall(4096), "rooms-6": lambda: rooms(6), "street": street}
 
 
 def arguments():

@@ -91,6 +91,13 @@ class Scene:
     def node(self, name, **properties):
         self.document["scenes"][0]["nodes"].append(self.add("nodes", {"name": name, **properties}))
 
+    def parent(self, name, count, **transform):
+        """A node whose children are the last `count` nodes."""
+        roots = self.document["scenes"][0]["nodes"]
+        children = roots[-count:]
+        del roots[-count:]
+        self.node(name, children=children, **transform)
+
     def place(self, name, surface, material, **transform):
         """A mesh and the single node that uses it."""
         self.node(name, mesh=self.mesh(name, surface, material), **transform)
@@ -107,11 +114,11 @@ class Scene:
         lights.append(light)
         self.node(name, **transform, extensions={"KHR_lights_punctual": {"light": len(lights) - 1}})
 
-    def camera(self, vertical_fov, near, **transform):
-        """The scene's camera; `vertical_fov` in degrees, `near` in metres."""
+    def camera(self, vertical_fov, near, name="camera", **transform):
+        """`vertical_fov` in degrees, `near` in metres. The first camera is the default one."""
         perspective = {"yfov": round(math.radians(vertical_fov), 6), "znear": near}
-        camera = self.add("cameras", {"name": "camera", "type": "perspective", "perspective": perspective})
-        self.node("camera", camera=camera, **transform)
+        camera = self.add("cameras", {"name": name, "type": "perspective", "perspective": perspective})
+        self.node(name, camera=camera, **transform)
 
     def text(self):
         uri = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()

@@ -3,7 +3,7 @@
 import math
 
 from gltf_writer import Scene
-from shapes import block, box, flat, lathe, looking, room, turn
+from shapes import block, box, flat, lathe, looking, room, turn, wall
 
 WHITE = [0.725, 0.71, 0.68]
 RED = [0.63, 0.065, 0.05]
@@ -144,4 +144,54 @@ def neon():
     ball = lathe([(0, -0.18), *sides, (0, 0.18)], 32)
     scene.place("ball", ball, warm, translation=[0.95, 0.18, -0.1])
     scene.camera(65, 0.01, **looking((1.7, 1.5, 1.8), (-0.3, 0.75, -0.6)))
+    return scene
+
+
+def rooms(count):
+    """Rooms of 4 m x 2.6 m x 4 m in a row along +X, numbered from 1 and joined by doors. The light is in the first."""
+    scene = Scene()
+    white, wood = scene.material("white", WHITE), scene.material("wood", [0.5, 0.35, 0.2])
+    end = 4.2 * count
+    slabs = block((-0.2, -0.2, -2.2), (end, 0, 2.2)) + block((-0.2, 2.6, -2.2), (end, 2.8, 2.2))
+    sides = block((-0.2, 0, -2.2), (end, 2.6, -2)) + block((-0.2, 0, 2), (end, 2.6, 2.2))
+    ends = block((-0.2, 0, -2), (0, 2.6, 2)) + block((end - 0.2, 0, -2), (end, 2.6, 2))
+    between = [wall((4.2 * i - 0.2, 0, -2), (4.2 * i, 2.6, 2), [(-0.45, 0.45, 0, 2)]) for i in range(1, count)]
+    scene.place("rooms", flat(slabs + sides + ends + sum(between, [])), white)
+    chest = scene.mesh("chest", flat(box(0.7, 0.7, 0.7)), wood)
+    for i in range(count):
+        scene.node(f"chest {i + 1}", mesh=chest, translation=[round(4.2 * i + 2.2, 1), 0.0, -1.2], rotation=turn(30))
+    scene.light("lamp", "point", DAYLIGHT, 30.0, translation=[2.0, 2.2, 0.5])
+    for number in sorted({2, 3, 6, count}):
+        x = round(4.2 * (number - 1), 1)
+        scene.camera(65, 0.02, f"room-{number}", **looking((x + 3.6, 1.6, 1.6), (x + 0.6, 0.9, -0.6)))
+    return scene
+
+
+def apartment():
+    """Four rooms of 4 m x 2.6 m x 4 m around the origin, in a circle by way of three doors. The lamp hangs in the
+    first, the camera is in the second."""
+    scene = Scene()
+    white, wood = scene.material("white", WHITE), scene.material("wood", [0.45, 0.26, 0.12])
+    red, blue = scene.material("red", RED), scene.material("blue", BLUE)
+    shell = (
+        block((-4.3, -0.2, -4.3), (4.3, 0, 4.3))
+        + block((-4.3, 2.6, -4.3), (4.3, 2.8, 4.3))
+        + block((-4.3, 0, -4.3), (4.3, 2.6, -4.1))
+        + block((-4.3, 0, 4.1), (4.3, 2.6, 4.3))
+        + block((-4.3, 0, -4.1), (-4.1, 2.6, 4.1))
+        + block((4.1, 0, -4.1), (4.3, 2.6, 4.1))
+    )
+    inner = (
+        wall((-0.1, 0, -4.1), (0.1, 2.6, 4.1), [(-2.6, -1.7, 0, 2), (1.4, 2.3, 0, 2)])
+        + wall((0.1, 0, -0.1), (4.1, 2.6, 0.1), [(2.4, 3.3, 0, 2)])
+        + block((-4.1, 0, -0.1), (-0.1, 2.6, 0.1))
+    )
+    scene.place("shell", flat(shell), white)
+    scene.place("inner walls", flat(inner), white)
+    scene.place("cupboard", flat(box(0.6, 1.8, 1.2)), red, translation=[-3.75, 0.0, -2.2])
+    scene.place("table", flat(box(1.2, 0.75, 0.8)), wood, translation=[1.2, 0.0, -3.3], rotation=turn(10))
+    scene.place("bed", flat(box(1.0, 0.5, 2.0)), blue, translation=[3.4, 0.0, 2.8])
+    scene.place("chest", flat(box(0.7, 0.7, 0.7)), red, translation=[-2.6, 0.0, 3.3], rotation=turn(30))
+    scene.light("lamp", "point", DAYLIGHT, 20.0, translation=[-2.0, 2.2, -1.8])
+    scene.camera(65, 0.02, **looking((3.8, 1.6, -0.4), (0.6, 0.9, -3.0)))
     return scene

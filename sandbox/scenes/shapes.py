@@ -64,6 +64,25 @@ def room(low, high):
     return [quad[::-1] for quad in block(low, high)]
 
 
+def wall(low, high, openings):
+    """A block that is thin along x or z, with openings right through it. Each is (start, end, bottom, top), along the
+    wall and upwards; from the wall's beginning to its end."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    along_x = x1 - x0 > z1 - z0
+    done, end_of_wall = (x0, x1) if along_x else (z0, z1)
+
+    def part(start, end, bottom, top):
+        if start >= end or bottom >= top:
+            return []
+        return block((start, bottom, z0), (end, top, z1)) if along_x else block((x0, bottom, start), (x1, top, end))
+
+    quads = []
+    for start, end, bottom, top in openings:
+        quads += part(done, start, y0, y1) + part(start, end, y0, bottom) + part(start, end, top, y1)
+        done = end
+    return quads + part(done, end_of_wall, y0, y1)
+
+
 def ground(low, high):
     """A level quad that faces up, between two corners (x, z) at height 0."""
     (a, c), (x, z) = low, high

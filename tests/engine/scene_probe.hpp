@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -30,7 +31,8 @@ struct Loaded {
         }
         return found;
     }
-    [[nodiscard]] glm::mat4 camera() const { return world_matrix(world, called("camera").at(0)); }
+    [[nodiscard]] Entity first_camera() const { return std::get<0>(*world.view<Camera>().begin()); }
+    [[nodiscard]] glm::mat4 camera() const { return world_matrix(world, first_camera()); }
     [[nodiscard]] glm::vec3 position(Entity entity) const { return world_matrix(world, entity)[3]; }
 };
 
@@ -112,10 +114,10 @@ inline std::vector<glm::vec3> directions(int number) {
     return spread;
 }
 
-/// The world-space direction from the scene's camera through a pixel centre. Not normalised: its component
-/// along the view direction is 1. Row 0 is at the top.
+/// The world-space direction from the scene's first camera through a pixel centre. Not normalised: its
+/// component along the view direction is 1. Row 0 is at the top.
 inline glm::vec3 through_pixel(const Loaded& scene, glm::ivec2 pixel, glm::ivec2 size) {
-    const Camera& camera = scene.world.get<Camera>(scene.called("camera").at(0));
+    const Camera& camera = scene.world.get<Camera>(scene.first_camera());
     const float scale = 2.0F * std::tan(camera.vertical_fov / 2.0F) / float(size.y);
     const float x = (float(pixel.x) + 0.5F - float(size.x) / 2.0F) * scale;
     const float y = (float(size.y) / 2.0F - float(pixel.y) - 0.5F) * scale;

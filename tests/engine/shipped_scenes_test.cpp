@@ -91,6 +91,7 @@ struct Facts {
     std::uint64_t triangles;
     std::size_t points, spots, suns;
     glm::vec3 lower, upper;
+    std::vector<std::string> cameras{"camera"};
 };
 
 void check_facts(const Loaded& scene, const Facts& facts) {
@@ -99,16 +100,19 @@ void check_facts(const Loaded& scene, const Facts& facts) {
     CHECK(count<PointLight>(scene) == facts.points);
     CHECK(count<SpotLight>(scene) == facts.spots);
     CHECK(count<DirectionalLight>(scene) == facts.suns);
-    CHECK(count<Camera>(scene) == 1);
-    REQUIRE(scene.called("camera").size() == 1);
-    CHECK(scene.world.find<Camera>(scene.called("camera")[0]) != nullptr);
+    CHECK(count<Camera>(scene) == facts.cameras.size());
+    for (const std::string& camera : facts.cameras) {
+        REQUIRE(scene.called(camera).size() == 1);
+        CHECK(scene.world.find<Camera>(scene.called(camera)[0]) != nullptr);
+    }
+    CHECK(scene.first_camera() == scene.called(facts.cameras[0])[0]);
 
     const Target target{all_triangles(scene)};
     Box box;
     for (const Triangle& triangle : target.triangles) {
         box.grow(bounds(triangle));
     }
-    // Coordinates are floats of up to 256 m, rotations have seven digits.
+    // Coordinates are floats of up to 500 m, rotations have seven digits.
     CHECK(glm::distance(box.lower, facts.lower) < 1e-4F);
     CHECK(glm::distance(box.upper, facts.upper) < 1e-4F);
     // Lights of the open scenes, too, are inside the scene's bounding box.
@@ -174,6 +178,20 @@ TEST_SUITE("shipped scenes") {
             {"hall-256", 372, 192, 64, 0, {-8, 0, -64}, {8, 4, 0}},
             // The highest point is the top of a fin.
             {"fins", 28802, 512, 0, 0, {-6.2F, 0, -22.28103F}, {6.2F, 3.79629F, 0}},
+            // The lowest point is the bottom of a valley, the highest the top of a hill.
+            {"house", 4836, 0, 0, 1, {-500, -12.97206F, -500}, {500, 13.16102F, 500}, {"inside", "outside"}},
+            {"plane", 1010, 0, 0, 1, {-500, 0, -500}, {500, 1.6F, 500}},
+            {"apartment", 228, 1, 0, 0, {-4.3F, -0.2F, -4.3F}, {4.3F, 2.8F, 4.3F}},
+            {"rooms-12",
+             612,
+             1,
+             0,
+             0,
+             {-0.2F, -0.2F, -2.2F},
+             {50.4F, 2.8F, 2.2F},
+             {"room-2", "room-3", "room-6", "room-12"}},
+            // The highest point is the top of a box that will fall.
+            {"boxes", 24002, 0, 0, 1, {-20, 0, -20}, {20, 5.2F, 20}},
         };
         for (const Facts& facts : facts_of_all) {
             CAPTURE(facts.name);
@@ -188,7 +206,7 @@ TEST_SUITE("shipped scenes") {
             CAPTURE(path.filename().string());
             CHECK(contents(directory / "shipped" / path.filename()) == contents(path));
         }
-        generate(directory / "large", "atrium hall-4096 hall --lights 7");
+        generate(directory / "large", "atrium street hall-4096 hall --lights 7");
         check_facts(Loaded(directory / "large/hall-4096.gltf"),
                     {"hall-4096", 6060, 3072, 1024, 0, {-32, 0, -256}, {32, 4, 0}});
         check_facts(Loaded(directory / "large/hall-7.gltf"),
@@ -197,6 +215,12 @@ TEST_SUITE("shipped scenes") {
         check_facts(atrium, {"atrium", 116098, 4, 0, 1, {-13.75F, 0, -7.5F}, {13.75F, 9.6F, 7.5F}});
         for (const Entity column : atrium.called("column")) {
             CHECK(normals_agree(atrium.world.get<MeshInstance>(column).mesh->primitives.at(0)));
+        }
+        const Loaded street(directory / "large/street.gltf");
+        CHECK(street.report.warnings.empty());
+        CHECK(street.report.triangles > 1'000'000);
+        for (auto [entity, instance] : street.world.view<MeshInstance>()) {
+            CHECK(normals_agree(instance.mesh->primitives.at(0)));
         }
     }
 
@@ -272,6 +296,38 @@ TEST_SUITE("shipped scenes") {
         shut.rotation = {1.0F, 0.0F, 0.0F, 0.0F};
         scene.world.set(door, shut);
         CHECK(lit_beyond() == 0);
+    }
+
+    TEST_CASE(
+        "the sun shines through the front door and the window of the house, and not into its back room") {
+        const Loaded scene(shipped("house"));
+        const Target target{all_triangles(scene)};
+        const glm::vec3 towards(world_matrix(scene.world, scene.called("sun").at(0))[2]);
+        const auto lit = [&](float near, float far) {
+            int points = 0;
+            for (int i = 0; i < 80 * 20; ++i) {
+                const glm::vec3 at(-3.95F + 0.1F * float(i % 80), 0.1F,
+                                   glm::mix(near, far, (float(i / 80) + 0.5F) / 20.0F));
+                points += target.first(at, towards) ? 0 : 1;
+            }
+            return points;
+        };
+        CHECK(lit(3.0F, -3.0F) > 20);
+        CHECK(lit(-3.2F, -6.0F) == 0);
+    }
+
+    TEST_CASE("the fallen boxes stand on others") {
+        const Loaded scene(shipped("boxes"));
+        const auto fallen = scene.called("falling box");
+        REQUIRE(fallen.size() == 100);
+        const Target target{all_triangles(scene)};
+        for (const Entity box : fallen) {
+            // From just below the bottom, straight down: 3 m to fall.
+            const glm::vec3 below = scene.position(box) - glm::vec3(0.0F, 1e-3F, 0.0F);
+            const std::optional<Hit> hit = target.first(below, {0.0F, -1.0F, 0.0F});
+            REQUIRE(hit);
+            CHECK(hit->t == doctest::Approx(3.0).epsilon(1e-3));
+        }
     }
 
     TEST_CASE("a few lights reach each point of the floors of the halls and the fins scene") {

@@ -212,7 +212,9 @@ TEST_SUITE("animation script") {
              {(folder / "none.json").string(), std::string("orbit"), std::string("/tmp")}) {
             const std::string error = error_of([&] { static_cast<void>(load_script(wanted)); });
             CHECK(error.starts_with(wanted + ": "));
-            CHECK(error.ends_with("door-opens, flicker-walk, orbit-camera, orbit-light, teleport, toggle"));
+            CHECK(
+                error.ends_with("boxes-fall, door-opens, flicker-walk, orbit-camera, orbit-light, teleport, "
+                                "toggle, walk-in"));
         }
     }
 
@@ -281,6 +283,32 @@ TEST_SUITE("animation script") {
         for (int frame = 0; frame < last; ++frame) {
             CHECK(door.matrix("door", frame + 1)[2].z <= door.matrix("door", frame)[2].z);
         }
+    }
+
+    TEST_CASE("shipped: boxes fall freely") {
+        Staged fall("boxes-fall");
+        CHECK(fall.position("falling", 0).y == 3.0F);
+        // h - g t² / 2, with a key every second frame. They reach the ground in 0.78 s.
+        for (int frame = 0; frame <= 23; ++frame) {
+            const float seconds = float(frame) / 30.0F;
+            CHECK(std::abs(fall.position("falling", frame).y - (3.0F - 4.905F * seconds * seconds)) < 0.01F);
+        }
+        CHECK(fall.position("falling", 24).y == 0.0F);
+    }
+
+    TEST_CASE("shipped: somebody walks upright from the terrain into the house's back room") {
+        Staged walk("walk-in");
+        const auto at = [&](int frame) { return walk.position("inside", frame); };
+        const int last = walk.animation.script().frames - 1;
+        CHECK(at(0).z > 10.0F);
+        for (int frame = 0; frame < last; ++frame) {
+            CHECK(at(frame).y == 1.6F);
+            CHECK(glm::distance(at(frame), at(frame + 1)) < 0.21F);
+            CHECK(std::abs(walk.matrix("inside", frame)[1].y - 1.0F) < 1e-6F);
+        }
+        // The back room is between these walls; see sandbox/scenes/house.py.
+        CHECK(at(last).z < -3.2F);
+        CHECK(at(last).z > -6.0F);
     }
 
     TEST_CASE("shipped: lights are switched off one after the other, then on again") {

@@ -93,7 +93,8 @@ TEST_SUITE("session") {
     }
 
     TEST_CASE("every shipped script moves its scene, the same in every run") {
-        for (const char* script : {"orbit-light", "door-opens", "flicker-walk", "teleport", "toggle"}) {
+        for (const char* script :
+             {"orbit-light", "door-opens", "flicker-walk", "teleport", "toggle", "boxes-fall", "walk-in"}) {
             CAPTURE(script);
             const TemporaryFolder folder;
             Options options = small_headless();
