@@ -11,7 +11,8 @@ from shapes import block, box, flat, ground, lathe, looking
 def plane():
     """A ball in a niche, on a plane of 1 km under a sun."""
     scene = Scene()
-    white, rose, blue = scene.material("white", WHITE), scene.material("rose", [0.75, 0.4, 0.35]), scene.material("blue", BLUE)
+    white, rose = scene.material("white", WHITE), scene.material("rose", [0.75, 0.4, 0.35])
+    blue = scene.material("blue", BLUE)
     scene.place("plane", flat([ground((-500, -500), (500, 500))]), white)
     sides = block((-1.2, 0, -1.2), (-1, 1.5, 1)) + block((1, 0, -1.2), (1.2, 1.5, 1))
     back, roof = block((-1, 0, -1.2), (1, 1.5, -1)), block((-1.2, 1.5, -1.2), (1.2, 1.6, 0.2))
@@ -25,8 +26,8 @@ def plane():
 
 
 def boxes():
-    """2,000 boxes of ten heights on a square of 40 m, 100 of which are children of the node "falling" and hang above the
-    others. They stand on them after falling 3 m."""
+    """2,000 boxes of ten heights on a square of 40 m. 100 of them are children of the node "falling" and hang above
+    the others, on which they stand after falling 3 m."""
     scene, numbers = Scene(), random.Random(1)
     scene.place("ground", flat([ground((-20, -20), (20, 20))]), scene.material("ground", WHITE))
     colours = [scene.material(f"colour {i}", colour) for i, colour in enumerate((WHITE, RED, GREEN, BLUE))]

@@ -14,8 +14,8 @@ RISE = (EAVES[1][1] - EAVES[0][1]) / 2 * math.tan(math.radians(SLOPE))  # of its
 
 
 def terrain(level):
-    """A square of 1 km that is level within `level` metres of the origin, and hilly beyond. Its cells grow from 0.5 m at
-    the origin to 60 m at its edges."""
+    """A square of 1 km that is level within `level` metres of the origin, and hilly beyond. Its cells grow from 0.5 m
+    at the origin to 60 m at its edges."""
     steps = range(-24, 25)
     places = [500 * (0.025 * t + 0.975 * t**3) for t in (step / 24 for step in steps)]
 

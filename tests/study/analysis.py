@@ -1,6 +1,7 @@
 """Evaluates the measurements: the Pareto front, slopes, the best default."""
 
 import math
+import statistics
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar
 
@@ -131,6 +132,29 @@ def emitter_table(rows: Sequence[Row]) -> list[Row]:
     columns = ("direct_rel_mse", "indirect_rel_mse", "total_rel_mse", "total_bias", "reference_noise")
     lit = select(rows, suite="emitters")
     return [{"scene": row["scene"], "vpls": row["vpls"], **{name: row[name] for name in columns}} for row in lit]
+
+
+def world_table(rows: Sequence[Row]) -> list[Row]:
+    """For each scene, the mean of the indirect light as a multiple of the reference's, its error, and times as
+    multiples of the Cornell box's: of a frame after a camera move, and of one that recomputes everything."""
+    columns = ("indirect_rel_mse", "reference_noise", "frame_ms_to_beside", "full_ms_to_beside")
+    return [
+        {"scene": row["scene"], "mean": 1 + row["indirect_bias"], **{name: row[name] for name in columns}}
+        for row in select(rows, suite="worlds")
+    ]
+
+
+def world_motion_table(played: Sequence[Row]) -> list[Row]:
+    """For each script, the slowest frame after the first as a multiple of the median, the changes of the indirect light
+    from frame to frame as a multiple of those of the reference (root mean square), and the flicker."""
+    table = []
+    for row in select(played, suite="worlds"):
+        times = row["full_ms"][1:]
+        line = {"script": row["scene"], "worst_to_median": max(times) / statistics.median(times)}
+        line["change_to_true"] = math.sqrt(row["change"] / row["true_change"]) if row["true_change"] > 0 else None
+        line |= {"flicker": row["indirect_flicker"], "noise": row["flicker_noise"]}
+        table.append({**line, "rel_mse": statistics.mean(row["indirect_rel_mse"])})
+    return table
 
 
 def visibility_costs(rows: Sequence[Row]) -> list[Row]:

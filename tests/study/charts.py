@@ -172,6 +172,29 @@ def gather(rows: Sequence[Row], tracer: Sequence[Row], out: pathlib.Path) -> Mad
     return made
 
 
+def surfels(rows: Sequence[Row], out: pathlib.Path) -> Made:
+    """The error of the indirect light and the time of gathering it over the number of surfels."""
+    names = scenes_of(rows, "surfels")
+    if not names:
+        return {}
+    figure, (error, time) = plt.subplots(1, 2, figsize=(10, 4.2))
+    for scene, (colour, marker) in zip(names, SERIES):
+        chosen = sorted(select(rows, suite="surfels", scene=scene), key=lambda row: row["vpls"])
+        counts, style = [row["vpls"] for row in chosen], {"color": colour, "marker": marker, "markersize": 5}
+        error.plot(counts, [row["indirect_rel_mse"] for row in chosen], label=scene, **style)
+        error.axhline(chosen[0]["reference_noise"], color=colour, linestyle=":", linewidth=1)
+        time.plot(counts, [row["gather_ms"] for row in chosen], **style)
+    error.set(ylabel="relMSE of the indirect light\n(dotted: the reference's own noise)")
+    time.set(ylabel="gathering after a camera move, ms")
+    for axes in (error, time):
+        axes.set(xscale="log", yscale="log", xlabel="surfels", xticks=matrix.SURFEL_COUNTS)
+        axes.set_xticklabels([f"{count:,}" for count in matrix.SURFEL_COUNTS])
+        axes.minorticks_off()
+    legend_below(figure, error, 2)
+    save(figure, out, "surfels")
+    return {"surfels": f"Error and time of gathering, {rows[0]['width']} × {rows[0]['height']} pixels."}
+
+
 def bound_label(bound: float | str) -> str:
     return "unbounded" if bound == matrix.UNBOUNDED else f"bound {bound:g}"
 
@@ -373,6 +396,7 @@ def draw(
         "Error against time": error_against_time(rows, tracer, best, out),
         "Interleaved gathering": gather(rows, tracer, out),
         "Error against the number of VPLs": convergence(rows, out),
+        "Error against the number of surfels": surfels(rows, out),
         "Forward against deferred, and with lists": report_table(rows, out),
         "Growing numbers of lights, pixels and triangles": growth(rows, lights, out),
         "Where the light goes": energy(rows, out),

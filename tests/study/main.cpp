@@ -132,6 +132,7 @@ void add_measure(CLI::App& app, int& status) {
     part.add_option("--pictures", study->pictures, "the folder that pictures and heat maps go to")
         ->required();
     part.add_option("--rounds", study->rounds, "of times; 0: errors only")->check(CLI::Range(0, 1000));
+    part.add_option("--beside", study->beside, "a scene that is timed in turns with this one");
     const auto context = std::make_shared<std::string>("egl");
     part.add_option("--context", *context, "default: egl")->check(CLI::IsMember({"egl", "osmesa"}));
     part.callback([=, &status] {

@@ -61,6 +61,7 @@ TRACER_SAMPLES = [4**i for i in range(7)]
 # the picture at 45 degrees. With both even or both odd they would pass through pixel centres, where rounding decides
 # which wall is seen, and the renderer and the reference could see different walls.
 SIZE, SMALL, QUICK, LARGE, SQUARE = (127, 96), (63, 48), (63, 64), (511, 512), (191, 192)
+WIDE = (193, 192)
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ class Group:
     rounds: int  # of time measurements; 0: errors only
     points: tuple[Point, ...]
     tracer_samples: tuple[int, ...] = field(default=())
+    beside: str = ""  # a scene that is timed in turns with this one
 
     @property
     def name(self) -> str:
@@ -294,6 +296,35 @@ def emitter_groups() -> list[Group]:
     return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in ("lamp", "neon", "court")]
 
 
+WORLDS = (
+    "house@inside", "house@outside", "plane", "boxes", "apartment", "rooms-12@room-2", "rooms-12@room-3",
+    "rooms-6@room-6", "street@street", "street@room",
+)
+
+
+QUICK_WORLDS = ("house@inside", "apartment", "rooms-12@room-2")
+
+
+def as_app(vpls: int) -> Point:
+    """The app's defaults, with this number of surfels."""
+    return point(vpls, lever="surfels", seeds=(0,))
+
+
+def world_groups() -> list[Group]:
+    """Worlds larger than the room that is seen; their times are divided by the Cornell box's."""
+    points, exact = (as_app(512),), Reference(samples=1024)
+    return [Group("worlds", scene, WIDE, exact, 5, points, beside="cornell") for scene in WORLDS]
+
+
+SURFEL_COUNTS = [4**i for i in range(4, 9)]
+
+
+def surfel_groups() -> list[Group]:
+    """What more surfels do for the error, and what they cost."""
+    points, exact = tuple(as_app(vpls) for vpls in SURFEL_COUNTS), Reference(samples=1024)
+    return [Group("surfels", scene, WIDE, exact, 1, points) for scene in ("cornell", "house@inside")]
+
+
 def quick_groups() -> list[Group]:
     """The points that the checks of --quick use. The references have enough samples that their noise stays below the
     limits of the checks.
@@ -307,7 +338,8 @@ def quick_groups() -> list[Group]:
         + [blind(256, path) for path in PATHS]
     )
     seeing = distinct([point(n) for n in counts] + [point(256, path=path) for path in PATHS] + [blind(1024)])
-    return [
+    worlds = [Group("quick-worlds", scene, QUICK, Reference(512), 0, (as_app(512),)) for scene in QUICK_WORLDS]
+    return worlds + [
         Group(
             "quick",
             scene,
@@ -328,6 +360,7 @@ def key_of(group: Group, one: Point, circumstances: Config) -> str:
         "size": group.size,
         "reference": vars(group.reference),
         "rounds": group.rounds,
+        "beside": group.beside,
         "config": one.config,
         "seeds": one.seeds,
         **circumstances,

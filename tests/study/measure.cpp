@@ -281,9 +281,16 @@ Json measure_point(Bench bench, Darkroom& darkroom, const Truth& truth, const Di
             {"heat_scale", heat_scale}};
 }
 
+/// Of a frame that keeps its VPLs.
+double gather_ms(const FrameReport& frame) {
+    return std::accumulate(frame.passes.begin(), frame.passes.end(), 0.0, [](double sum, const auto& pass) {
+        return sum + (pass.ran && pass.name.starts_with("vpl-") ? pass.gpu_ms : 0.0);
+    });
+}
+
 /// The first frame includes the cost of switching the configuration and of touching new memory pages, and is
 /// not timed. Then times one frame in which only the view changes, and one that runs everything.
-Json time_point(Bench& bench, const Point& point, std::uint32_t round) {
+Json times_of(Bench& bench, const Point& point, std::uint32_t round) {
     bench.configure(configuration_of(point));
     bench.frame({});
     static_cast<void>(bench.renderer().take_frames(true));
@@ -291,8 +298,34 @@ Json time_point(Bench& bench, const Point& point, std::uint32_t round) {
     const FrameReport frame = bench.renderer().take_frames(true).back();
     bench.renderer().invalidate();
     const double full_ms = bench.frame(pixel_sample(2 * round));
-    return {{"id", point.id},         {"kind", "time"},         {"round", round},    {"frame_ms", frame_ms},
-            {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"full_ms", full_ms}};
+    return {{"frame_ms", frame_ms},
+            {"cpu_ms", frame.cpu_ms},
+            {"gpu_ms", frame.gpu_ms},
+            {"gather_ms", gather_ms(frame)},
+            {"full_ms", full_ms}};
+}
+
+/// Measures the time of the points in rounds, each with the same point in the scene `beside` right after it.
+void measure_times(const gl::GetProc& get_proc, const World& world, glm::uvec2 size,
+                   std::vector<Point> points, const MeasureStudy& study) {
+    // A single renderer for all times, so that not all points are in memory at once.
+    Bench bench(get_proc, world, size);
+    std::optional<sandbox::Scene> other;
+    std::optional<Bench> beside;
+    if (study.beside) {
+        other = sandbox::load_scene(*study.beside);
+        beside.emplace(get_proc, other->world, size);
+    }
+    for (std::uint32_t round = 1; round <= study.rounds; ++round) {
+        std::erase_if(points, [&](const Point& point) {
+            return !attempt(point, [&] {
+                Json line = times_of(bench, point, round);
+                line.update({{"id", point.id}, {"kind", "time"}, {"round", round}});
+                if (beside) line["beside"] = times_of(*beside, point, round);
+                return line;
+            });
+        });
+    }
 }
 
 }  // namespace
@@ -320,13 +353,7 @@ int measure(const MeasureStudy& study) {
             return measure_point(fresh_bench(), darkroom, truth, direct, point);
         });
     });
-    // A single renderer for all times, so that not all points are in memory at once.
-    Bench bench = fresh_bench();
-    for (std::uint32_t round = 1; round <= study.rounds; ++round) {
-        std::erase_if(points, [&](const Point& point) {
-            return !attempt(point, [&] { return time_point(bench, point, round); });
-        });
-    }
+    measure_times(context->get_proc(), scene.world, reference.request.size, std::move(points), study);
     return 0;
 }
 

@@ -74,7 +74,7 @@ def measure_points(study: Study, group: Group, points: list[Point]) -> None:
         study.bar.show(f"{group.name} {one.id}")
 
     folders = study.reference(group), pictures_of(group)
-    program.measure(str(STUDY), study.scene(group), *folders, group, points, take)
+    program.measure(str(STUDY), study.scene(group), *folders, group, points, take, study.beside(group))
 
 
 def announce_once(study: Study) -> None:

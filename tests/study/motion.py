@@ -71,6 +71,13 @@ def camera_motions() -> list[Motion]:
     return [Motion("camera", "orbit-camera", matrix.SIZE, reference, 30, takes)]
 
 
+def world_motions() -> list[Motion]:
+    """Scripts in worlds larger than a room, as the app plays them."""
+    takes, reference = (Take("surfels", matrix.as_app(512).config),), Reference(samples=256)
+    frames = {"walk-in": 120, "boxes-fall": 30}
+    return [Motion("worlds", script, matrix.SMALL, reference, count, takes) for script, count in frames.items()]
+
+
 def quick_motions() -> list[Motion]:
     """Few samples are enough: their noise is almost the same in all frames, 1/20 of the limits of the checks."""
     reference = Reference(samples=256, bounces=matrix.DEFAULT_BOUNCES)

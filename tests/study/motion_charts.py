@@ -2,6 +2,7 @@
 
 import itertools
 import pathlib
+import statistics
 from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
@@ -51,6 +52,29 @@ def scripts(played: Sequence[Row], out: pathlib.Path) -> Made:
     return {"motion": caption}
 
 
+def worlds(played: Sequence[Row], out: pathlib.Path) -> Made:
+    rows = select(played, suite="worlds")
+    if not rows:
+        return {}
+    figure, grid = plt.subplots(3, len(rows), figsize=(max(5.0 * len(rows), 6.0), 7.0), squeeze=False, sharex="col")
+    for column, row in zip(grid.T, rows):
+        times = row["full_ms"][1:]
+        lines = [[ms / statistics.median(times) for ms in times], row["indirect_rel_mse"][1:], row["flicker_of_pairs"]]
+        for axes, line in zip(column, lines):
+            axes.plot(range(1, len(line) + 1), line, color=RED, linewidth=1.3)
+            axes.set(yscale="log")
+            axes.minorticks_off()
+        column[0].set(yscale="linear", ylim=(0, None), title=row["scene"])
+        column[2].axhline(row["flicker_noise"], color="#777777", linestyle=":", linewidth=1)
+        column[2].set_xlabel("frame")
+    grid[0][0].set_ylabel("time of the frame / median")
+    grid[1][0].set_ylabel("relMSE of the indirect light")
+    grid[2][0].set_ylabel("flicker since the previous frame\n(dotted: the reference's own noise)")
+    figure.tight_layout()
+    charts.save(figure, out, "worlds")
+    return {"worlds": "Time, error and flicker over the frames of each script, with the app's defaults."}
+
+
 def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
     rows = select(played, suite="refinement")
     names = list(dict.fromkeys(row["scene"] for row in rows))
@@ -77,4 +101,5 @@ def refinement(played: Sequence[Row], out: pathlib.Path) -> Made:
 
 def draw(played: Sequence[Row], out: pathlib.Path) -> dict[str, Made]:
     """Returns the written files by heading."""
-    return {"While something moves": scripts(played, out), "While nothing moves": refinement(played, out)}
+    moving = scripts(played, out) | worlds(played, out)
+    return {"While something moves": moving, "While nothing moves": refinement(played, out)}

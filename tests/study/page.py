@@ -200,6 +200,20 @@ def emitters(table_rows: Sequence[Row]) -> str:
     return element("h2", "Scenes lit by surfaces or by the sky") + table(columns, table_rows)
 
 
+def worlds(table_rows: Sequence[Row], walks: Sequence[Row]) -> str:
+    if not table_rows:
+        return ""
+    columns = {"scene": "", "mean": "mean of indirect light / the reference's", "indirect_rel_mse": "relMSE, indirect",
+               "reference_noise": "the reference's own noise, relMSE",
+               "frame_ms_to_beside": "frame after a camera move / the Cornell box's",
+               "full_ms_to_beside": "the same, everything recomputed"}
+    moving = {"script": "", "worst_to_median": "slowest frame / median",
+              "change_to_true": "changes from frame to frame / the reference's", "flicker": "flicker",
+              "noise": "noise of the reference", "rel_mse": "relMSE, indirect, mean of the frames"}
+    heading = element("h2", "Worlds larger than the room that is seen")
+    return heading + table(columns, table_rows) + (table(moving, walks) if walks else "")
+
+
 def gathering(table_rows: Sequence[Row], camera: Sequence[Row]) -> str:
     if not table_rows:
         return ""
@@ -246,6 +260,8 @@ class Findings:
     camera: Sequence[Row]
     placement: Sequence[Row]
     emitters: Sequence[Row]
+    worlds: Sequence[Row]
+    walks: Sequence[Row]
 
 
 def write(
@@ -266,6 +282,7 @@ def write(
         charts(found.charts),
         placement(found.placement),
         emitters(found.emitters),
+        worlds(found.worlds, found.walks),
         gathering(found.gathering, found.camera),
         flicker(found.flicker),
         visibility_costs(out, rows, found.visibility),

@@ -135,9 +135,11 @@ def measure(
     group: Group,
     points: Sequence[Point],
     on_line: OnLine,
+    beside: pathlib.Path | None = None,
 ) -> None:
-    """Measures the points. If the program crashes, the point that it was measuring fails and the others continue. If it
-    reports an error, all remaining points fail with its message."""
+    """Measures the points, with times in turns with those of the scene `beside`. If the program crashes, the point that
+    it was measuring fails and the others continue. If it reports an error, all remaining points fail with its
+    message."""
     waiting = list(points)
     pictures.mkdir(parents=True, exist_ok=True)
     while waiting:
@@ -152,6 +154,7 @@ def measure(
             json.dumps([{"id": one.id, "config": one.config, "seeds": one.seeds} for one in waiting]), encoding="utf-8"
         )
         command = [program, "measure", str(scene), "--reference", str(reference), "--points", str(request)]
+        command += ["--beside", str(beside)] if beside else []
         end = stream([*command, "--rounds", str(group.rounds), "--pictures", str(pictures)], take)
         left = [one for one in waiting if not is_finished(one.id, seen, group.rounds)]
         lost = left

@@ -50,8 +50,11 @@ def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
     row.update(flat("", {name: line[name] for name in ("flip", "work", "memory")}))
     vpls = line.get("vpls") or {"alive": 0, "paths": 0, "flux": {}}
     row.update({"alive": vpls["alive"], "paths": vpls["paths"], **shares(vpls["flux"])})
-    for name in ("frame_ms", "full_ms", "cpu_ms", "gpu_ms") if record["times"] else ():
+    for name in ("frame_ms", "full_ms", "cpu_ms", "gpu_ms", "gather_ms") if record["times"] else ():
         row[name] = statistics.median(each[name] for each in record["times"])
+    turns = [line for line in record["times"] if "beside" in line]
+    for name in ("frame_ms", "full_ms") if turns else ():
+        row[f"{name}_to_beside"] = statistics.median(line[name] / line["beside"][name] for line in turns)
     row["rounds"] = len(record["times"])
     return {**row, **{kind: str(pictures_of(group) / line[kind]) for kind in ("picture", "heat")}}
 
@@ -103,6 +106,7 @@ def motion_row(motion: Motion, take: Take, record: journal.Record | None) -> Row
         row[f"{part}_flicker"] = line["flicker"][part]
         row[f"{part}_rel_mse"] = [frame["errors"][part]["rel_mse"] for frame in line["frames"]]
     row.update({"flicker_noise": line["flicker"]["noise"], "flicker_of_pairs": line["flicker"]["indirect_pairs"]})
+    row.update({name: line["flicker"][name] for name in ("change", "true_change")})
     return {**row, **{name: [frame[name] for frame in line["frames"]] for name in FRAME_FIGURES}}
 
 

@@ -107,15 +107,33 @@ def generate(name: str, folder: pathlib.Path) -> None:
     subprocess.run([sys.executable, SHIPPED / "generate.py", "--out", folder, *asked], check=True, capture_output=True)
 
 
+def only_camera(text: str, camera: str) -> str:
+    """The scene without its other cameras; the study uses a scene's first one."""
+    document = json.loads(text)
+    nodes, scene = document["nodes"], document["scenes"][0]
+    others = [i for i, node in enumerate(nodes) if "camera" in node and node["name"] != camera]
+    scene["nodes"] = [i for i in scene["nodes"] if i not in others]
+    return json.dumps(document)
+
+
+def write(name: str, path: pathlib.Path, folder: pathlib.Path) -> None:
+    scene, _, camera = name.partition("@")
+    if camera:
+        path.write_text(only_camera(find(scene, folder).read_text(encoding="utf-8"), camera), encoding="utf-8")
+    else:
+        generate(name, path.parent)
+
+
 def find(name: str, folder: pathlib.Path) -> pathlib.Path:
-    """The file of the scene. A scene that is not shipped is written to `folder`, unless these sources did so before."""
+    """The file of the scene; SCENE@CAMERA is a scene as that camera sees it. A scene that is not shipped is written to
+    `folder`, unless these sources did so before."""
     shipped, written = SHIPPED / f"{name}.gltf", folder / generators_hash() / f"{name}.gltf"
     if shipped.exists():
         return shipped
     if not written.exists():
         written.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=written.parent) as scratch:
-            generate(name, pathlib.Path(scratch))
+            write(name, pathlib.Path(scratch) / written.name, folder)
             (pathlib.Path(scratch) / written.name).rename(written)
     return written
 

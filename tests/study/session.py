@@ -42,6 +42,9 @@ class Study:
     def scene(self, group: Group) -> pathlib.Path:
         return scenes.find(group.scene, SCENES)
 
+    def beside(self, group: Group) -> pathlib.Path | None:
+        return scenes.find(group.beside, SCENES) if group.beside else None
+
     def circumstances(self, group: Group) -> dict[str, Any]:
         content = scenes.content_hash(self.scene(group))
         return {"scene": content, "machine": self.machine, "program": self.program}

@@ -67,10 +67,11 @@ int baseline(const BaselineStudy& study);
 /// The input of `measure`: which points are measured against which reference.
 struct MeasureStudy {
     std::filesystem::path scene;
-    std::filesystem::path reference;  ///< the folder
-    std::filesystem::path points;     ///< see read_points
-    std::filesystem::path pictures;   ///< the folder for pictures and heat maps
-    std::uint32_t rounds = 3;         ///< of time measurements; 0: errors only
+    std::filesystem::path reference;              ///< the folder
+    std::filesystem::path points;                 ///< see read_points
+    std::filesystem::path pictures;               ///< the folder for pictures and heat maps
+    std::uint32_t rounds = 3;                     ///< of time measurements; 0: errors only
+    std::optional<std::filesystem::path> beside;  ///< a scene that is timed in turns with this one
     ContextKind context = ContextKind::egl;
 };
 /// Error, work, memory and times of configurations; a line of JSON as soon as each is known.

@@ -26,7 +26,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "motion"]
+SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "worlds", "surfels", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits", "scale"]
 
@@ -69,6 +69,8 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
         "gather": matrix.gather_groups(),
         "placement": matrix.placement_groups(),
         "emitters": matrix.emitter_groups(),
+        "worlds": matrix.world_groups(),
+        "surfels": matrix.surfel_groups(),
         "motion": [],
     }
     wanted = parts or SUITES
@@ -80,6 +82,7 @@ def planned_motions(quick: bool, parts: list[str] | None, only: list[str] | None
     """All scripts to render, in order."""
     wanted = motion.motions() if not parts or "motion" in parts else []
     wanted += motion.camera_motions() if not parts or "gather" in parts else []
+    wanted += motion.world_motions() if not parts or "worlds" in parts else []
     chosen = motion.quick_motions() if quick else wanted
     return [each for each in chosen if only is None or motion.scene_of(each, ANIMATIONS) in only]
 
@@ -135,13 +138,15 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
     placement = analysis.placement_table(rows, matrix.PLACEMENTS)
     emitters = analysis.emitter_table(rows)
+    worlds, walks = analysis.world_table(rows), analysis.world_motion_table(played)
+    extra |= {"worlds": worlds, "walks": walks}
     extra |= {"placement": placement, "gathering": gathering, "camera": camera, "emitters": emitters}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    found = page.Findings(made, best, flicker, costs, gathering, camera, placement, emitters)
+    found = page.Findings(made, best, flicker, costs, gathering, camera, placement, emitters, worlds, walks)
     page.write(study.out, rows, found, study.machine, machine.provenance(STUDY))
-    printed = {"gathering": gathering + camera, "placement": placement, "emitters": emitters}
+    printed = {"gathering": gathering + camera, "placement": placement, "emitters": emitters, "worlds": worlds + walks}
     for part, lines in printed.items():
         for line in lines:
             print(f"study: {part},", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))

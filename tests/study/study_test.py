@@ -248,6 +248,36 @@ class Motions(unittest.TestCase):
         self.assertEqual(len(keys), 6)
 
 
+class Worlds(unittest.TestCase):
+    def test_times_are_compared_within_a_round(self) -> None:
+        group = matrix.world_groups()[0]
+        one = group.points[0]
+        errors = {"direct": None, "indirect": {"rel_mse": 0.02, "bias": -0.25}, "total": None}
+        line = {"noise": {"indirect": 0.001}, "errors": errors, "flip": 0, "work": {}, "memory": {}}
+        line |= {"picture": "a.png", "heat": "b.png"}
+
+        def time(frame: float, slower: float) -> dict[str, object]:
+            names = ("frame_ms", "full_ms", "cpu_ms", "gpu_ms", "gather_ms")
+            beside = dict.fromkeys(names, frame)
+            return {**dict.fromkeys(names, slower * frame), "beside": beside}
+
+        # Another program makes the second round ten times slower.
+        times = [time(1.0, 1.5), time(10.0, 1.4), time(1.1, 1.6), time(1.0, 1.7), time(1.0, 1.3)]
+        row = results.row_of(group, one, {"errors": line, "times": times})
+        (found,) = analysis.world_table([row])
+        self.assertAlmostEqual(found["frame_ms_to_beside"], 1.5)
+        self.assertAlmostEqual(found["full_ms_to_beside"], 1.5)
+        self.assertAlmostEqual(found["mean"], 0.75)
+
+    def test_the_first_frame_of_a_script_is_not_its_slowest(self) -> None:
+        take = take_row("surfels", [0.1, 0.3], 0.5)
+        take |= {"suite": "worlds", "full_ms": [100.0, 2.0, 2.0, 5.0], "change": 4.0, "true_change": 1.0}
+        (line,) = analysis.world_motion_table([take])
+        self.assertAlmostEqual(line["worst_to_median"], 2.5)
+        self.assertAlmostEqual(line["change_to_true"], 2.0)
+        self.assertAlmostEqual(line["rel_mse"], 0.2)
+
+
 class VisibilityCosts(unittest.TestCase):
     def test_compares_counts_measured_with_all_three_visibilities(self) -> None:
         def point(visibility: str, vpls: int, error: float) -> dict[str, object]:
@@ -415,6 +445,18 @@ class Checks(unittest.TestCase):
         self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.21))))
         self.assertFalse(all(holds for _, holds, _ in checks.obstacles_seen(rows(0.19)[1:])))
 
+    def test_too_dark_and_too_wrong_a_world_fails_the_check(self) -> None:
+        def holds(bias: float, error: float) -> bool:
+            one = row("apartment", "p", 1.0, 0.5, indirect_bias=bias, indirect_rel_mse=error)
+            return all(right for _, right, _ in checks.worlds_right([one]))
+
+        self.assertTrue(holds(-0.14, 0.05))
+        self.assertFalse(holds(-0.16, 0.05))
+        self.assertFalse(holds(0.0, 0.07))
+
+    def test_every_quick_world_has_limits(self) -> None:
+        self.assertEqual(set(matrix.QUICK_WORLDS), set(checks.WORLDS))
+
     def test_a_path_with_a_different_error_fails_the_check(self) -> None:
         rows = [row("a", path, 1.0, 0.5, path=path) for path in matrix.PATHS]
         self.assertTrue(all(holds for _, holds, _ in checks.paths_agree(rows)))
@@ -437,6 +479,12 @@ class OwnScenes(unittest.TestCase):
                 edges[key] = edges.get(key, 0) + 1
         for (start, end), count in edges.items():
             self.assertEqual(count, edges.get((end, start)))
+
+    def test_a_scene_is_seen_by_the_camera_that_is_asked_for(self) -> None:
+        nodes = [{"name": "wall", "mesh": 0}, {"name": "in", "camera": 0}, {"name": "out", "camera": 1}]
+        text = json.dumps({"scenes": [{"nodes": [0, 1, 2]}], "nodes": nodes})
+        seen = json.loads(scenes.only_camera(text, "out"))
+        self.assertEqual(seen, {"scenes": [{"nodes": [0, 2]}], "nodes": nodes})
 
     def test_hash_includes_the_content_of_referenced_files(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
