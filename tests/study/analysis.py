@@ -5,6 +5,8 @@ import statistics
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar
 
+from motion import AT_REST
+
 Row = dict[str, Any]  # one point of results.csv
 T = TypeVar("T")
 
@@ -145,16 +147,24 @@ def world_table(rows: Sequence[Row]) -> list[Row]:
 
 
 def world_motion_table(played: Sequence[Row]) -> list[Row]:
-    """For each script, the slowest frame after the first as a multiple of the median, the changes of the indirect light
-    from frame to frame as a multiple of those of the reference (root mean square), and the flicker."""
+    """For each script: the slowest frame after the first, the flicker as a multiple of that of a picture that does not
+    change, the flicker of the worst pair of frames, the error, and how fast it settles."""
     table = []
     for row in select(played, suite="worlds"):
-        times = row["full_ms"][1:]
-        line = {"script": row["scene"], "worst_to_median": max(times) / statistics.median(times)}
-        line["change_to_true"] = math.sqrt(row["change"] / row["true_change"]) if row["true_change"] > 0 else None
-        line |= {"flicker": row["indirect_flicker"], "noise": row["flicker_noise"]}
-        table.append({**line, "rel_mse": statistics.mean(row["indirect_rel_mse"])})
+        times, errors = row["full_ms"][1:], row["indirect_rel_mse"]
+        line = {"script": row["scene"], "id": row["id"], "worst_ms": max(times)}
+        line["worst_to_median"] = max(times) / statistics.median(times)
+        line["flicker_to_own"] = row["indirect_flicker"] / row["own_flicker"]
+        line |= {"worst_flicker": max(row["flicker_of_pairs"]), "rel_mse": statistics.mean(errors)}
+        if row["scene"] in AT_REST:
+            line["settled_after"] = frames_until_settled(errors[AT_REST[row["scene"]] :])
+        table.append({**line, "noise_to_own": row["flicker_noise"] / row["own_flicker"]})
     return table
+
+
+def frames_until_settled(errors: Sequence[float]) -> int:
+    """The number of frames before the error stays within 1.2 times that of the last frame."""
+    return next((i + 1 for i in reversed(range(len(errors))) if errors[i] > 1.2 * errors[-1]), 0)
 
 
 def visibility_costs(rows: Sequence[Row]) -> list[Row]:

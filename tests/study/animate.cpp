@@ -127,14 +127,10 @@ Json frame_line(const Point& point, int frame, double ms, const Report& report, 
             {"refined", report.refined}};
 }
 
-/// The mean square change of the reference's indirect light without the part that is noise: a quarter of that
-/// of the difference between its halves, as in `flicker_line`.
-double true_change(const Truth& truth) {
-    std::vector<Picture> noise;
-    for (std::size_t i = 0; i < truth.indirect.size(); ++i) {
-        noise.push_back(difference(truth.halves[0][i], truth.halves[1][i]));
-    }
-    return mean_square_change(truth.indirect, truth.hits) - mean_square_change(noise, truth.hits) / 4.0;
+/// The flicker of a picture that does not change: the size of the reference's own changes.
+double own_flicker(const Truth& truth) {
+    const std::vector<Picture> still(truth.indirect.size(), truth.indirect.front());
+    return flicker(still, truth.indirect, truth.hits);
 }
 
 /// `noise` is the part of the indirect light's flicker that is due to noise of the reference: halves of
@@ -144,8 +140,7 @@ Json flicker_line(const Point& point, const Take& take, const Truth& truth) {
             {"kind", "flicker"},
             {"indirect", flicker(take.indirect, truth.indirect, truth.hits)},
             {"total", flicker(take.total, truth.total, truth.hits)},
-            {"change", mean_square_change(take.indirect, truth.hits)},
-            {"true_change", true_change(truth)},
+            {"own", own_flicker(truth)},
             {"indirect_pairs", flicker_of_pairs(take.indirect, truth.indirect, truth.hits)},
             {"noise", flicker(truth.halves[0], truth.halves[1], truth.hits) / 4.0}};
 }

@@ -65,28 +65,6 @@ void require_sequences(std::span<const Picture> frames, std::span<const Picture>
     }
 }
 
-/// How much a pixel of frame `next` differs from that of the frame before.
-glm::dvec3 change(std::span<const Picture> frames, std::size_t next, std::size_t pixel) {
-    return glm::dvec3(frames[next].pixels[pixel]) - glm::dvec3(frames[next - 1].pixels[pixel]);
-}
-
-/// For each pair of consecutive frames, the mean of value(next, pixel) over the pixels that count in both.
-template <class Value>
-std::vector<double> of_pairs(std::span<const Picture> frames, std::span<const Mask> hits, Value value) {
-    std::vector<double> pairs;
-    pairs.reserve(frames.size() - 1);
-    for (std::size_t next = 1; next < frames.size(); ++next) {
-        const Mask hit = both(mask_of(hits, next - 1), mask_of(hits, next));
-        pairs.push_back(
-            mean_over(frames[next].pixels.size(), hit, [&](std::size_t i) { return value(next, i); }));
-    }
-    return pairs;
-}
-
-double average(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 }  // namespace
 
 Errors measure(const Picture& picture, const Picture& reference, std::span<const std::uint8_t> hit) {
@@ -123,21 +101,24 @@ std::vector<double> flicker_of_pairs(std::span<const Picture> frames,
     for (std::size_t i = 0; i < frames.size(); ++i) {
         mean += mean_vector(reference_frames[i], mask_of(hits, i)) / count;
     }
-    return of_pairs(frames, hits, [&](std::size_t next, std::size_t i) {
-        return relative_square(change(frames, next, i), change(reference_frames, next, i), square(mean));
-    });
+    std::vector<double> pairs;
+    pairs.reserve(frames.size() - 1);
+    for (std::size_t next = 1; next < frames.size(); ++next) {
+        const auto change = [next](std::span<const Picture> sequence, std::size_t pixel) {
+            return glm::dvec3(sequence[next].pixels[pixel]) - glm::dvec3(sequence[next - 1].pixels[pixel]);
+        };
+        const Mask hit = both(mask_of(hits, next - 1), mask_of(hits, next));
+        pairs.push_back(mean_over(frames[next].pixels.size(), hit, [&](std::size_t i) {
+            return relative_square(change(frames, i), change(reference_frames, i), square(mean));
+        }));
+    }
+    return pairs;
 }
 
 double flicker(std::span<const Picture> frames, std::span<const Picture> reference_frames,
                std::span<const Mask> hits) {
     const std::vector<double> pairs = flicker_of_pairs(frames, reference_frames, hits);
-    return average(pairs);
-}
-
-double mean_square_change(std::span<const Picture> frames, std::span<const Mask> hits) {
-    require_sequences(frames, frames, hits);
-    return average(of_pairs(
-        frames, hits, [&](std::size_t next, std::size_t i) { return square(change(frames, next, i)); }));
+    return std::accumulate(pairs.begin(), pairs.end(), 0.0) / static_cast<double>(pairs.size());
 }
 
 Picture scaled_down(const Picture& picture, int factor) {

@@ -47,11 +47,6 @@ struct Errors {
                              std::span<const sandbox::Picture> reference_frames,
                              std::span<const Mask> hits = {});
 
-/// The mean square of the change from frame to frame, mean(|Δa|²) over the pixels that count in both frames
-/// and over the pairs of consecutive frames. Throws as `flicker` does.
-[[nodiscard]] double mean_square_change(std::span<const sandbox::Picture> frames,
-                                        std::span<const Mask> hits = {});
-
 /// The means of blocks of `factor` x `factor` pixels; incomplete blocks at the right and at the bottom are
 /// dropped.
 [[nodiscard]] sandbox::Picture scaled_down(const sandbox::Picture& picture, int factor);

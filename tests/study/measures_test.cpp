@@ -227,18 +227,6 @@ TEST_SUITE("flicker") {
                              "no pixel counts in two consecutive frames", std::invalid_argument);
     }
 
-    TEST_CASE("the mean square of the change counts every pair of frames and every pixel that both show") {
-        // Changes of 1 and of -2 in each of three channels: (3 · 1 + 3 · 4) / 2.
-        const std::vector<Picture> frames{constant({2, 2}, glm::vec3(2.0F)),
-                                          constant({2, 2}, glm::vec3(3.0F)),
-                                          constant({2, 2}, glm::vec3(1.0F))};
-        CHECK(mean_square_change(frames) == about(7.5));
-        const std::vector<Picture> half{row({glm::vec3(0.0F), glm::vec3(0.0F)}),
-                                        row({glm::vec3(1.0F), glm::vec3(9.0F)})};
-        CHECK(mean_square_change(half, std::vector<Mask>{{1, 1}, {1, 0}}) == about(3.0));
-        CHECK_THROWS_AS((void)mean_square_change(std::span(frames).first(1)), std::invalid_argument);
-    }
-
     TEST_CASE("sequences that do not fit are refused") {
         const std::vector<Picture> two(2, constant({2, 2}, glm::vec3(1.0F)));
         const std::vector<Picture> one(1, two[0]);

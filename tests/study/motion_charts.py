@@ -53,7 +53,7 @@ def scripts(played: Sequence[Row], out: pathlib.Path) -> Made:
 
 
 def worlds(played: Sequence[Row], out: pathlib.Path) -> Made:
-    rows = select(played, suite="worlds")
+    rows = select(played, suite="worlds", id="surfels")
     if not rows:
         return {}
     figure, grid = plt.subplots(3, len(rows), figsize=(max(5.0 * len(rows), 6.0), 7.0), squeeze=False, sharex="col")

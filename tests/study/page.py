@@ -207,9 +207,12 @@ def worlds(table_rows: Sequence[Row], walks: Sequence[Row]) -> str:
                "reference_noise": "the reference's own noise, relMSE",
                "frame_ms_to_beside": "frame after a camera move / the Cornell box's",
                "full_ms_to_beside": "the same, everything recomputed"}
-    moving = {"script": "", "worst_to_median": "slowest frame / median",
-              "change_to_true": "changes from frame to frame / the reference's", "flicker": "flicker",
-              "noise": "noise of the reference", "rel_mse": "relMSE, indirect, mean of the frames"}
+    moving = {"script": "", "id": "", "worst_ms": "slowest frame, ms", "worst_to_median": "slowest frame / median",
+              "flicker_to_own": "flicker / that of a picture that does not change",
+              "noise_to_own": "the same of the reference's noise",
+              "worst_flicker": "flicker of the worst pair of frames",
+              "rel_mse": "relMSE, indirect, mean of the frames",
+              "settled_after": "frames at rest until the error is within 1.2 times the last one's"}
     heading = element("h2", "Worlds larger than the room that is seen")
     return heading + table(columns, table_rows) + (table(moving, walks) if walks else "")
 

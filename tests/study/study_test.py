@@ -271,11 +271,17 @@ class Worlds(unittest.TestCase):
 
     def test_the_first_frame_of_a_script_is_not_its_slowest(self) -> None:
         take = take_row("surfels", [0.1, 0.3], 0.5)
-        take |= {"suite": "worlds", "full_ms": [100.0, 2.0, 2.0, 5.0], "change": 4.0, "true_change": 1.0}
-        (line,) = analysis.world_motion_table([take])
+        take |= {"suite": "worlds", "full_ms": [100.0, 2.0, 2.0, 5.0], "flicker_of_pairs": [0.2, 0.7, 0.6]}
+        (line,) = analysis.world_motion_table([{**take, "own_flicker": 0.25}])
         self.assertAlmostEqual(line["worst_to_median"], 2.5)
-        self.assertAlmostEqual(line["change_to_true"], 2.0)
+        self.assertAlmostEqual(line["flicker_to_own"], 2.0)
+        self.assertAlmostEqual(line["worst_flicker"], 0.7)
         self.assertAlmostEqual(line["rel_mse"], 0.2)
+
+    def test_an_error_has_settled_when_it_stays_within_a_fifth_of_the_last(self) -> None:
+        self.assertEqual(analysis.frames_until_settled([0.5, 0.11, 0.3, 0.12, 0.1]), 3)
+        self.assertEqual(analysis.frames_until_settled([0.1, 0.1]), 0)
+        self.assertEqual(analysis.frames_until_settled([]), 0)
 
 
 class VisibilityCosts(unittest.TestCase):
