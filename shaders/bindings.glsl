@@ -39,6 +39,7 @@
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_FILL_MASK BINDING_LIST_COUNT
 #define BINDING_FILL_LIST BINDING_LIST_ENTRIES
+#define BINDING_VPL_SAMPLES BINDING_LIST_FIRST
 // Passes that inspect resources read light lists, but draw no meshes.
 #define BINDING_INSPECTED_RANGES BINDING_INSTANCES
 
@@ -89,6 +90,9 @@
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
 #define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp
+#define SAMPLE_GROUP 16     // the same in vpl_samples.comp
+#define SAMPLE_COLUMNS 24   // of the grid of pixels in vpl_samples.comp
+#define SAMPLE_ROWS 18
 #define INSPECT_GROUP 64    // invocations of a work group of inspect_range.comp: a power of two
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts

@@ -97,6 +97,17 @@ EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
     return total;
 }
 
+void warn_of_few_vpls(Log& log, const VplReport& vpls) {
+    // A pixel is then off by about a third, and blotches of light are mistaken for shadows.
+    constexpr double most = 0.1;
+    if (*vpls.estimated_error > most) {
+        log.warn(
+            fmt::format("{0} VPLs are too few for this view: its indirect light is off by about a third or "
+                        "more; set \"vpls\": {{\"count\": {1}}} or more",
+                        vpls.requested, 4 * std::max(vpls.requested, 64U)));
+    }
+}
+
 /// Whether both give the same picture before tone mapping while nothing moves.
 bool same_radiance(Configuration a, const Configuration& b) {
     a.tone_map = b.tone_map;
@@ -204,7 +215,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     std::vector<ViewRequest> requests;
     std::vector<ViewRequest> without_jitter;
     for (const RenderView& view : views) {
-        shape.views.push_back({view.target.size, view.surfaces.has_value(), view.keep});
+        shape.views.push_back({view.target.size, view.surfaces.has_value(), view.keep, view.estimate_error});
         requests.push_back({view.camera, view.target.size, view.jitter});
         without_jitter.push_back({view.camera, view.target.size});
     }
@@ -406,7 +417,8 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
     VplReport report{.requested = configuration_.vpls.count,
                      .interleave = view.interleave,
                      .filled_pixels = count_filled(view),
-                     .flux = {}};
+                     .flux = {},
+                     .estimated_error = estimate_error(view)};
     if (const auto* const traced = std::get_if<TracedVpls>(&vpls.records)) {
         const PathPlan& plan = runtime_.value(traced->plan);
         const std::vector<gpu::TracedVpl> placed = read(traced->vpls, counts.traced);
@@ -426,6 +438,14 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
 std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {
     if (!view.indirect) return 0;
     return backend_.buffer(runtime_.object(view.indirect->fill_list)).download<std::uint32_t>().at(3);
+}
+
+std::optional<double> Renderer::State::estimate_error(const ViewHandles& view) const {
+    if (!view.samples) return std::nullopt;
+    const auto read = [&](VplSamples samples) {
+        return backend_.buffer(runtime_.object(samples)).download<glm::vec4>();
+    };
+    return estimated_error(read(view.samples->shown), read(view.samples->other));
 }
 
 LightReport Renderer::State::report_lights(const ViewHandles& view) const {
@@ -458,7 +478,10 @@ Report Renderer::State::report(std::size_t index) {
                   .rendered_size = view.parts.size,
                   .lights = report_lights(view),
                   .memory = runtime_.memory()};
-    if (frame_.vpls && configuration_.show != Show::direct) report.vpls = report_vpls(*frame_.vpls, view);
+    if (frame_.vpls && configuration_.show != Show::direct) {
+        report.vpls = report_vpls(*frame_.vpls, view);
+        if (report.vpls->estimated_error) warn_of_few_vpls(gpu_.log(), *report.vpls);
+    }
     return report;
 }
 

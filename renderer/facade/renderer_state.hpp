@@ -66,6 +66,7 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] bool refines() const;
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
     [[nodiscard]] std::uint32_t count_filled(const ViewHandles& view) const;
+    [[nodiscard]] std::optional<double> estimate_error(const ViewHandles& view) const;
     [[nodiscard]] LightReport report_lights(const ViewHandles& view) const;
 
     Gpu gpu_;

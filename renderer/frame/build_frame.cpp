@@ -1,5 +1,7 @@
 #include "renderer/frame/build_frame.hpp"
 
+#include <algorithm>
+
 #include <candela/scene/hierarchy.hpp>
 #include "renderer/frame/build_view.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
@@ -96,46 +98,101 @@ WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& 
     return wanted;
 }
 
-/// Places VPLs and finds their light. Returns what their depth maps are made of.
-MappedVpls place_vpls(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
-                      std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
-    const VplSettings& settings = wanted.settings;
-    if (settings.placement == VplPlacement::paths) {
-        const ValueHandle<PathPlan> plan =
-            add_vpl_paths(graph, frame.metrics, lit.lights.table, refinement, settings);
-        frame.vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer, wanted.bound);
-        return {frame.vpls->counts, std::get<TracedVpls>(frame.vpls->records).vpls, std::nullopt};
-    }
+/// What all sets of surfels have in common.
+struct SurfelInputs {
+    ValueHandle<SceneMotion> motion;
+    ValueHandle<std::vector<Focus>> foci;
+    SurfelSources sources;
+};
+
+SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                               std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
-    const ValueHandle<SceneMotion> motion = add_scene_motion(graph, lit.scene, *frame.epoch);
     frame.requests = graph.import_value<std::vector<ViewRequest>>("view requests");
-    const auto foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests, settings.count);
-    const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, foci, settings);
-    const SurfelVisibility visibility = add_surfel_visibility(graph, gpu, lit.tracing, surfels, motion);
-    SurfelSources sources{.lights = lit.lights, .emitters = wanted.emitters, .sky = {}};
-    if (lit.sky) sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
-    frame.vpls =
-        add_surfel_light(graph, gpu, lit.tracing, visibility, sources, settings.bounces, wanted.shown);
-    return {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, motion}, foci};
+    SurfelInputs inputs{
+        .motion = add_scene_motion(graph, lit.scene, *frame.epoch),
+        .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests, wanted.settings.count),
+        .sources = {.lights = lit.lights, .emitters = wanted.emitters, .sky = {}}};
+    if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
+    return inputs;
+}
+
+/// A set of VPLs with their light, and what their depth maps are made of.
+struct VplSet {
+    Vpls vpls;
+    MappedVpls mapped;
+};
+
+VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                      std::optional<ValueHandle<Refinement>> refinement, const SurfelInputs& inputs) {
+    const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, inputs.foci, wanted.settings);
+    const SurfelVisibility visibility =
+        add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion);
+    return {
+        .vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, inputs.sources, wanted.settings.bounces,
+                                 wanted.shown),
+        .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, inputs.motion}, inputs.foci}};
+}
+
+VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                    std::optional<ValueHandle<Refinement>> refinement) {
+    const ValueHandle<PathPlan> plan =
+        add_vpl_paths(graph, lit.tracing.metrics, lit.lights.table, refinement, wanted.settings);
+    const Vpls vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer, wanted.bound);
+    return {vpls, {vpls.counts, std::get<TracedVpls>(vpls.records).vpls, std::nullopt}};
+}
+
+/// `inputs`: none for VPLs on paths.
+VplSet add_vpl_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
+                   std::optional<ValueHandle<Refinement>> refinement,
+                   const std::optional<SurfelInputs>& inputs) {
+    return inputs ? add_surfel_set(graph, gpu, wanted, lit, refinement, *inputs)
+                  : add_path_set(graph, gpu, wanted, lit, refinement);
+}
+
+/// The light of another set of as many VPLs, with rays instead of depth maps.
+VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const LitScene& lit,
+                       const std::optional<SurfelInputs>& inputs, VplVisibilitySettings visibility) {
+    wanted.settings.seed += 0x80000000U;  // far from those of refinement
+    graph.append_to_names(" (other set)");
+    const VplSet set = add_vpl_set(graph, gpu, wanted, lit, std::nullopt, inputs);
+    const bool occluded = visibility.method != VplVisibility::none;
+    if (occluded) visibility.method = VplVisibility::rays;
+    const VplLight light{.vpls = set.vpls,
+                         .common = add_vpl_constants(graph, gpu, lit.tracing.metrics, set.vpls.counts,
+                                                     set.mapped.foci, visibility),
+                         .rays = occluded ? std::optional(lit.tracing) : std::nullopt};
+    graph.append_to_names("");
+    return light;
 }
 
 /// The light of the wanted VPLs, if any.
 std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
-                                   const FrameContents& contents, const LitScene& lit,
+                                   const FrameShape& shape, const LitScene& lit,
                                    std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
+    const FrameContents& contents = shape.contents;
     const WantedVpls wanted = wanted_vpls(configuration, contents);
     if (!wanted.any()) return std::nullopt;
-    const MappedVpls mapped = place_vpls(graph, gpu, wanted, lit, refinement, frame);
-    VplLight light{.vpls = *frame.vpls,
-                   .common = add_vpl_constants(graph, gpu, frame.metrics, frame.vpls->counts, mapped.foci,
+    std::optional<SurfelInputs> inputs;
+    if (wanted.settings.placement == VplPlacement::surfels) {
+        inputs = add_surfel_inputs(graph, gpu, wanted, lit, refinement, frame);
+    }
+    const VplSet set = add_vpl_set(graph, gpu, wanted, lit, refinement, inputs);
+    frame.vpls = set.vpls;
+    VplLight light{.vpls = set.vpls,
+                   .common = add_vpl_constants(graph, gpu, frame.metrics, set.vpls.counts, set.mapped.foci,
                                                configuration.visibility)};
     if (configuration.visibility.method == VplVisibility::maps) {
-        light.maps = add_vpl_maps(graph, gpu, lit.tracing, mapped, light.common);
+        light.maps = add_vpl_maps(graph, gpu, lit.tracing, set.mapped, light.common);
         if (contents.emitters || contents.sky) light.rays = lit.tracing;
     } else if (configuration.visibility.method == VplVisibility::rays) {
         light.rays = lit.tracing;
     }
-    return SharedVpls{light, add_vpl_order(graph, gpu, *frame.vpls), wanted.count};
+    SharedVpls shared{light, add_vpl_order(graph, gpu, set.vpls), wanted.count};
+    if (std::ranges::any_of(shape.views, &ViewShape::estimate_error)) {
+        shared.other = add_other_set(graph, gpu, wanted, lit, inputs, configuration.visibility);
+    }
+    return shared;
 }
 
 }  // namespace
@@ -170,8 +227,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
 
     const LitScene lit = add_scene(graph, gpu, configuration, shape.contents, frame);
     const std::optional<ValueHandle<Refinement>> refinement = add_cameras(graph, configuration, lit, frame);
-    const std::optional<SharedVpls> vpls =
-        add_vpls(graph, gpu, configuration, shape.contents, lit, refinement, frame);
+    const std::optional<SharedVpls> vpls = add_vpls(graph, gpu, configuration, shape, lit, refinement, frame);
     const SharedFrame shared{configuration, shape.contents, shape.quality, lit, vpls, extensions};
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
         begin_view(graph, i);
@@ -179,7 +235,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     }
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
         begin_view(graph, i);
-        keep_parts(graph, shape.views[i].keep, frame.views[i].parts);
+        keep_parts(graph, shape.views[i].keep, frame.views[i]);
     }
     end_view(graph);
     return frame;

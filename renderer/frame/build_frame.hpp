@@ -8,6 +8,7 @@
 #include <candela/extension.hpp>
 #include <candela/graph/frame_graph.hpp>
 #include <candela/report.hpp>
+#include "renderer/passes/indirect/vpl_error.hpp"
 #include "renderer/passes/indirect/vpl_reconstruct.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"
@@ -28,10 +29,11 @@ struct ViewHandles {
     std::optional<HostSurfaceInputs> host;               ///< imported; none: Candela draws the surfaces
     ValueHandle<CameraView> camera;                      ///< with refinement's samples
     std::optional<ValueHandle<std::uint32_t>> averaged;  ///< see Refined; none without refinement
-    std::uint32_t interleave = 1;           ///< n: a pixel evaluates one in n² VPLs; 1: all of them
-    std::optional<IndirectLight> indirect;  ///< none if `interleave` is 1
-    std::optional<LightLists> lists;        ///< none if every surface evaluates all lights
-    ViewFrame parts;                        ///< what is kept, as far as it was asked for
+    std::uint32_t interleave = 1;            ///< n: a pixel evaluates one in n² VPLs; 1: all of them
+    std::optional<IndirectLight> indirect;   ///< none if `interleave` is 1
+    std::optional<LightLists> lists;         ///< none if every surface evaluates all lights
+    std::optional<VplErrorSamples> samples;  ///< none without VPLs, or if nobody asked for the error
+    ViewFrame parts;                         ///< what is kept, as far as it was asked for
 };
 
 /// Handles into the frame graph, of all views.
@@ -49,9 +51,10 @@ struct FrameHandles {
 
 /// What the passes of a view depend on.
 struct ViewShape {
-    glm::uvec2 target{1};        ///< of the target, pixels
-    bool host_surfaces = false;  ///< the host has drawn the surfaces
-    FrameParts keep{};           ///< see RenderView::keep
+    glm::uvec2 target{1};         ///< of the target, pixels
+    bool host_surfaces = false;   ///< the host has drawn the surfaces
+    FrameParts keep{};            ///< see RenderView::keep
+    bool estimate_error = false;  ///< see RenderView::estimate_error
     bool operator==(const ViewShape&) const = default;
 };
 

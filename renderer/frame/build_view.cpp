@@ -184,7 +184,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     // VPLs are also gathered without interleaving if they are too many for one loop of the shading pass.
     const bool gathers = shared.vpls && (out.interleave > 1 || asked.indirect ||
                                          shared.vpls->count > max_vpls_per_invocation(shared.vpls->light));
-    asked.depth |= gathers;
+    const bool estimates = shape.estimate_error && shared.vpls && shared.vpls->other;
+    asked.depth |= gathers || estimates;
 
     const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
                                     : find_surfaces(graph, gpu, path.surfaces, seen, view, asked);
@@ -200,6 +201,10 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.list_entries = out.lists->entries;
     }
     if (gathers) parts.indirect = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, out);
+    if (estimates) {
+        out.samples =
+            add_vpl_error(graph, gpu, surfaces_of(parts), shared.vpls->light, *shared.vpls->other, view);
+    }
 
     shade(graph, gpu, shared, seen, view, out, parts);
     if (!out.host) add_sources(graph, gpu, shared, seen, view, parts);
@@ -215,8 +220,9 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     out.parts = parts;
 }
 
-void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewFrame& parts) {
-    if (keep == FrameParts{}) return;
+void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewHandles& view) {
+    if (keep == FrameParts{} && !view.samples) return;
+    const ViewFrame& parts = view.parts;
     graph.add("keep", [&](Pass& pass) {
         pass.side_effect();
         const auto read = [&](bool wanted, const std::optional<TextureHandle>& texture) {
@@ -234,6 +240,10 @@ void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewFrame& part
         read_vpls(parts.lit_surfels);
         read_vpls(parts.lit_emitters);
         read_vpls(parts.sky_patches);
+        if (view.samples) {
+            pass.read(view.samples->shown, Usage::storage);
+            pass.read(view.samples->other, Usage::storage);
+        }
     });
 }
 

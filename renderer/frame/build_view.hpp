@@ -23,6 +23,7 @@ struct SharedVpls {
     VplLight light;
     BufferHandle<std::uint32_t> order;  ///< see add_vpl_order
     std::uint32_t count = 0;            ///< about how many there are
+    std::optional<VplLight> other{};    ///< of another set, to compare with; none if no view asks for it
 };
 
 /// What the views of a frame have in common.
@@ -41,6 +42,6 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
 
 /// Adds node `keep`, if anything is to be kept: it reads those parts, and does nothing with them, so that
 /// their content stays until the end of the frame. To be declared after the passes of all views.
-void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewFrame& parts);
+void keep_parts(FrameGraph& graph, const FrameParts& keep, const ViewHandles& view);
 
 }  // namespace candela

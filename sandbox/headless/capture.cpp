@@ -87,6 +87,13 @@ Picture Capture::render(const World& world, Entity camera, int samples, CaptureR
     return flipped({glm::ivec2(size_), std::move(sum)});
 }
 
+std::optional<double> Capture::estimate_error(const World& world, Entity camera) {
+    const RenderView view{.camera = camera, .target = linear_.target(), .estimate_error = true};
+    renderer_->render(world, {&view, 1});
+    const std::optional<VplReport> vpls = renderer_->report().vpls;
+    return vpls ? vpls->estimated_error : std::nullopt;
+}
+
 std::vector<std::uint8_t> Capture::tone_mapped(const Picture& picture) {
     renderer_->tone_map(flipped(picture).pixels, encoded_.target());
     return rgb_of_texels(size_, encoded_.texels(device_of(*renderer_)));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include <candela/renderer.hpp>
@@ -30,6 +31,9 @@ class Capture {
     /// refinement the renderer does the jittering and averaging itself; then `samples` further frames go into
     /// its running mean, and that mean is returned.
     [[nodiscard]] Picture render(const World& world, Entity camera, int samples, CaptureReport& report);
+
+    /// Renders the last frame again and returns VplReport::estimated_error; none without VPLs.
+    [[nodiscard]] std::optional<double> estimate_error(const World& world, Entity camera);
 
     /// The picture through the renderer's tone map: sRGB, 3 bytes per pixel, row 0 at the top.
     [[nodiscard]] std::vector<std::uint8_t> tone_mapped(const Picture& picture);

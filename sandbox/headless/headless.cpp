@@ -64,7 +64,11 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
         check_finite(picture, frame);
     }
     run.environment = environment_of(scene.world);
-    write_documents(options, run, renderer);
+    write_graph(options, renderer);
+    if (options.report && run.state.vpls) {
+        run.state.vpls->estimated_error = capture.estimate_error(scene.world, camera);
+    }
+    write_report(options, run);
 
     fmt::print("{} on {}, {}x{}\n", run.context, run.state.gl_renderer, size.x, size.y);
     fmt::print("{}", to_table(run.frames.back(), run.state));
@@ -80,8 +84,11 @@ Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, 
     return capture.render(world, camera, samples, ignored);
 }
 
-void write_documents(const Options& options, const RunReport& report, const Renderer& renderer) {
+void write_report(const Options& options, const RunReport& report) {
     if (options.report) write_text(*options.report, to_json(report));
+}
+
+void write_graph(const Options& options, const Renderer& renderer) {
     if (options.describe_graph) {
         write_text(*options.describe_graph, renderer.describe(graph_format(*options.describe_graph)));
     }

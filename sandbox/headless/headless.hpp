@@ -26,8 +26,11 @@ namespace candela::sandbox {
 void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
                   const Configuration& configuration, const Options& options, glm::ivec2 size);
 
-/// Writes --report and --describe-graph if they are asked for.
-void write_documents(const Options& options, const RunReport& report, const Renderer& renderer);
+/// Writes --report if it is asked for.
+void write_report(const Options& options, const RunReport& report);
+
+/// Writes --describe-graph if it is asked for.
+void write_graph(const Options& options, const Renderer& renderer);
 
 /// Sets a configuration, which must be valid, on a new renderer. Throws std::runtime_error.
 void apply(Renderer& renderer, const Configuration& configuration);

@@ -38,6 +38,7 @@ Json to_json(const VplReport& vpls) {
             {"paths", vpls.paths},
             {"interleave", vpls.interleave},
             {"filled_pixels", vpls.filled_pixels},
+            {"estimated_error", vpls.estimated_error ? Json(*vpls.estimated_error) : Json(nullptr)},
             {"flux", flux}};
 }
 
@@ -90,6 +91,9 @@ std::string vpl_table(const VplReport& vpls) {
     if (vpls.interleave > 1) {
         table += fmt::format("  of which       a pixel asks one in {}; {} pixels asked more\n",
                              vpls.interleave * vpls.interleave, vpls.filled_pixels);
+    }
+    if (vpls.estimated_error) {
+        table += fmt::format("  error          relMSE {:.2g}, estimated\n", *vpls.estimated_error);
     }
     for (const EnergyLine& line : energy_lines(vpls.flux)) {
         table += fmt::format("  {:<14} {:>12.6g} {:>12.6g} {:>12.6g}\n", line.name, line.value.r,

@@ -82,11 +82,16 @@ void draw_reference(AppState& state, const ReferenceView& reference, double fram
 
 }  // namespace
 
-void draw_view_panel(AppState& state, const ReferenceView& reference, double frame_ms) {
+void draw_view_panel(AppState& state, const Report* report, const ReferenceView& reference, double frame_ms) {
     Show& show = state.configuration.show;
     show = static_cast<Show>(choose(choices_of(show), static_cast<std::size_t>(show), nullptr));
     checkbox("VPLs as dots", state.vpls,
              "each in the colour of its flux, with its normal; point at one to see its values");
+    checkbox("estimate their error", state.estimate_error,
+             "from another set of as many VPLs, which takes time whenever something moves");
+    if (state.estimate_error && report != nullptr && report->vpls && report->vpls->estimated_error) {
+        text(fmt::format("relMSE about {:.2g}", *report->vpls->estimated_error));
+    }
     ImGui::Separator();
     draw_comparison(state);
     ImGui::Separator();

@@ -32,7 +32,8 @@ struct AppState {
     Comparison comparison;
     bool panel = true;
     bool help = false;
-    bool vpls = false;  ///< VPLs are shown as dots
+    bool vpls = false;            ///< VPLs are shown as dots
+    bool estimate_error = false;  ///< of the VPLs' light
     /// The path tracer's picture of what is shown is refined in the background, and compared with it.
     bool reference = false;
     /// What the scene's file asks for and the picture lacks, and what the renderer left out.

@@ -158,7 +158,8 @@ void FrameRenderer::draw(Renderer& renderer, Canvas& canvas) {
     fit(canvas, request_->size);
     const RenderView view{.camera = request_->camera,
                           .target = canvas.target(),
-                          .keep = {.radiance = request_->read_radiance, .vpls = request_->read_vpls}};
+                          .keep = {.radiance = request_->read_radiance, .vpls = request_->read_vpls},
+                          .estimate_error = request_->estimate_error};
     renderer.render(*request_->world, std::span(&view, 1));
 }
 

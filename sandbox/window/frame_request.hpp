@@ -31,6 +31,7 @@ struct FrameRequest {
     std::optional<Inspection> inspection{};  ///< fills RenderedFrame::inspection
     bool read_vpls = false;                  ///< fills RenderedFrame::vpls
     bool read_radiance = false;              ///< fills RenderedFrame::radiance
+    bool estimate_error = false;             ///< see RenderView::estimate_error
     bool cut = false;  ///< nothing moves on from the request before: no frame of reduced quality comes first
     /// When the oldest input event that this request answers arrived.
     std::optional<Clock::time_point> input{};

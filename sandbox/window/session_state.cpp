@@ -26,7 +26,8 @@ FrameRequest frame_request(SessionState& state, glm::uvec2 size) {
                          .size = size,
                          .configuration = app.configuration,
                          .read_vpls = app.vpls,
-                         .read_radiance = app.reference};
+                         .read_radiance = app.reference,
+                         .estimate_error = app.estimate_error};
     if (state.selection.resource) {
         request.inspection = state.selection.inspection;
         request.inspection->resource = *state.selection.resource;

@@ -184,7 +184,8 @@ void WindowSession::write_results() {
             "window", scene.path.string(), animation_of(scene),        size, renderer.configuration(),
             reports_, renderer.report(),   environment_of(scene.world)};
         if (options_.out) write_picture(renderer);
-        write_documents(options_, run, renderer);
+        write_report(options_, run);
+        write_graph(options_, renderer);
         check_energy(run.scene, run.state);
     });
 }

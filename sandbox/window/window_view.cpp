@@ -54,7 +54,7 @@ void draw_tabs(SessionState& state, std::vector<Action>& wanted) {
     tab("Quality", "how a frame is computed",
         [&] { draw_quality_panel(state.app.configuration, state.shown ? state.shown->quality : Quality{}); });
     tab("Light", "what of the light is shown; comparisons",
-        [&] { draw_view_panel(state.app, state.reference, state.costs.frame().mean_ms); });
+        [&] { draw_view_panel(state.app, state.report(), state.reference, state.costs.frame().mean_ms); });
     tab("Graph", "what the frame graph does, and what it costs",
         [&] { draw_graph_panel(state.selection, state.graph, state.costs); });
 }

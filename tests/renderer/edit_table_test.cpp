@@ -30,41 +30,45 @@ namespace {
 // changed; passes that depend on them run only if their results differ. After a change of the picture's size
 // or of the path, the surfaces are rendered and shaded again, because intermediate targets of other
 // descriptions are not kept. Of the VPL passes, those from `paths` to `vpl-maps` belong to traced VPLs, those
-// from `motion` on to surfels.
+// from `motion` to `surfel-maps` to surfels. `samples` are both passes of the estimate of the VPLs' error;
+// the passes of the set that it compares with run whenever those of the shown set do. `keep` runs in every
+// frame, as `tone-map` does.
 constexpr std::string_view table = R"(
-                     gather upload instances bvh lights plan shadows light-upload view view-upload view-cull paths trace vpl-constants vpl-maps motion focus spread surfels visibility surfel-light surfel-bounce surfel-constants surfel-maps surfaces tiles tile-grid clusters cluster-grid depths bounded blended shading tone-map
-first frame            x      x        x      x    x     x      x         x        x        x          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       x       x        x          x         x       x       x       x       x
-nothing                .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       .       x
-light named            .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       .       x
-camera moves           x      .        .      .    x     .      .         .        x        x          x       .     .         .          .       .      x     .       .        .           .             .              .              .         x       x       .        x          x         x       x       x       x       x
-camera zooms           .      .        .      .    .     .      .         .        x        x          x       .     .         .          .       .      x     .       .        .           .             .              .              .         x       x       .        x          x         x       x       x       x       x
-light moves            x      .        .      .    x     x      x         x        x        .          .       x     x         .          x       .      x     .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-spot moves             x      .        .      .    x     x      x         x        x        .          .       x     x         .          x       .      x     .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-light changes colour   .      .        .      .    x     x      .         x        .        .          .       x     x         .          x       .      .     .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-light goes off         .      .        .      .    x     x      x         x        .        .          .       x     x         x          x       .      .     .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-light goes on          .      .        .      .    x     x      x         x        .        .          .       x     x         x          x       .      .     .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-light's shadow goes    .      .        .      .    x     x      x         x        .        .          .       x     x         .          x       .      .     .       .        .           x             x              .              .         .       x       .        x          .         .       x       x       x       x
-mesh moves             x      .        x      x    x     .      x         .        x        .          x       .     x         .          x       x      x     x       x        x           x             x              .              x         x       .       .        .          .         x       x       .       x       x
-mesh mirrors           x      x        x      x    x     .      x         .        x        .          x       .     x         .          x       x      x     x       x        x           x             x              .              x         x       .       .        .          .         x       x       x       x       x
-parent moves           x      .        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       .       .        x          x         x       x       .       x       x
-mesh appears           x      x        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       .       .        x          x         x       x       x       x       x
-material changes       x      x        x      x    .     .      x         .        .        .          x       .     x         .          x       x      x     x       x        x           x             x              .              x         x       .       .        .          .         x       x       x       x       x
-mesh deforms           x      x        x      x    x     x      x         .        .        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       .       .        x          x         x       x       x       x       x
-mesh goes              x      x        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       .       .        x          x         x       x       x       x       x
-scene grows            x      .        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       .       .        x          x         x       x       .       x       x
-scene shrinks          x      .        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x         x       .       .        x          x         x       x       .       x       x
-target widens          .      .        .      .    .     .      .         .        x        x          x       .     .         .          .       .      x     .       .        .           .             .              .              .         x       x       x        x          x         x       x       x       x       x
-target doubles         .      .        .      .    .     .      .         .        x        x          .       .     .         .          .       .      x     .       .        .           .             .              .              .         x       x       x        x          x         x       x       x       x       x
-indirect light shown   .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       x       x
-exposure changes       .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       .       x
-more VPLs              .      .        .      .    .     .      .         .        .        .          .       x     x         x          x       .      x     x       x        x           x             x              x              x         .       .       .        .          .         .       .       .       x       x
-another path           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .         x       .       .        .          .         .       .       .       x       x
-albedo shown           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .         .       .       .        .          .         .       .       .       x       x
+                     gather upload instances bvh lights plan shadows light-upload view view-upload view-cull paths trace vpl-constants vpl-maps motion focus spread surfels visibility surfel-light surfel-bounce surfel-constants surfel-maps samples surfaces tiles tile-grid clusters cluster-grid depths bounded blended shading tone-map
+first frame            x      x        x      x    x     x      x         x        x        x          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       x       x        x          x         x       x       x       x       x
+nothing                .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .      .          .       .       .        .          .         .       .       .       .       x
+light named            .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .      .          .       .       .        .          .         .       .       .       .       x
+camera moves           x      .        .      .    x     .      .         .        x        x          x       .     .         .          .       .      x     .       .        .           .             .              .              .      x          x       x       .        x          x         x       x       x       x       x
+camera zooms           .      .        .      .    .     .      .         .        x        x          x       .     .         .          .       .      x     .       .        .           .             .              .              .      x          x       x       .        x          x         x       x       x       x       x
+light moves            x      .        .      .    x     x      x         x        x        .          .       x     x         .          x       .      x     .       .        .           x             x              .              .      x          .       x       .        x          .         .       x       x       x       x
+spot moves             x      .        .      .    x     x      x         x        x        .          .       x     x         .          x       .      x     .       .        .           x             x              .              .      x          .       x       .        x          .         .       x       x       x       x
+light changes colour   .      .        .      .    x     x      .         x        .        .          .       x     x         .          x       .      .     .       .        .           x             x              .              .      x          .       x       .        x          .         .       x       x       x       x
+light goes off         .      .        .      .    x     x      x         x        .        .          .       x     x         x          x       .      .     .       .        .           x             x              .              .      x          .       x       .        x          .         .       x       x       x       x
+light goes on          .      .        .      .    x     x      x         x        .        .          .       x     x         x          x       .      .     .       .        .           x             x              .              .      x          .       x       .        x          .         .       x       x       x       x
+light's shadow goes    .      .        .      .    x     x      x         x        .        .          .       x     x         .          x       .      .     .       .        .           x             x              .              .      x          .       x       .        x          .         .       x       x       x       x
+mesh moves             x      .        x      x    x     .      x         .        x        .          x       .     x         .          x       x      x     x       x        x           x             x              .              x      x          x       .       .        .          .         x       x       .       x       x
+mesh mirrors           x      x        x      x    x     .      x         .        x        .          x       .     x         .          x       x      x     x       x        x           x             x              .              x      x          x       .       .        .          .         x       x       x       x       x
+parent moves           x      .        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       .       .        x          x         x       x       .       x       x
+mesh appears           x      x        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       .       .        x          x         x       x       x       x       x
+material changes       x      x        x      x    .     .      x         .        .        .          x       .     x         .          x       x      x     x       x        x           x             x              .              x      x          x       .       .        .          .         x       x       x       x       x
+mesh deforms           x      x        x      x    x     x      x         .        .        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       .       .        x          x         x       x       x       x       x
+mesh goes              x      x        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       .       .        x          x         x       x       x       x       x
+scene grows            x      .        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       .       .        x          x         x       x       .       x       x
+scene shrinks          x      .        x      x    x     x      x         .        x        .          x       x     x         x          x       x      x     x       x        x           x             x              x              x      x          x       .       .        x          x         x       x       .       x       x
+target widens          .      .        .      .    .     .      .         .        x        x          x       .     .         .          .       .      x     .       .        .           .             .              .              .      x          x       x       x        x          x         x       x       x       x       x
+target doubles         .      .        .      .    .     .      .         .        x        x          .       .     .         .          .       .      x     .       .        .           .             .              .              .      x          x       x       x        x          x         x       x       x       x       x
+indirect light shown   .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .      .          .       .       .        .          .         .       .       .       x       x
+exposure changes       .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .      .          .       .       .        .          .         .       .       .       .       x
+more VPLs              .      .        .      .    .     .      .         .        .        .          .       x     x         x          x       .      x     x       x        x           x             x              x              x      x          .       .       .        .          .         .       .       .       x       x
+another path           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .      x          x       .       .        .          .         .       .       .       x       x
+albedo shown           .      .        .      .    .     .      .         .        .        .          .       .     .         .          .       .      .     .       .        .           .             .              .              .      .          .       .       .        .          .         .       .       .       x       x
 )";
 
 /// The column for a pass of a path.
 std::string column_of(std::string_view pass, const Configuration& configuration) {
     const ShadingPath path = configuration.path;
+    if (pass.starts_with("vpl-samples")) return "samples";
+    pass = pass.substr(0, pass.find(" (other set)"));
     static const std::map<std::string_view, std::string> columns{
         {"scene-gather", "gather"},       {"scene-upload", "upload"},
         {"instance-upload", "instances"}, {"shadow-plan", "plan"},
@@ -74,7 +78,7 @@ std::string column_of(std::string_view pass, const Configuration& configuration)
         {"vpl-trace", "trace"},           {"gbuffer", "surfaces"},
         {"depth-prepass", "surfaces"},    {"tile-depths", "depths"},
         {"forward", "shading"},           {"deferred", "shading"},
-        {"transparent", "shading"}};
+        {"transparent", "shading"},       {"keep", "tone-map"}};
     if (configuration.vpls.placement == VplPlacement::surfels && pass.starts_with("vpl-")) {
         return "surfel-" + std::string(pass.substr(4));
     }
@@ -224,6 +228,8 @@ class EditTable : public PathFixture {
             // So many that the camera, wherever it is, does not ask for another placement.
             if (placement == VplPlacement::surfels) configuration_.vpls.count = 32;
             configuration_.path = path;
+            // Forward paths would all have the surfaces that the estimate needs.
+            estimates_ = info_of(path).surfaces == SurfaceStage::gbuffer;
             renderer.invalidate();
             check_all();
         }
@@ -245,7 +251,7 @@ class EditTable : public PathFixture {
     void check(const std::string& name) {
         CAPTURE(name);
         configure(configuration_);
-        const Picture shown = render(scene_, size_);
+        const Picture shown = render_frame();
         CHECK(shown == from_scratch(scene_, size_));
         if (name == "nothing" || name == "light named") {
             CHECK(shown == shown_);
@@ -263,11 +269,20 @@ class EditTable : public PathFixture {
         checked_.insert(name);
     }
 
+    /// Renders a frame, perhaps with the passes of the estimate.
+    Picture render_frame() {
+        RenderTarget target(device, size_);
+        const RenderView view{
+            .camera = scene_.camera, .target = target.target(), .estimate_error = estimates_};
+        renderer.render(scene_.world, {&view, 1});
+        return target.read();
+    }
+
     /// Renders until no work is left.
     void come_to_rest() {
         for (int frame = 0; frame < 100; ++frame) {
-            static_cast<void>(render(scene_, size_));
-            const auto ran = [](const PassRecord& pass) { return pass.ran; };
+            static_cast<void>(render_frame());
+            const auto ran = [](const PassRecord& pass) { return pass.ran && pass.name != "keep"; };
             if (std::ranges::count_if(renderer.last_passes(), ran) == 1) return;
         }
         FAIL("does not come to rest");
@@ -280,6 +295,7 @@ class EditTable : public PathFixture {
     Entity extra_;
     glm::uvec2 size_ = first_size;
     Configuration configuration_ = linear_configuration();
+    bool estimates_ = false;
     Picture shown_;
     std::map<std::string, Row> rows_ = read_table();
     std::set<std::string> checked_;

@@ -87,7 +87,7 @@ TEST_SUITE("panels") {
     TEST_CASE("what the picture shows is chosen by a click") {
         AppState state;
         const ReferenceView none(nullptr);
-        Screen screen(in_panel([&] { draw_view_panel(state, none, 0.0); }));
+        Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
         for (const Show show :
              {Show::direct, Show::albedo, Show::indirect, Show::irradiance, Show::normals, Show::total}) {
             CHECK(state.configuration.show != show);
@@ -96,11 +96,19 @@ TEST_SUITE("panels") {
         }
     }
 
+    TEST_CASE("the error of VPLs is estimated after a click") {
+        AppState state;
+        const ReferenceView none(nullptr);
+        Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
+        screen.click("estimate their error");
+        CHECK(state.estimate_error);
+    }
+
     TEST_CASE("a comparison begins with two equal configurations, is shown in two ways, and ends") {
         AppState state;
         state.configuration.vpls.count = 77;
         const ReferenceView none(nullptr);
-        Screen screen(in_panel([&] { draw_view_panel(state, none, 0.0); }));
+        Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
         CHECK_FALSE(screen.has("swap A and B"));
         screen.click("divider");
         CHECK(state.comparison.mode == CompareMode::divider);

@@ -30,7 +30,8 @@ RunReport some_run() {
                           .passes = {{"gbuffer", true, 0.5, 1.0}, {"vpl-trace", false, 0.0, 0.0}}});
     run.state.gl_renderer = "a driver";
     run.state.triangles = 36;
-    run.state.vpls = VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced()};
+    run.state.vpls =
+        VplReport{.requested = 256, .alive = 251, .paths = 120, .flux = balanced(), .estimated_error = 0.25};
     run.state.lights = {
         .count = 300, .with_shadow = 2, .without_shadow = 1, .global = 4, .tile_max = 19, .tile_mean = 6.5};
     run.state.memory = {
@@ -54,6 +55,7 @@ TEST_SUITE("report") {
         CHECK(json["frames"][0]["passes"][0]["gpu_ms"] == 1.0);
         CHECK(json["frames"][0]["passes"][1]["ran"] == false);
         CHECK(json["vpls"]["alive"] == 251);
+        CHECK(json["vpls"]["estimated_error"] == 0.25);
         CHECK(json["vpls"]["flux"]["truncated"] == nlohmann::json::array({2.0, 4.0, 9.0}));
         CHECK(json["vpls"]["flux"]["roulette_error"] == nlohmann::json::array({0.5, 0.25, 0.125}));
         CHECK(json["lights"]["with_shadow"] == 2);
@@ -82,6 +84,13 @@ TEST_SUITE("report") {
         run.state.vpls.reset();
         CHECK(nlohmann::json::parse(to_json(run))["vpls"].is_null());
         CHECK(to_table(run.frames[0], run.state).find("emitted") == std::string::npos);
+    }
+
+    TEST_CASE("an error that nobody asked for is not in the report") {
+        RunReport run = some_run();
+        run.state.vpls->estimated_error.reset();
+        CHECK(nlohmann::json::parse(to_json(run))["vpls"]["estimated_error"].is_null());
+        CHECK(to_table(run.frames[0], run.state).find("relMSE") == std::string::npos);
     }
 
     TEST_CASE("the table mentions light lists only if there are any") {
@@ -131,8 +140,8 @@ TEST_SUITE("report") {
     TEST_CASE("the table names every pass and tells which ones ran") {
         const RunReport run = some_run();
         const std::string table = to_table(run.frames[0], run.state);
-        for (const char* word :
-             {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "120 paths", "36"}) {
+        for (const char* word : {"gbuffer", "vpl-trace", "yes", "emitted", "251 alive of 256", "120 paths",
+                                 "relMSE 0.25", "36"}) {
             CHECK_MESSAGE(table.find(word) != std::string::npos, word);
         }
     }

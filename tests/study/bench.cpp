@@ -39,6 +39,14 @@ double Bench::frame(glm::vec2 jitter) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+std::optional<double> Bench::estimate_error() {
+    const RenderView view{
+        .camera = camera_, .target = {framebuffer_.name(), target_.desc().size}, .estimate_error = true};
+    renderer_.render(*world_, {&view, 1});
+    const std::optional<VplReport> vpls = renderer_.report().vpls;
+    return vpls ? vpls->estimated_error : std::nullopt;
+}
+
 sandbox::Picture Bench::picture() const {
     const glm::uvec2 size = target_.desc().size;
     const std::vector<float> rgba = target_.read_floats();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ class Bench {
     /// Renders one frame and waits for the GPU; returns milliseconds of wall time. A `jitter` different from
     /// that of the last frame makes everything run that depends on the view.
     double frame(glm::vec2 jitter);
+    /// Renders the last frame again and returns VplReport::estimated_error; none without VPLs.
+    std::optional<double> estimate_error();
     /// The picture of the last frame.
     [[nodiscard]] sandbox::Picture picture() const;
     /// The number of pixels that show a surface in the last frame.

@@ -232,6 +232,7 @@ def rays() -> list[Point]:
 
 
 OPEN = ("plates", "sphere", "corner", "furnace")  # scenes without occlusion
+EMITTERS = ("lamp", "neon", "court")  # scenes that only surfaces or the sky light
 HIDDEN = ("cornell", "two-rooms")  # scenes in which walls and blocks occlude light
 
 
@@ -293,7 +294,7 @@ def placement_groups() -> list[Group]:
 def emitter_groups() -> list[Group]:
     """Scenes that only surfaces or the sky light."""
     points = tuple(point(vpls, lever="surfels") for vpls in (256, 512, 1024))
-    return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in ("lamp", "neon", "court")]
+    return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in EMITTERS]
 
 
 WORLDS = (
@@ -314,6 +315,13 @@ def world_groups() -> list[Group]:
     """Worlds larger than the room that is seen; their times are divided by the Cornell box's."""
     points, exact = (as_app(512),), Reference(samples=1024)
     return [Group("worlds", scene, WIDE, exact, 5, points, beside="cornell") for scene in WORLDS]
+
+
+def estimate_groups() -> list[Group]:
+    """The error of the app's defaults as the renderer estimates it, and as it is; that of `worlds` belongs to it, too."""
+    scenes = ("cornell", "two-rooms", "corner", "furnace", "glass", "hall-256", "fins", "atrium", "plates", "sphere")
+    points, exact = (as_app(512),), Reference(samples=512)
+    return [Group("estimate", scene, SQUARE, exact, 0, points) for scene in (*scenes, *EMITTERS)]
 
 
 SURFEL_COUNTS = [4**i for i in range(4, 9)]
@@ -346,7 +354,7 @@ def quick_groups() -> list[Group]:
             QUICK,
             Reference(count, DEFAULT_BOUNCES),
             1 if scene == "plates" else 0,
-            blind_too if scene in OPEN else seeing,
+            (*(blind_too if scene in OPEN else seeing), as_app(512)),
             (1, 4, 16, 64),
         )
         for scene, count in samples.items()

@@ -58,6 +58,8 @@ struct Truth {
     Picture total;
     Mask hit;
     Mask off_edges;  ///< the pixels of `hit` away from the edges of shadows and silhouettes
+    /// Of the indirect light off edges: see rel_mse_of_blocks.
+    std::optional<double> noise_of_blocks{};
     /// Surfaces emit light, or there is a sky: VPLs carry a part of the direct light.
     bool emission = false;
 };
@@ -76,6 +78,9 @@ Truth truth_of(Reference reference) {
     for (std::size_t i = 0; i < truth.off_edges.size(); ++i) {
         truth.off_edges[i] = estimate.edge[i] != 0 ? 0 : truth.off_edges[i];
     }
+    truth.noise_of_blocks = rel_mse_of_blocks(estimate.halves[0], estimate.halves[1], truth.off_edges);
+    // The squared error of the halves' mean is a quarter of their squared difference.
+    if (truth.noise_of_blocks) *truth.noise_of_blocks /= 4.0;
     return truth;
 }
 
@@ -198,6 +203,16 @@ Json errors_json(const DirectLight& direct, const Seeds& seeds, const Truth& tru
             {"total", to_json(mean(seeds.total))}};
 }
 
+/// The relMSE of the indirect light of surfels: as the renderer estimates it, and as it is. Null without
+/// surfels, or if edges are nearly everywhere.
+Json estimate_json(Bench& bench, const Configuration& configuration, const Truth& truth) {
+    if (configuration.vpls.placement != VplPlacement::surfels || !truth.noise_of_blocks) return nullptr;
+    const Picture indirect = render(bench, configuration, Show::indirect);
+    const std::optional<double> error = rel_mse_of_blocks(indirect, truth.indirect, truth.off_edges);
+    return {{"estimated", bench.estimate_error().value()},
+            {"measured", error.value() - *truth.noise_of_blocks}};
+}
+
 Json per_seed_json(const Point& point, const Seeds& seeds) {
     Json list = Json::array();
     for (std::size_t i = 0; i < point.seeds.size(); ++i) {
@@ -271,6 +286,7 @@ Json measure_point(Bench bench, Darkroom& darkroom, const Truth& truth, const Di
             {"gl_renderer", report.gl_renderer},
             {"seeds", point.seeds},
             {"errors", errors_json(direct, seeds, truth)},
+            {"estimate", estimate_json(bench, configuration, truth)},
             {"flip", mean(seeds.flip)},
             {"per_seed", per_seed_json(point, seeds)},
             {"vpls", to_json(report.vpls)},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,12 @@ struct Errors {
 [[nodiscard]] double flicker(std::span<const sandbox::Picture> frames,
                              std::span<const sandbox::Picture> reference_frames,
                              std::span<const Mask> hits = {});
+
+/// The relMSE of the means of blocks of 6 × 6 pixels, taken over the pixels in `hit`. A block counts if half
+/// of its pixels do; none if no block does. Noise of a reference, which is independent from pixel to pixel,
+/// hardly adds to it. `hit` has one element for each pixel. Throws as `measure` does.
+[[nodiscard]] std::optional<double> rel_mse_of_blocks(const sandbox::Picture& picture,
+                                                      const sandbox::Picture& reference, const Mask& hit);
 
 /// The means of blocks of `factor` x `factor` pixels; incomplete blocks at the right and at the bottom are
 /// dropped.

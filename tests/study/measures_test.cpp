@@ -124,6 +124,25 @@ TEST_SUITE("measures") {
         CHECK(relative_errors(picture, reference, hit)[1] == 0.0);
     }
 
+    TEST_CASE("blocks are measured by the means of their pixels that count, if these are half of them") {
+        // Left: pixels in turn 1 and 3, of which the mean is right. Right: 2 in the few pixels that count.
+        const glm::ivec2 size{12, 6};
+        Picture picture = constant(size, glm::vec3(9.0F));
+        Mask hit(72, 1);
+        for (int i = 0; i < 72; ++i) {
+            const int x = i % 12;
+            const auto pixel = static_cast<std::size_t>(i);
+            if (x < 6) picture.pixels[pixel] = glm::vec3(x % 2 == 0 ? 1.0F : 3.0F);
+            hit[pixel] = x < 6 || x >= 10 ? 1 : 0;
+        }
+        const Picture reference = constant(size, glm::vec3(2.0F));
+        CHECK(rel_mse_of_blocks(picture, reference, hit).value() == about(0.0));
+        // With one more column, the block on the right counts: 9 instead of 2, in one of two blocks.
+        for (std::size_t row = 0; row < 6; ++row) hit[12 * row + 9] = 1;
+        CHECK(rel_mse_of_blocks(picture, reference, hit).value() == about(0.5 * 49.0 / (4.0 * 1.01)));
+        CHECK_FALSE(rel_mse_of_blocks(picture, reference, Mask(72, 0)));
+    }
+
     TEST_CASE("the mean square of the relative errors is the relMSE") {
         const Picture picture = noise({9, 11}, 4);
         const Picture reference = noise({9, 11}, 5);

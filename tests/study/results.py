@@ -47,6 +47,7 @@ def row_of(group: Group, one: Point, record: journal.Record | None) -> Row:
     row["reference_noise"] = line["noise"]["indirect"]
     for part, errors in line["errors"].items():
         row.update(flat(f"{part}_", errors or {}))  # null if there are no pixels off edges
+    row.update(flat("error_", line.get("estimate") or {}))
     row.update(flat("", {name: line[name] for name in ("flip", "work", "memory")}))
     vpls = line.get("vpls") or {"alive": 0, "paths": 0, "flux": {}}
     row.update({"alive": vpls["alive"], "paths": vpls["paths"], **shares(vpls["flux"])})

@@ -26,7 +26,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "worlds", "surfels", "motion"]
+SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "worlds", "surfels", "estimate", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits", "scale"]
 
@@ -71,6 +71,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
         "emitters": matrix.emitter_groups(),
         "worlds": matrix.world_groups(),
         "surfels": matrix.surfel_groups(),
+        "estimate": matrix.estimate_groups(),
         "motion": [],
     }
     wanted = parts or SUITES
@@ -176,11 +177,13 @@ def main() -> int:
     for part in PROGRAM_PARTS:
         if not given.part or part in given.part:
             run_program_part(part, given.out)
-    failed = [*results.rows_of(study, groups), *results.motion_rows(study, motions)] if measured else []
-    failed = [row for row in failed if row["failed"]]
+    rows = results.rows_of(study, groups) if measured else []
+    failed = [row for row in [*rows, *(results.motion_rows(study, motions) if measured else [])] if row["failed"]]
     for row in failed:
         print(f"study: {row['scene']} {row['id']} failed: {row['failed']}", file=sys.stderr)
-    return 1 if failed else 0
+    estimates = [row for row in rows if row["suite"] in ("estimate", "worlds")]
+    wrong = checks.report(list(checks.errors_estimated(estimates))) if estimates else 0
+    return 1 if failed or wrong else 0
 
 
 if __name__ == "__main__":

@@ -463,6 +463,16 @@ class Checks(unittest.TestCase):
     def test_every_quick_world_has_limits(self) -> None:
         self.assertEqual(set(matrix.QUICK_WORLDS), set(checks.WORLDS))
 
+    def test_nine_of_ten_estimates_are_within_a_factor_of_two(self) -> None:
+        def rows(wrong: int) -> list[dict[str, object]]:
+            right = [{"scene": "right", "vpls": i, "error_estimated": 0.19, "error_measured": 0.1} for i in range(18)]
+            far = [{"scene": "wrong", "vpls": i, "error_estimated": 0.1, "error_measured": 0.21} for i in range(wrong)]
+            small = [{"scene": "small", "vpls": 1, "error_estimated": 0.0, "error_measured": 0.0019}]
+            return [*right, *far, *small, {"scene": "paths", "vpls": 1}]
+
+        self.assertTrue(all(holds for _, holds, _ in checks.errors_estimated(rows(2))))
+        self.assertFalse(all(holds for _, holds, _ in checks.errors_estimated(rows(3))))
+
     def test_a_path_with_a_different_error_fails_the_check(self) -> None:
         rows = [row("a", path, 1.0, 0.5, path=path) for path in matrix.PATHS]
         self.assertTrue(all(holds for _, holds, _ in checks.paths_agree(rows)))

@@ -56,6 +56,10 @@ struct VplReport {
     /// Pixels that evaluated additional VPLs, because too few neighbours lie on the same surface.
     std::uint32_t filled_pixels = 0;
     EnergyAccount flux;
+    /// Estimate of the relMSE of the VPLs' light in the view, with its visibility but without interleaving
+    /// and refinement; none unless RenderView::estimate_error asked for it. From the difference to another
+    /// set of as many VPLs: shaders/theory.md, "Error of a set of VPLs". 0.01 is an error of a tenth.
+    std::optional<double> estimated_error{};
 };
 
 /// Counts of the real lights. Lights that emit nothing are not counted.

@@ -92,6 +92,10 @@ struct RenderView {
     Target target;
     glm::vec2 jitter{0.0F};  ///< moves the samples off the pixel centres, in rendered pixels, +x right, +y up
     FrameParts keep{};       ///< can be asked for with Renderer::results after the frame
+    /// Renderer::report estimates the error of the VPLs' light: VplReport::estimated_error. This costs about
+    /// as much as placing and lighting the VPLs, whenever these change, and 432 rays for each VPL, whenever
+    /// anything in the view changes.
+    bool estimate_error = false;
     std::optional<HostSurfaces> surfaces{};  ///< none: Candela draws the surfaces
 };
 
