@@ -212,7 +212,7 @@ def worlds(table_rows: Sequence[Row], walks: Sequence[Row]) -> str:
               "noise_to_own": "the same of the reference's noise",
               "worst_flicker": "flicker of the worst pair of frames",
               "rel_mse": "relMSE, indirect, mean of the frames",
-              "settled_after": "frames at rest until the error is within 1.2 times the last one's"}
+              "settled_after": "frames at rest until the error of all light is within 1.2 times the last one's"}
     heading = element("h2", "Worlds larger than the room that is seen")
     return heading + table(columns, table_rows) + (table(moving, walks) if walks else "")
 
