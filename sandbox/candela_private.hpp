@@ -15,6 +15,7 @@
 #include "engine/bvh/bvh.hpp"
 #include "engine/bvh/traverse.hpp"
 #include "engine/bvh/two_level.hpp"
+#include "engine/bvh/wide.hpp"
 
 // GL objects, which the app makes and reads as the renderer does, and the VPLs that it draws as dots.
 #include "renderer/facade/device_of.hpp"

@@ -82,7 +82,7 @@
 #define ATTRIBUTE_INSTANCE 3
 #define ATTRIBUTE_COLOUR 4
 
-#define BVH_STACK_SIZE 48
+#define BVH_STACK_SIZE 145
 
 #define MOST_SHADOW_RAYS 32  // that an invocation casts in a dispatch or draw: shadow.glsl
 

@@ -236,12 +236,15 @@ struct VplConstants {
     float focus_radius;       // metres; 0: there is no such sphere
 };
 
-#ifndef __cplusplus  // C++ has it in engine/bvh/bvh.hpp
-struct BvhNode {
-    vec3 lower;
-    uint first;
-    vec3 upper;
-    uint count;
+#ifndef __cplusplus  // C++ has it, with what its members mean, in engine/bvh/wide.hpp
+struct WideNode {
+    vec3 origin;
+    uint exponents;
+    uvec3 lower;
+    uint pad0;
+    uvec3 upper;
+    uint pad1;
+    uvec4 children;
 };
 #endif
 

@@ -17,7 +17,7 @@ struct Triangle {
     glm::vec3 c;
 };
 
-/// Node of a binary bounding-volume hierarchy, laid out as the GPU reads it (std430, 32 bytes).
+/// Node of a binary bounding-volume hierarchy.
 /// Inner (`count` == 0): children are nodes `first` and `first + 1`. Leaf: entries [first, first + count) of
 /// `Bvh::order`.
 struct BvhNode {
@@ -26,14 +26,15 @@ struct BvhNode {
     glm::vec3 upper;
     std::uint32_t count;
 };
-static_assert(sizeof(BvhNode) == 32);
 
-/// Maximum depth of a hierarchy: edges from the root to a leaf. Traversal stacks need this many entries.
+/// Maximum depth of a hierarchy: edges from the root to a leaf. Stacks of `traverse` need this many entries.
 inline constexpr std::uint32_t bvh_max_depth = 48;
 
 /// A hierarchy over triangles that it does not own. Empty (no nodes) for no triangles.
 struct Bvh {
-    std::vector<BvhNode> nodes;  ///< nodes[0] is the root; at most 2n - 1; children come after their parents
+    /// nodes[0] is the root; at most 2n - 1; siblings are nodes 2i + 1 and 2i + 2, and come after their
+    /// parents.
+    std::vector<BvhNode> nodes;
     std::vector<std::uint32_t> order;  ///< a permutation of the triangles' indices, leaf by leaf
     std::uint32_t depth = 0;           ///< edges from the root to the deepest leaf
 };

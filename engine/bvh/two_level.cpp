@@ -1,6 +1,7 @@
 #include "engine/bvh/two_level.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace candela {
 namespace {
@@ -48,12 +49,21 @@ std::vector<Box> boxes_of(const std::vector<TopBvh::Leaf>& leaves, std::span<con
     return boxes;
 }
 
+/// What one of the object's nodes is as a child.
+std::uint32_t word_of(const PlacedBvh& object, const BvhNode& node) {
+    return node.count == 0 ? child_word(object.first_node + wide_index(node), 0)
+                           : child_word(object.first_triangle + node.first, node.count);
+}
+
 }  // namespace
 
-BvhNode placed(const PlacedBvh& object, BvhNode node) {
-    // nodes[1] is at `first_node`.
-    node.first += node.count == 0 ? object.first_node - 1 : object.first_triangle;
-    return node;
+std::vector<WideNode> wide_nodes(const PlacedBvh& object) {
+    std::vector<std::uint32_t> words;
+    words.reserve(object.bvh->nodes.size());
+    for (const BvhNode& node : object.bvh->nodes) {
+        words.push_back(word_of(object, node));
+    }
+    return widen(*object.bvh, words);
 }
 
 TopBvh build_top(std::span<const PlacedBvh> objects, std::uint32_t most_opened) {
@@ -71,15 +81,21 @@ void refit_top(TopBvh& top, std::span<const PlacedBvh> objects) {
     refit_box_bvh(top.bvh, boxes_of(top.leaves, objects));
 }
 
-std::vector<BvhNode> joint_nodes(const TopBvh& top, std::span<const PlacedBvh> objects) {
-    std::vector<BvhNode> nodes = top.bvh.nodes;
-    for (BvhNode& node : nodes) {
-        if (node.count > 0) {
-            const TopBvh::Leaf& leaf = top.leaves[top.bvh.order[node.first]];
-            node = placed(objects[leaf.object], node_of(leaf, objects));
+std::vector<WideNode> wide_nodes(const TopBvh& top, std::span<const PlacedBvh> objects) {
+    std::vector<std::uint32_t> words;
+    words.reserve(top.bvh.nodes.size());
+    for (const BvhNode& node : top.bvh.nodes) {
+        if (node.count == 0) {
+            words.push_back(child_word(wide_index(node), 0));
+            continue;
         }
+        const TopBvh::Leaf& leaf = top.leaves[top.bvh.order[node.first]];
+        words.push_back(word_of(objects[leaf.object], node_of(leaf, objects)));
     }
-    return nodes;
+    if (words.empty()) return {wide_node({})};
+    const BvhNode& root = top.bvh.nodes.front();
+    if (words.size() == 1) return {wide_node(std::array{WideChild{{root.lower, root.upper}, words.front()}})};
+    return widen(top.bvh, words);
 }
 
 }  // namespace candela

@@ -6,6 +6,7 @@
 
 #include "engine/bvh/box.hpp"
 #include "engine/bvh/bvh.hpp"
+#include "engine/bvh/wide.hpp"
 
 namespace candela {
 
@@ -17,15 +18,15 @@ namespace candela {
 /// `bvh_max_depth`, at least 20 levels.
 inline constexpr std::uint32_t object_max_depth = 28;
 
-/// The hierarchy of an object and its place in the joint arrays of nodes and triangles.
+/// The hierarchy of an object and its place in the joint arrays of wide nodes and triangles.
 struct PlacedBvh {
-    const Bvh* bvh = nullptr;          ///< empty for an object without triangles
-    std::uint32_t first_node = 0;      ///< place of bvh->nodes[1]; the root is a node of the top
+    const Bvh* bvh = nullptr;  ///< empty for an object without triangles
+    std::uint32_t first_node = 0;
     std::uint32_t first_triangle = 0;  ///< place of the triangle bvh->order[0]
 };
 
-/// One of the object's nodes as it is in the joint array.
-[[nodiscard]] BvhNode placed(const PlacedBvh& object, BvhNode node);
+/// The object's nodes in the joint array, from `first_node` on: wide ones, one for each of its inner nodes.
+[[nodiscard]] std::vector<WideNode> wide_nodes(const PlacedBvh& object);
 
 /// The top: a hierarchy whose leaves are nodes of objects' hierarchies. Most are their roots. Those of large
 /// boxes are opened, that is replaced by their children, so that objects that overlap, such as walls that
@@ -47,8 +48,9 @@ struct TopBvh {
 /// topology. The objects must be those of build_top, each with the same topology. O(n).
 void refit_top(TopBvh& top, std::span<const PlacedBvh> objects);
 
-/// The top's nodes in the joint array, which starts with them. Empty if no object has triangles.
-[[nodiscard]] std::vector<BvhNode> joint_nodes(const TopBvh& top, std::span<const PlacedBvh> objects);
+/// The top's nodes in the joint array, which starts with them. At least one, which has no children if no
+/// object has triangles.
+[[nodiscard]] std::vector<WideNode> wide_nodes(const TopBvh& top, std::span<const PlacedBvh> objects);
 
 /// Like build_bvh for triangles, but over boxes, each in a leaf of its own: `order` has the boxes' indices.
 /// There must be at most 2^max_depth boxes.

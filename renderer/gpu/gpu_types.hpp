@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "engine/bvh/bvh.hpp"
+#include "engine/bvh/wide.hpp"
 #include "shaders/bindings.glsl"
 
 /// What shaders and the CPU share: shaders/types.glsl, compiled as C++.
@@ -22,7 +22,7 @@ using uint = std::uint32_t;
 
 #include "shaders/types.glsl"
 
-using BvhNode = candela::BvhNode;
+using WideNode = candela::WideNode;
 
 /// Whether two structs are the same, byte for byte: they have no gaps.
 template <class T>
@@ -48,6 +48,6 @@ struct DrawCommand {
     std::uint32_t base_instance;
 };
 
-static_assert(BVH_STACK_SIZE >= bvh_max_depth);
+static_assert(BVH_STACK_SIZE >= wide_stack_size);
 
 }  // namespace candela::gpu

@@ -1,16 +1,17 @@
-// Traversal of the bounding-volume hierarchy. Uses the same formulas as engine/bvh, with one addition: rays pass
+// Traversal of the bounding-volume hierarchy, which has up to four children a node: engine/bvh/wide.hpp. Rays pass
 // through the holes of alpha masks.
 #include "bindings.glsl"
 #include "scene/materials.glsl"
 #include "types.glsl"
 
-layout(std430, binding = BINDING_BVH_NODES) readonly restrict buffer BvhNodes { BvhNode bvh_nodes[]; };
+layout(std430, binding = BINDING_BVH_NODES) readonly restrict buffer BvhNodes { WideNode bvh_nodes[]; };
 layout(std430, binding = BINDING_TRIANGLES) readonly restrict buffer Triangles { TraceTriangle triangles[]; };
 
 struct Hit {
     float t;
     vec2 barycentric;  // weights of b and c
     uint triangle;     // in the triangle buffer
+    uint id;           // of the triangle
 };
 
 const uint NO_TRIANGLE = 0xffffffffu;
@@ -35,57 +36,100 @@ vec3 safe_inverse(vec3 direction) {
     return 1.0 / safe;
 }
 
-// Two-sided test of Möller and Trumbore (1997). Keeps the nearer of two hits; at equal distance the one with the lower
-// id.
-void intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, inout Hit hit) {
+// Two-sided test of Möller and Trumbore (1997). Returns whether the triangle is hit before `hit`, or at equal distance
+// has the lower id; then it becomes the hit.
+bool intersect_triangle(uint index, vec3 origin, vec3 direction, float t_min, inout Hit hit) {
     TraceTriangle triangle = triangles[index];
     vec3 p = cross(direction, triangle.edge_ac);
     float determinant = dot(triangle.edge_ab, p);
-    if (determinant == 0.0) return;
+    if (determinant == 0.0) return false;
     float inverse = 1.0 / determinant;
     vec3 s = origin - triangle.a;
     float u = dot(s, p) * inverse;
     vec3 q = cross(s, triangle.edge_ab);
     float v = dot(direction, q) * inverse;
     float t = dot(triangle.edge_ac, q) * inverse;
-    if (u < 0.0 || v < 0.0 || u + v > 1.0 || t <= t_min) return;
-    bool nearer = t < hit.t;
-    bool tie = t == hit.t && hit.triangle != NO_TRIANGLE && triangle.id < triangles[hit.triangle].id;
-    if ((nearer || tie) && !is_hole(triangle, vec2(u, v))) hit = Hit(t, vec2(u, v), index);
+    bool inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > t_min;
+    bool nearer = t < hit.t || (t == hit.t && triangle.id < hit.id);
+    if (!inside || !nearer) return false;
+    hit = Hit(t, vec2(u, v), index, triangle.id);
+    return true;
+}
+
+// The 8 bits of each child.
+vec4 steps(uint of_children) { return vec4(uvec4(of_children) >> uvec4(0u, 8u, 16u, 24u) & 255u); }
+
+const float MISSED = -1.0;
+
+// Distances at which the ray enters the boxes of a node's children, or MISSED. A second form of enter_box.
+vec4 enter_children(WideNode node, vec3 origin, vec3 inverse_direction, float t_min, float t_max) {
+    vec3 step = uintBitsToFloat((uvec3(node.exponents) >> uvec3(0u, 8u, 16u) & 255u) << 23u);
+    vec4 enter = vec4(t_min);
+    vec4 leave = vec4(t_max);
+    for (int axis = 0; axis < 3; ++axis) {
+        vec4 lower = node.origin[axis] + step[axis] * steps(node.lower[axis]);
+        vec4 upper = node.origin[axis] + step[axis] * steps(node.upper[axis]);
+        vec4 t0 = (lower - origin[axis]) * inverse_direction[axis];
+        vec4 t1 = (upper - origin[axis]) * inverse_direction[axis];
+        enter = max(enter, min(t0, t1));
+        leave = min(leave, max(t0, t1));
+    }
+    bvec4 missed = greaterThan(enter, leave * 1.00001);
+    return mix(mix(enter, vec4(MISSED), missed), vec4(MISSED), equal(node.children, uvec4(0u)));
+}
+
+void put_farther_first(inout vec2 t, inout uvec2 child) {
+    if (t.x < t.y) {
+        t = t.yx;
+        child = child.yx;
+    }
+}
+
+// Sorting network of five exchanges.
+void put_farthest_first(inout vec4 t, inout uvec4 child) {
+    put_farther_first(t.xy, child.xy);
+    put_farther_first(t.zw, child.zw);
+    put_farther_first(t.xz, child.xz);
+    put_farther_first(t.yw, child.yw);
+    put_farther_first(t.yz, child.yz);
 }
 
 // A triangle hit at t in (t_min, t_max), from either side: the nearest one, or with `any` the first one found.
 Hit trace(vec3 origin, vec3 direction, float t_min, float t_max, bool any) {
-    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE);
+    Hit hit = Hit(t_max, vec2(0.0), NO_TRIANGLE, 0u);
     vec3 inverse_direction = safe_inverse(direction);
-    uint stack[BVH_STACK_SIZE];
-    uint depth = 0u;
-    uint node = 0u;
-    bool going = true;
-    while (going) {
-        uint first = bvh_nodes[node].first;
-        uint count = bvh_nodes[node].count;
-        for (uint i = 0u; i < count; ++i) intersect_triangle(first + i, origin, direction, t_min, hit);
-
+    uint stack[BVH_STACK_SIZE];  // children to visit: see WideNode. At first the root.
+    stack[0] = 0u;
+    uint depth = 1u;
+    uint next = 0u;  // of the triangles in the current leaf
+    uint end = 0u;
+    while (depth > 0u || next < end) {
+        // Goes on until a triangle is hit, if it may have a hole there, or if any hit will do. Whether there is a hole is
+        // asked outside this loop, because drivers without branches execute all of a loop's code in each iteration.
+        Hit found = hit;
+        bool stop = false;
+        while (!stop && (depth > 0u || next < end)) {
+            while (depth > 0u && next == end) {
+                uint child = stack[--depth];
+                next = child >> 3u;
+                end = next + (child & 7u);
+                if (next < end) continue;
+                WideNode node = bvh_nodes[next];
+                vec4 t = enter_children(node, origin, inverse_direction, t_min, hit.t);
+                if (!any) put_farthest_first(t, node.children);
+                for (int i = 0; i < 4; ++i) {
+                    if (t[i] != MISSED) stack[depth++] = node.children[i];
+                }
+            }
+            while (!stop && next < end) {
+                if (!intersect_triangle(next++, origin, direction, t_min, found)) continue;
+                bool masked = (found.id & TRIANGLE_MASKED) != 0u;
+                if (!masked) hit = found;
+                stop = masked || any;
+            }
+        }
+        if (found.triangle != hit.triangle && !is_hole(triangles[found.triangle], found.barycentric)) hit = found;
         if (any && hit.triangle != NO_TRIANGLE) return hit;
-
-        bool descend = false;
-        if (count == 0u) {
-            BvhNode left = bvh_nodes[first];
-            BvhNode right = bvh_nodes[first + 1u];
-            float t_left = enter_box(left.lower, left.upper, origin, inverse_direction, t_min, hit.t);
-            float t_right = enter_box(right.lower, right.upper, origin, inverse_direction, t_min, hit.t);
-            bool left_first = t_left <= t_right;
-            float t_near = min(t_left, t_right);
-            float t_far = max(t_left, t_right);
-            descend = !isinf(t_near);
-            if (descend) node = left_first ? first : first + 1u;
-            if (!isinf(t_far)) stack[depth++] = left_first ? first + 1u : first;
-        }
-        if (!descend) {
-            going = depth > 0u;
-            if (going) node = stack[--depth];
-        }
     }
     return hit;
 }

@@ -7,7 +7,7 @@
 flat in uint vpl_index;
 
 void main() {
-    // In helper invocations llvmpipe reads zeros from buffers; traversing a BVH of zeros would never end.
+    // Helper invocations need no ray. In them, llvmpipe reads zeros from buffers.
     if (gl_HelperInvocation) return;
     MappedVpl vpl = mapped_vpl(vpl_index);
     vec3 origin = vpl_map_origin(vpl.position, vpl.normal);

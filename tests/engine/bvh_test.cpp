@@ -1,6 +1,7 @@
 #include "engine/bvh/two_level.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,6 +14,8 @@
 #include <rapidcheck.h>
 #include <glm/geometric.hpp>
 
+#include "engine/bvh/traverse.hpp"
+#include "engine/bvh/wide.hpp"
 #include "tests/seed.hpp"
 
 namespace {
@@ -75,13 +78,80 @@ bool same(const std::optional<Hit>& a, const std::optional<Hit>& b) {
     return a->triangle == b->triangle && a->t == b->t && a->u == b->u && a->v == b->v;
 }
 
-bool agrees_with_brute_force(const Bvh& bvh, std::span<const Triangle> triangles, const Ray& ray) {
+/// Wide nodes, whose leaves are entries of `order`.
+struct Wide {
+    std::vector<WideNode> nodes;
+    std::vector<std::uint32_t> order;
+};
+
+/// The box of a child, as shaders compute it.
+Box child_box(const WideNode& node, std::uint32_t child) {
+    const auto along = [&](glm::length_t axis, const glm::uvec3& steps) {
+        const std::uint32_t exponent = node.exponents >> static_cast<unsigned>(8 * axis) & 255U;
+        const float step = exponent == 0 ? 0.0F : std::ldexp(1.0F, static_cast<int>(exponent) - 127);
+        return node.origin[axis] + step * static_cast<float>(steps[axis] >> 8U * child & 255U);
+    };
+    return {{along(0, node.lower), along(1, node.lower), along(2, node.lower)},
+            {along(0, node.upper), along(1, node.upper), along(2, node.upper)}};
+}
+
+/// Calls `visit(i, box)` for the entries of `order` in all boxes that `enters(box)`, with the box of their
+/// leaf.
+template <class Enters, class Visit>
+void traverse_wide(const Wide& wide, Enters enters, Visit visit) {
+    struct Waiting {
+        std::uint32_t word;
+        Box box;
+    };
+    std::vector<Waiting> waiting{{0, {}}};
+    std::size_t most = 1;
+    while (!waiting.empty()) {
+        const auto [word, box] = waiting.back();
+        waiting.pop_back();
+        const std::uint32_t first = word >> 3U;
+        const std::uint32_t count = word & 7U;
+        for (std::uint32_t i = first; i < first + count; ++i) {
+            visit(wide.order.at(i), box);
+        }
+        if (count > 0) continue;
+        const WideNode& node = wide.nodes.at(first);
+        for (std::uint32_t child = 0; child < 4; ++child) {
+            const std::uint32_t below = node.children[static_cast<glm::length_t>(child)];
+            const Box around = child_box(node, child);
+            if (below != 0 && enters(around)) waiting.push_back({below, around});
+        }
+        most = std::max(most, waiting.size());
+    }
+    REQUIRE(most <= wide_stack_size);
+}
+
+std::optional<Hit> closest_hit(const Wide& wide, std::span<const Triangle> triangles, const Ray& ray) {
+    std::optional<Hit> closest;
+    const detail::Slabs slabs(ray);
+    traverse_wide(
+        wide, [&](const Box& box) { return !slabs(box.lower, box.upper).empty(); },
+        [&](std::uint32_t i, const Box&) {
+            const auto hit = intersect(triangles[i], i, ray);
+            const bool closer = hit && (!closest || hit->t < closest->t ||
+                                        (hit->t == closest->t && hit->triangle < closest->triangle));
+            if (closer) closest = hit;
+        });
+    return closest;
+}
+
+bool any_hit(const Wide& wide, std::span<const Triangle> triangles, const Ray& ray) {
+    return closest_hit(wide, triangles, ray).has_value();
+}
+
+template <class Hierarchy>
+bool agrees_with_brute_force(const Hierarchy& bvh, std::span<const Triangle> triangles, const Ray& ray) {
     const auto expected = brute_force(triangles, ray);
     return same(closest_hit(bvh, triangles, ray), expected) &&
            any_hit(bvh, triangles, ray) == expected.has_value();
 }
 
-std::size_t disagreements(const Bvh& bvh, std::span<const Triangle> triangles, std::size_t rays,
+template <class Hierarchy>
+std::size_t disagreements(const Hierarchy& bvh, std::span<const Triangle> triangles, std::size_t rays,
                           Random& random) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < rays; ++i) {
@@ -129,6 +199,7 @@ Shape check_layout(const Bvh& bvh, std::size_t n) {
         }
         if (node.count > 0) continue;
         REQUIRE(node.first > i);
+        CHECK(node.first % 2 == 1);
         for (const std::uint32_t child : {node.first, node.first + 1}) {
             depth.at(child) = depth[i] + 1;
             ++node_uses.at(child);
@@ -434,8 +505,16 @@ class Objects {
     /// All as one hierarchy over `triangles`, with the objects' nodes in reverse order and gaps in between.
     [[nodiscard]] Bvh joint() const {
         const std::vector<PlacedBvh> objects = placed_objects();
-        Bvh bvh{joint_nodes(top_, objects), {}};
-        std::uint32_t first_index = 0;
+        const auto placed = [](const PlacedBvh& object, BvhNode node) {
+            node.first += node.count == 0 ? object.first_node - 1 : object.first_triangle;
+            return node;
+        };
+        Bvh bvh{top_.bvh.nodes, joint_order()};
+        for (BvhNode& node : bvh.nodes) {
+            if (node.count == 0) continue;
+            const TopBvh::Leaf& leaf = top_.leaves[top_.bvh.order[node.first]];
+            node = placed(objects[leaf.object], objects_[leaf.object].bvh.nodes[leaf.node]);
+        }
         for (std::size_t i = 0; i < objects_.size(); ++i) {
             const Bvh& own = objects_[i].bvh;
             for (std::size_t n = 1; n < own.nodes.size(); ++n) {
@@ -443,14 +522,20 @@ class Objects {
                 bvh.nodes.resize(std::max(bvh.nodes.size(), at + 1));
                 bvh.nodes[at] = placed(objects[i], own.nodes[n]);
             }
-            for (std::size_t n = 0; n < own.order.size(); ++n) {
-                const std::size_t at = objects[i].first_triangle + n;
-                bvh.order.resize(std::max(bvh.order.size(), at + 1));
-                bvh.order[at] = first_index + own.order[n];
-            }
-            first_index += static_cast<std::uint32_t>(own.order.size());
         }
         return bvh;
+    }
+
+    /// The same with wide nodes, as the GPU has them.
+    [[nodiscard]] Wide wide() const {
+        const std::vector<PlacedBvh> objects = placed_objects();
+        Wide all{wide_nodes(top_, objects), joint_order()};
+        for (const PlacedBvh& object : objects) {
+            const std::vector<WideNode> own = wide_nodes(object);
+            all.nodes.resize(std::max(all.nodes.size(), object.first_node + own.size()));
+            std::ranges::copy(own, all.nodes.begin() + object.first_node);
+        }
+        return all;
     }
 
     std::uint32_t most_opened = 1024;
@@ -471,6 +556,23 @@ class Objects {
             triangle += static_cast<std::uint32_t>(objects_[i].bvh.order.size()) + 3;
         }
         return placed;
+    }
+
+    /// Indices of `triangles()` by place in the joint array.
+    [[nodiscard]] std::vector<std::uint32_t> joint_order() const {
+        const std::vector<PlacedBvh> objects = placed_objects();
+        std::vector<std::uint32_t> order;
+        std::uint32_t first_index = 0;
+        for (std::size_t i = 0; i < objects_.size(); ++i) {
+            const Bvh& own = objects_[i].bvh;
+            for (std::size_t n = 0; n < own.order.size(); ++n) {
+                const std::size_t at = objects[i].first_triangle + n;
+                order.resize(std::max(order.size(), at + 1));
+                order[at] = first_index + own.order[n];
+            }
+            first_index += static_cast<std::uint32_t>(own.order.size());
+        }
+        return order;
     }
 
     std::vector<Object> objects_;
@@ -508,6 +610,23 @@ std::uint32_t check_joint(const Bvh& bvh, std::span<const Triangle> triangles) {
     return deepest;
 }
 
+// Every triangle is reached once, through boxes that contain it.
+void check_wide(const Wide& wide, std::span<const Triangle> triangles) {
+    std::vector<std::uint32_t> found;
+    std::size_t escaped = 0;
+    traverse_wide(
+        wide, [](const Box&) { return true; },
+        [&](std::uint32_t i, const Box& box) {
+            found.push_back(i);
+            escaped += contains({box.lower, 0, box.upper, 0}, triangles[i]) ? 0 : 1;
+        });
+    std::sort(found.begin(), found.end());
+    std::vector<std::uint32_t> all(triangles.size());
+    std::iota(all.begin(), all.end(), 0U);
+    CHECK(found == all);
+    CHECK(escaped == 0);
+}
+
 TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, additions and removals") {
     Random random(test_seed(13));
     for (const std::uint32_t most_opened : {0U, 5U, 1024U}) {
@@ -533,6 +652,8 @@ TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, add
             const Bvh joint = objects.joint();
             check_joint(joint, triangles);
             CHECK(disagreements(joint, triangles, 100, random) == 0);
+            check_wide(objects.wide(), triangles);
+            CHECK(disagreements(objects.wide(), triangles, 100, random) == 0);
         }
     }
 }
@@ -546,6 +667,7 @@ TEST_CASE("bvh: two levels: of objects in the same place the first one is hit") 
     }
     const Triangles triangles = objects.triangles();
     CHECK(disagreements(objects.joint(), triangles, 2000, random) == 0);
+    CHECK(disagreements(objects.wide(), triangles, 2000, random) == 0);
 }
 
 TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
@@ -555,6 +677,7 @@ TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
         objects.add(geometric_progression(1));
     }
     check_joint(objects.joint(), objects.triangles());
+    check_wide(objects.wide(), objects.triangles());
     // As deep as possible in both levels: single triangles around a small, deep object, which is at the
     // deepest place of the top.
     Objects nested;
@@ -564,6 +687,68 @@ TEST_CASE("bvh: two levels: no input exceeds the bound on depth") {
         nested.add({triangle});
     }
     CHECK(check_joint(nested.joint(), nested.triangles()) > object_max_depth);
+    check_wide(nested.wide(), nested.triangles());
+}
+
+TEST_CASE("bvh: wide: hits equal brute force for triangles of 0.1 mm to 100 km, far from the origin too") {
+    Random random(test_seed(14));
+    for (const float away : {0.0F, 100.0F, 1e5F, 1e7F}) {
+        CAPTURE(away);
+        Objects objects;
+        Triangles triangles;
+        for (int i = 0; i < 400; ++i) {
+            const glm::vec3 centre =
+                glm::vec3(away, -away, 0.5F * away) + random.point(std::pow(10.0F, random.number(-4, 5)));
+            Triangle triangle = triangle_near(centre, std::pow(10.0F, random.number(-4, 5)), random);
+            // Every third one is parallel to an axis, with a box that is flat.
+            const glm::length_t axis = i % 9;
+            if (axis < 3) triangle.b[axis] = triangle.c[axis] = triangle.a[axis];
+            triangles.push_back(triangle);
+        }
+        objects.add(triangles);
+        const Wide wide = objects.wide();
+        check_wide(wide, triangles);
+        std::size_t wrong = 0;
+        std::size_t hits = 0;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const Triangle& t = triangles[i];
+            const glm::vec3 middle = (t.a + t.b + t.c) / 3.0F;
+            const glm::vec3 from = middle + random.point(std::pow(10.0F, random.number(-4, 5)));
+            const Ray ray{from, middle - from};
+            hits += any_hit(wide, triangles, ray) ? 1 : 0;
+            wrong += agrees_with_brute_force(wide, triangles, ray) ? 0 : 1;
+        }
+        CHECK(wrong == 0);
+        CHECK(hits > triangles.size() / 2);
+    }
+}
+
+TEST_CASE("bvh: wide: NaN and infinite vertices do not hide other triangles") {
+    Random random(15);
+    Triangles triangles = soup(200, 0.2F, random);
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        triangles[i].b.y = i % 2 == 0 ? nan : infinity;
+        if (i % 4 == 0) triangles[i] = {glm::vec3(nan), glm::vec3(nan), glm::vec3(nan)};
+    }
+    Objects objects;
+    objects.add(triangles);
+    CHECK(disagreements(objects.wide(), triangles, 1000, random) == 0);
+}
+
+TEST_CASE("bvh: wide: a box is hardly larger than what it contains") {
+    const std::array<WideChild, 3> children{WideChild{{{-3, 5, 0}, {-1, 6, 0}}, 1},
+                                            WideChild{{{0.3F, 7, 0}, {0.4F, 9, 0}}, 2}, WideChild{{}, 3}};
+    const WideNode node = wide_node(children);
+    CHECK(node.children == glm::uvec4(1, 2, 0, 0));
+    // 255 steps of a power of two reach across the node, 128 do not; rounding adds less than a step.
+    const glm::vec3 step = glm::vec3(3.4F, 4, 0) / 128.0F;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        const Box box = child_box(node, i);
+        CHECK(glm::all(glm::lessThanEqual(box.lower, children[i].box.lower)));
+        CHECK(glm::all(glm::greaterThanEqual(box.upper, children[i].box.upper)));
+        CHECK(glm::all(glm::lessThanEqual(children[i].box.lower - box.lower, step)));
+        CHECK(glm::all(glm::lessThanEqual(box.upper - children[i].box.upper, step)));
+    }
 }
 
 }  // namespace

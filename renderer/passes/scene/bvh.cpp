@@ -1,6 +1,7 @@
 #include "renderer/passes/scene/bvh.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,7 +23,7 @@ struct UploadedHierarchy {
 };
 
 struct HierarchyBuffers {
-    BufferHandle<gpu::BvhNode> nodes;
+    BufferHandle<gpu::WideNode> nodes;
     BufferHandle<gpu::TraceTriangle> triangles;
 };
 
@@ -39,7 +40,7 @@ std::vector<BufferRange*> ranges_of(std::vector<ObjectHierarchy>& objects,
 /// Assigns places in the buffers to what has none.
 void place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded) {
     std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
-    const auto top_size = static_cast<std::uint32_t>(uploaded.scene.top.bvh.nodes.size());
+    const auto top_size = std::max(static_cast<std::uint32_t>(uploaded.scene.top.bvh.nodes.size() / 2), 1U);
     if (top_size > uploaded.top_room) {
         uploaded.top_room = uploaded.nodes_end = top_size + top_size / 4;
         for (ObjectHierarchy& object : objects) {
@@ -60,11 +61,9 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
     std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
     const std::vector<PlacedBvh> placed_bvhs = uploaded.scene.placed_objects();
     upload_ranges(gpu, run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes),
-                  [&](std::size_t i, std::vector<gpu::BvhNode>& nodes) {
-                      const std::span all(objects[i].bvh.nodes);
-                      for (const BvhNode& node : all.last(objects[i].nodes.count)) {
-                          nodes.push_back(placed(placed_bvhs[i], node));
-                      }
+                  [&](std::size_t i, std::vector<gpu::WideNode>& nodes) {
+                      const std::vector<WideNode> own = wide_nodes(placed_bvhs[i]);
+                      nodes.insert(nodes.end(), own.begin(), own.end());
                   });
     upload_ranges(
         gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
@@ -79,16 +78,11 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
         });
 }
 
-/// An empty scene gets one leaf with a triangle without area, which no ray hits.
 void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
                 const SceneHierarchy& scene) {
-    const std::vector<gpu::BvhNode> nodes = joint_nodes(scene.top, scene.placed_objects());
-    if (nodes.empty()) {
-        upload_one(gpu, run, buffers.nodes, gpu::BvhNode{.lower = {}, .first = 0, .upper = {}, .count = 1});
-        upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
-        return;
-    }
-    upload<gpu::BvhNode>(gpu, run, buffers.nodes, nodes);
+    // Buffers must not be empty.
+    if (scene.top.leaves.empty()) upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
+    upload<gpu::WideNode>(gpu, run, buffers.nodes, wide_nodes(scene.top, scene.placed_objects()));
 }
 
 void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
@@ -112,7 +106,7 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
         // Shared, because the hierarchy is changed in place.
         const auto kept = pass.update(graph.value<std::shared_ptr<UploadedHierarchy>>("hierarchy"));
         const HierarchyBuffers buffers{
-            pass.update(growing_buffer<gpu::BvhNode>(graph, "bvh nodes"), Usage::copy),
+            pass.update(growing_buffer<gpu::WideNode>(graph, "bvh nodes"), Usage::copy),
             pass.update(growing_buffer<gpu::TraceTriangle>(graph, "triangles"), Usage::copy)};
         const auto metrics = pass.write(graph.value<SceneMetrics>("scene metrics"));
         const auto hierarchy =

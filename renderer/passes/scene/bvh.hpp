@@ -14,7 +14,7 @@ namespace candela {
 
 /// What shaders trace rays against: shaders/scene/bvh.glsl.
 struct Tracing {
-    BufferHandle<gpu::BvhNode> nodes;
+    BufferHandle<gpu::WideNode> nodes;
     BufferHandle<gpu::TraceTriangle> triangles;  ///< world space, in the order of the leaves
     BufferHandle<gpu::Material> materials;
     BufferHandle<std::uint32_t> texels;

@@ -56,8 +56,7 @@ bool fit(ObjectHierarchy& object, std::span<const Triangle> triangles) {
     }
     object.bvh = build_bvh(triangles, object_max_depth);
     object.built_cost = sah_cost(object.bvh);
-    object.nodes = {.count =
-                        static_cast<std::uint32_t>(std::max<std::size_t>(object.bvh.nodes.size(), 1) - 1)};
+    object.nodes = {.count = static_cast<std::uint32_t>(object.bvh.nodes.size() / 2)};
     return true;
 }
 

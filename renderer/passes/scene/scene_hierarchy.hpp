@@ -65,7 +65,7 @@ struct ObjectHierarchy {
     float built_cost = 0.0F;     ///< SAH cost at the last build
     double area = 0.0;           ///< of the triangles, one side each, m²
     std::uint32_t first_id = 0;  ///< of its triangles: see gpu::TraceTriangle
-    BufferRange nodes;           ///< those after the root
+    BufferRange nodes;           ///< wide ones
     BufferRange triangles;
 };
 
