@@ -185,7 +185,7 @@ struct CellPoint {
 // Light that a cell point receives from the lights and from surfaces that emit light, and that it emits.
 struct DirectPoint {
     vec3 arriving;  // flux
-    float area;     // m²; 0: in a hole of a mask, or hidden from its surfel
+    float area;     // m²; 0: in a hole of a mask
     vec3 albedo;    // linear
     float pad0 DEFAULT(0.0);
     vec3 emitted;   // flux

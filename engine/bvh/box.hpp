@@ -4,6 +4,7 @@
 
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "engine/bvh/bvh.hpp"
 
@@ -37,6 +38,12 @@ struct Box {
     box.grow(triangle.b);
     box.grow(triangle.c);
     return box;
+}
+
+/// Whether two boxes have points in common, or such that are at most `slack` apart along each axis.
+[[nodiscard]] inline bool meet(const Box& a, const Box& b, float slack) {
+    return glm::all(glm::lessThanEqual(a.lower, b.upper + slack)) &&
+           glm::all(glm::lessThanEqual(b.lower, a.upper + slack));
 }
 
 /// Half the surface area; 0 for an empty box.

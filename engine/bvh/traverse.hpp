@@ -73,9 +73,9 @@ inline Entry enter(const Bvh& bvh, std::uint32_t node, const Slabs& slabs) {
 
 /// Calls `visit(index)` for each entry of `Bvh::order` (a triangle, or a box of build_box_bvh) that the ray
 /// may hit, roughly from near to far. `visit` returns the distance beyond which entries can be skipped, in
-/// units of the ray's direction.
+/// units of the ray's direction. Only the entries below node `root` are visited.
 template <class Visit>
-void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit) {
+void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit, std::uint32_t root = 0) {
     if (bvh.nodes.empty()) return;
     const detail::Slabs slabs(ray);
     float limit = std::min(ray.t_max, std::numeric_limits<float>::max());  // finite, so that it excludes +∞
@@ -83,7 +83,7 @@ void traverse(const Bvh& bvh, const Ray& ray, Visit&& visit) {
     // `bvh_max_depth` inner nodes above a leaf.
     std::array<detail::Entry, bvh_max_depth> stack{};
     std::size_t waiting = 0;
-    detail::Entry current = detail::enter(bvh, 0, slabs);
+    detail::Entry current = detail::enter(bvh, root, slabs);
     while (true) {
         const BvhNode& node = bvh.nodes[current.node];
         if (current.near <= limit && node.count == 0) {

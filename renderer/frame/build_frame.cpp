@@ -125,7 +125,8 @@ struct VplSet {
 
 VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                       std::optional<ValueHandle<Refinement>> refinement, const SurfelInputs& inputs) {
-    const Surfels surfels = add_surfels(graph, gpu, lit.scene, refinement, inputs.foci, wanted.settings);
+    const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, refinement,
+                                        inputs.foci, wanted.settings);
     const SurfelVisibility visibility =
         add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion);
     return {

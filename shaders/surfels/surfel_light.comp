@@ -15,7 +15,6 @@ layout(local_size_x = SURFEL_GROUP) in;
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
-layout(std430, binding = BINDING_SEEN_POINTS) readonly restrict buffer Seen { uint seen[]; };
 
 uniform uint point_count;
 uniform uint light_count;
@@ -120,7 +119,7 @@ void main() {
     CellPoint point = cell_points[id];
     Material material = materials[point.material];
     vec4 colour = colour_at(material, point.uv) * vertex_colour(point.colour);
-    float area = seen[id] == 0u || colour.a < material.alpha_cutoff ? 0.0 : point.area;
+    float area = colour.a < material.alpha_cutoff ? 0.0 : point.area;
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, part_first + part_size);
     for (uint i = part_first; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);

@@ -347,11 +347,10 @@ TEST_SUITE("configuration") {
         };
         // The first barrier of each waits for the previous frame, whose VPLs and radiance are overwritten.
         CHECK(barriers_of(ShadingPath::deferred) ==
-              "surfel-light: storage\nsurfel-bounce: storage\ndeferred: image access + storage\ntransparent: "
+              "surfel-bounce: storage\ndeferred: image access + storage\ntransparent: "
               "framebuffer\n"
               "tone-map: texture fetch\n");
-        CHECK(barriers_of(ShadingPath::forward) ==
-              "surfel-light: storage\nsurfel-bounce: storage\nforward: storage\n");
+        CHECK(barriers_of(ShadingPath::forward) == "surfel-bounce: storage\nforward: storage\n");
     }
 
     TEST_CASE_FIXTURE(RenderFixture, "the graph's description is also available for Graphviz and as JSON") {

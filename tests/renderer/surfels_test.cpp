@@ -242,7 +242,9 @@ TEST_SUITE("surfels: light") {
             const EnergyAccount flux = renderer.report().vpls->flux;
             const auto sum = [](glm::dvec3 rgb) { return rgb.r + rgb.g + rgb.b; };
             const double accounted = sum(flux.absorbed) + sum(flux.escaped) + sum(flux.truncated);
-            CHECK(accounted == doctest::Approx(sum(flux.emitted)).epsilon(0.005));
+            // The two form factors of a pair are reciprocal only up to the shapes of the discs, which are far
+            // from those of narrow parts of cells at the foot of a wall.
+            CHECK(accounted == doctest::Approx(sum(flux.emitted)).epsilon(0.01));
         }
     }
 
@@ -393,6 +395,50 @@ TEST_SUITE("surfels: light") {
             const double lit = mean(render(before, {32, 24}));
             CHECK(lit > 0.05);
             CHECK(behind < 1e-3 * lit);
+        }
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "no light is lost where a wall stands on a cell") {
+        // A light of 1 cd in a closed box emits 4π lm, wherever there are walls in it. The points of 128
+        // cells, which are half a metre wide, integrate it to about 0.5 %, less in the mean of three sets.
+        for (const float x : {-0.37F, -0.2F, 0.6F}) {
+            CAPTURE(x);
+            Scene scene = furnace_box(0.5F);
+            const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
+            add(scene.world, Transform{.translation = {x, 0, 0}, .rotation = upright},
+                MeshInstance{square(1.0F, diffuse(glm::vec3(0.5F), true))});
+            scene.world.set(scene.light, at({0.2F, 0.1F, 0.0F}));
+            double emitted = 0.0;
+            for (std::uint32_t seed = 0; seed < 3; ++seed) {
+                Configuration configuration = surfels(128, 2);
+                configuration.vpls.seed = seed;
+                configure(configuration);
+                static_cast<void>(render(scene, {16, 12}));
+                emitted += renderer.report().vpls->flux.emitted.r / 3.0;
+            }
+            CHECK(emitted == doctest::Approx(4.0 * pi).epsilon(0.01));
+        }
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "cells are divided where walls stand now, not where they stood") {
+        Scene scene;
+        add(scene.world, Transform{}, MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F)))});
+        const Entity wall =
+            add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.6F), true))});
+        scene.light = add(scene.world, at({1.0F, 1.0F, 0.4F}), PointLight{.intensity = 10.0F});
+        scene.camera = add(scene.world, looking({-1.5F, 1.5F, 1.0F}, {0, 0.2F, 0}), Camera{});
+        configure(surfels(50));
+        for (int i = 0; i < 8; ++i) {
+            CAPTURE(i);
+            const auto part = static_cast<float>(i) / 7.0F;
+            const glm::quat turned = glm::angleAxis(part, glm::vec3(0, 1, 0)) *
+                                     glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
+            scene.world.set(wall, Transform{.translation = {1.2F * part - 0.6F, 0, 0}, .rotation = turned});
+            const Picture moved = render(scene, {32, 24});
+            CHECK(ran("surfels"));
+            CHECK(moved == from_scratch(scene, {32, 24}));
+            CHECK(moved == render(scene, {32, 24}));
+            CHECK_FALSE(ran("surfels"));
         }
     }
 }

@@ -9,54 +9,13 @@
 #include <glm/vec4.hpp>
 
 #include <candela/graph/execute.hpp>
-#include "engine/bvh/traverse.hpp"
-#include "renderer/passes/scene/world_triangles.hpp"
+#include "renderer/passes/scene/traced_scene.hpp"
 
 namespace candela {
 namespace {
 
 /// Least radius of a focus, in distances between evenly spread surfels, in which those are dense enough.
 constexpr float least_spacings = 4.0F;
-
-/// The scene on the CPU.
-struct TracedScene {
-    const SceneHierarchy& hierarchy;
-    const SceneLayout& layout;
-    const ScenePlacement& placement;
-};
-
-/// Where a ray meets the nearest surface.
-struct SurfaceHit {
-    float distance;  // along the ray, metres: its direction has unit length
-    glm::vec3 place;
-    glm::vec3 normal;  // unit, on the side that the ray comes from
-};
-
-std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& ray) {
-    float nearest = ray.t_max;
-    Triangle hit_triangle{};
-    traverse(scene.hierarchy.top.bvh, ray, [&](std::uint32_t leaf) {
-        const std::uint32_t object = scene.hierarchy.top.leaves[leaf].object;
-        const SceneLayout::Drawable& drawable = scene.layout.drawables[object];
-        const std::span<const Vertex> vertices = vertices_of(drawable, scene.placement.deformed);
-        const glm::mat4& world = scene.placement.world[drawable.item];
-        traverse(scene.hierarchy.objects[object].bvh, ray, [&](std::uint32_t i) {
-            const Triangle triangle = place_triangle(scene.layout, drawable, vertices, i, world);
-            const auto hit = intersect(triangle, i, ray);
-            if (hit && hit->t < nearest) {
-                nearest = hit->t;
-                hit_triangle = triangle;
-            }
-            return nearest;
-        });
-        return nearest;
-    });
-    if (!std::isfinite(nearest)) return std::nullopt;
-    const glm::vec3 cross = glm::cross(hit_triangle.b - hit_triangle.a, hit_triangle.c - hit_triangle.a);
-    const glm::vec3 normal = glm::normalize(cross);
-    return SurfaceHit{nearest, ray.origin + nearest * ray.direction,
-                      glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
-}
 
 constexpr int rays_a_side = 8;
 constexpr int ray_count = rays_a_side * rays_a_side;

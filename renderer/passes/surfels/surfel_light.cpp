@@ -40,7 +40,6 @@ struct VisibilityPrograms {
     const gl::Program& factors;
     const gl::Program& cover;
     const gl::Program& rows;
-    const gl::Program& points;
 };
 
 /// Last round of scaling. Even, so that its results are in the first half of the rows.
@@ -56,10 +55,9 @@ SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
     return {run.value(surfels.counts).all_surfels(), run.value(surfels.point_count)};
 }
 
-void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, const SurfelNumbers& numbers,
+void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, std::uint32_t count,
                      float ray_offset, const std::optional<std::vector<Box>>& changed) {
     constexpr std::uint32_t most_a_line = 32768;  // work groups
-    const std::uint32_t count = numbers.surfels;
     const gl::Uniforms common = count_uniforms(count);
     const gl::Uniforms traced = common + changed_box_uniforms(changed, 4.0F * ray_offset);
     const gl::Uniforms offset{{"ray_offset", ray_offset}};
@@ -70,8 +68,6 @@ void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, const S
     for (std::uint32_t round = 0; round <= last_round; ++round) {
         steps.run(programs.rows, {surfel_groups}, common + gl::Uniforms{{"round", round}});
     }
-    steps.run(programs.points, {groups(numbers.points, SURFEL_GROUP)},
-              traced + gl::Uniforms{{"point_count", numbers.points}});
 }
 
 struct BouncePrograms {
@@ -146,7 +142,6 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
         pass.read(surfels.point_count);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
-        pass.read(visibility.seen_points, {Usage::storage, BINDING_SEEN_POINTS});
         pass.read(lights.table);
         pass.read(lights.buffer, {Usage::storage, BINDING_LIGHTS});
         read_tracing(pass, tracing);
@@ -224,7 +219,6 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
                                        const Surfels& surfels, ValueHandle<SceneMotion> motion) {
     return graph.add("surfel-visibility", [&](Pass& pass) {
         pass.read(surfels.counts);
-        pass.read(surfels.point_count);
         pass.read(surfels.set);
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
@@ -232,31 +226,25 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
         read_tracing(pass, tracing);
         const VisibilityPrograms programs{.factors = gpu.program({"surfels/surfel_form_factors.comp"}),
                                           .cover = gpu.program({"surfels/surfel_cover.comp"}),
-                                          .rows = gpu.program({"surfels/surfel_rows.comp"}),
-                                          .points = gpu.program({"surfels/surfel_points.comp"})};
+                                          .rows = gpu.program({"surfels/surfel_rows.comp"})};
         const SurfelVisibility out{
             .surfels = surfels,
             .form_factors = pass.update(growing_buffer<std::uint32_t>(graph, "form factors"),
                                         {Usage::storage, BINDING_FORM_FACTORS}),
             .rows = pass.write(growing_buffer<glm::vec2>(graph, "surfel rows"),
-                               {Usage::storage, BINDING_SURFEL_ROWS}),
-            .seen_points = pass.update(growing_buffer<std::uint32_t>(graph, "seen points"),
-                                       {Usage::storage, BINDING_SEEN_POINTS})};
+                               {Usage::storage, BINDING_SURFEL_ROWS})};
         const auto hits = pass.update(growing_buffer<std::uint32_t>(graph, "surfel cover"),
                                       {Usage::storage, BINDING_COVER});
         const TracedContent<VisibilityKey> known(graph, pass, "known visibility");
         pass.run([=, &gpu](Execution& run) {
-            const SurfelNumbers numbers = numbers_of(run, surfels);
-            const std::uint32_t count = numbers.surfels;
+            const std::uint32_t count = run.value(surfels.counts).all_surfels();
             run.reserve(out.form_factors, std::uint64_t{count} * surfel_columns(count).count / 2);
             run.reserve(out.rows, 2 * count);
             run.reserve(hits, count * COVER_PARTS);
-            run.reserve(out.seen_points, numbers.points);
             const float ray_offset = run.value(tracing.metrics).ray_offset();
-            const auto changed =
-                known.outdated(run, run.value(motion), {run.value(surfels.set), ray_offset},
-                               {run.object(out.form_factors), run.object(hits), run.object(out.seen_points)});
-            if (count > 0) find_visibility(gpu, programs, numbers, ray_offset, changed);
+            const auto changed = known.outdated(run, run.value(motion), {run.value(surfels.set), ray_offset},
+                                                {run.object(out.form_factors), run.object(hits)});
+            if (count > 0) find_visibility(gpu, programs, count, ray_offset, changed);
         });
         return out;
     });

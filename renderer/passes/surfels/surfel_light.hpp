@@ -13,7 +13,7 @@
 
 namespace candela {
 
-/// Visibility between surfels, and between a surfel and the points of its cell.
+/// Visibility between surfels.
 struct SurfelVisibility {
     Surfels surfels;
     /// Half floats, two per word, `surfel_columns` per surfel; 0 if hidden. Layout:
@@ -22,7 +22,6 @@ struct SurfelVisibility {
     /// By surfel: scale of its form factors, and the cosine-weighted share of its hemisphere in which no
     /// reflecting surface is visible.
     BufferHandle<glm::vec2> rows;
-    BufferHandle<std::uint32_t> seen_points;  ///< by point of a cell: 1 if its surfel sees it, else 0
 };
 
 /// How many surfels a surfel gathers from: at most MOST_COLUMNS. If there are more, every n-th represents n
@@ -36,9 +35,9 @@ struct SurfelColumns {
 /// Adds node `surfel-visibility` (compute). It finds the form factors between surfels, with one ray for each
 /// pair of surfels that face each other; the form factor is that of a disc (shaders/vpls/disc.glsl). Factors
 /// are then scaled, so that those of a surfel add up to the share of its hemisphere in which rays hit
-/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/surfels/surfel_rows.comp). It also finds which
-/// points of its cell a surfel sees. If something moves, only rays that pass through the changed boxes are
-/// traced again. Depends on surfels, BVH and motion, and on its own last result.
+/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/surfels/surfel_rows.comp). If something moves, only
+/// rays that pass through the changed boxes are traced again. Depends on surfels, BVH and motion, and on its
+/// own last result.
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                                      const Surfels& surfels, ValueHandle<SceneMotion> motion);
 

@@ -11,7 +11,9 @@
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/passes/scene/traced_content.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
+#include "renderer/passes/surfels/cell_division.hpp"
 
 namespace candela {
 namespace {
@@ -216,6 +218,50 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
     return set;
 }
 
+/// What rays have found about the cells of a set: see TracedContent.
+struct DivisionKey {
+    std::uint64_t set = 0;    // SpreadSurfels::number
+    float ray_offset = 0.0F;  // metres
+    bool operator==(const DivisionKey&) const = default;
+};
+
+/// The last division of the cells. `number` changes when there are other surfels or other points in a cell.
+struct DividedCells {
+    std::vector<CellDivision> cells;
+    ScenePlacement placement;
+    std::uint64_t set = 0;  // SpreadSurfels::number
+    std::uint64_t number = 0;
+    bool operator==(const DividedCells&) const = default;
+};
+
+bool has_moved(const ScenePlacement& before, const ScenePlacement& now, std::uint32_t item) {
+    const auto shape_in = [&](const ScenePlacement& placement) {
+        const auto found = placement.deformed.find(item);
+        return found == placement.deformed.end() ? nullptr : found->second.vertices.get();
+    };
+    return before.world[item] != now.world[item] || shape_in(before) != shape_in(now);
+}
+
+/// Divides the cells again that have moved, or where something in a changed box is or was; those of `last`
+/// stay elsewhere. All, if `changed` is none.
+std::vector<CellDivision> divide_cells(const SurfelSet& set, const TracedScene& scene, float ray_offset,
+                                       const DividedCells* last,
+                                       const std::optional<std::vector<Box>>& changed) {
+    const auto is_known = [&](std::size_t i) {
+        if (last == nullptr || !changed || has_moved(last->placement, scene.placement, set.item_of[i])) {
+            return false;
+        }
+        const Box box = box_of_division(set, i, ray_offset);
+        return std::ranges::none_of(*changed, [&](const Box& other) { return meet(box, other, ray_offset); });
+    };
+    std::vector<CellDivision> cells;
+    cells.reserve(set.surfels.size());
+    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        cells.push_back(is_known(i) ? last->cells[i] : divide_cell(set, i, scene, ray_offset));
+    }
+    return cells;
+}
+
 ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
                                       std::optional<ValueHandle<Refinement>> refinement,
                                       ValueHandle<std::vector<Focus>> foci, const VplSettings& settings) {
@@ -265,14 +311,20 @@ glm::mat3 shape_of(const glm::mat4& world) {
     return is_flat ? glm::mat3(world) : glm::mat3(rounded);
 }
 
-Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
-                    std::optional<ValueHandle<Refinement>> refinement, ValueHandle<std::vector<Focus>> foci,
-                    const VplSettings& settings) {
+Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, const Tracing& tracing,
+                    ValueHandle<SceneMotion> motion, std::optional<ValueHandle<Refinement>> refinement,
+                    ValueHandle<std::vector<Focus>> foci, const VplSettings& settings) {
     const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, foci, settings);
     return graph.add("surfels", [&](Pass& pass) {
         pass.read(spread_surfels);
         pass.read(scene.layout);
         pass.read(scene.placement);
+        pass.read(tracing.hierarchy);
+        pass.read(tracing.metrics);
+        pass.read(motion);
+        pass.keeps_state();
+        const auto divided_cells = pass.update(graph.value<DividedCells>("divided cells"));
+        const TracedContent<DivisionKey> known(graph, pass, "known division");
         const Surfels out{
             .counts = pass.write(graph.value<VplCounts>("surfel counts")),
             .point_count = pass.write(graph.value<std::uint32_t>("cell point count")),
@@ -281,12 +333,23 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
             .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
         pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
             const SpreadSurfels& spread_now = run.value(spread_surfels);
-            const SurfelSet set = placed_in_world(spread_now, run.value(layout), run.value(placement));
+            const TracedScene traced{*run.value(tracing.hierarchy), run.value(layout), run.value(placement)};
+            const float ray_offset = run.value(tracing.metrics).ray_offset();
+            const auto changed = known.outdated(run, run.value(motion), {spread_now.number, ray_offset}, {});
+            const SurfelSet whole = placed_in_world(spread_now, traced.layout, traced.placement);
+            const DividedCells* const last = run.previous(divided_cells);
+            DividedCells now{.cells = divide_cells(whole, traced, ray_offset, last, changed),
+                             .placement = traced.placement,
+                             .set = spread_now.number};
+            const bool is_same = last != nullptr && last->set == now.set && last->cells == now.cells;
+            now.number = last == nullptr ? 0 : last->number + (is_same ? 0 : 1);
+            const SurfelSet set = divided(whole, now.cells);
             upload<gpu::Surfel>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
             run.set(out.counts, counts_of(set));
             run.set(out.point_count, static_cast<std::uint32_t>(set.points.size()));
-            run.set(out.set, spread_now.number);
+            run.set(out.set, now.number);
+            run.set(divided_cells, std::move(now));
         });
         return out;
     });

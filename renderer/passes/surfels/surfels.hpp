@@ -9,6 +9,8 @@
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/scene/scene_motion.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/surfels/surfel_placement.hpp"
 #include "renderer/passes/view/refinement.hpp"
@@ -26,17 +28,21 @@ namespace candela {
 struct Surfels {
     ValueHandle<VplCounts> counts;
     ValueHandle<std::uint32_t> point_count;
-    ValueHandle<std::uint64_t> set;     ///< changes when surfels are placed again, not when they only move
+    /// Changes when surfels are placed again, or cells divided otherwise, not when they only move.
+    ValueHandle<std::uint64_t> set;
     BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;
 };
 
 /// Adds nodes `surfel-spread` (CPU: places surfels on the items, densely in the foci; with refinement, those
-/// of the current surfel set) and `surfels` (CPU, then upload: their positions in the world). Surfels belong
-/// to the items of the scene and move with them, and with the triangles of a deformed one; all are placed
-/// again when an item is added, removed or changes its shape. They depend on the scene's layout and
-/// placement, on the foci and on the refinement; `surfel-spread` also on its own last result.
+/// of the current surfel set) and `surfels` (CPU, then upload: their positions in the world, where cells are
+/// divided that surfaces cut: see divide_cell). Surfels belong to the items of the scene and move with them,
+/// and with the triangles of a deformed one; all are placed again when an item is added, removed or changes
+/// its shape. Only cells that move, or near which something moves, are divided again. The nodes depend on the
+/// scene's layout and placement, on the foci and on the refinement, and on their own last results; `surfels`
+/// also on BVH and motion.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
+                                  const Tracing& tracing, ValueHandle<SceneMotion> motion,
                                   std::optional<ValueHandle<Refinement>> refinement,
                                   ValueHandle<std::vector<Focus>> foci, const VplSettings& settings);
 

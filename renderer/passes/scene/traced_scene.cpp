@@ -1,0 +1,111 @@
+#include "renderer/passes/scene/traced_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include "engine/bvh/traverse.hpp"
+#include "renderer/passes/scene/world_triangles.hpp"
+
+namespace candela {
+namespace {
+
+/// Index of the texel at `at`, in widths of an image of `size` texels.
+std::uint32_t wrapped(float at, std::uint32_t size, Wrap wrap) {
+    float inside = at - std::floor(at);
+    if (wrap == Wrap::clamp_to_edge) inside = std::clamp(at, 0.0F, 1.0F);
+    if (wrap == Wrap::mirrored_repeat)
+        inside = 1.0F - std::abs(1.0F - 2.0F * (0.5F * at - std::floor(0.5F * at)));
+    if (!(inside < 1.0F)) return size - 1;  // or not a number
+    return std::min(static_cast<std::uint32_t>(inside * static_cast<float>(size)), size - 1);
+}
+
+float alpha_at(const Material& material, glm::vec2 uv) {
+    const Image* const image = material.base_colour_texture.get();
+    if (image == nullptr) return material.base_colour.a;
+    const std::size_t x = wrapped(uv.x, image->width, image->wrap_u);
+    const std::size_t y = wrapped(uv.y, image->height, image->wrap_v);
+    return material.base_colour.a * static_cast<float>(image->texels[y * image->width + x].a) / 255.0F;
+}
+
+/// One solid drawable of a scene, as rays meet it.
+struct TracedObject {
+    const TracedScene& scene;
+    const SceneLayout::Drawable& drawable;
+    std::span<const Vertex> vertices;
+    const glm::mat4& world;
+
+    [[nodiscard]] Triangle triangle(std::uint32_t i) const {
+        return place_triangle(scene.layout, drawable, vertices, i, world);
+    }
+
+    [[nodiscard]] bool has_hole(const Hit& hit) const {
+        const Material& material = *drawable.primitive->material;
+        if (material.alpha_mode != AlphaMode::mask) return false;
+        const gpu::TraceTriangle t = trace_triangle(scene.layout, drawable, vertices, hit.triangle, world, 0);
+        const auto alpha_of = [](std::uint32_t colour) { return static_cast<float>(colour >> 24U) / 255.0F; };
+        const float a = 1.0F - hit.u - hit.v;
+        const float of_vertices =
+            a * alpha_of(t.colour_a) + hit.u * alpha_of(t.colour_b) + hit.v * alpha_of(t.colour_c);
+        const glm::vec2 uv = a * t.uv_a + hit.u * t.uv_b + hit.v * t.uv_c;
+        return of_vertices * alpha_at(material, uv) < material.alpha_cutoff;
+    }
+};
+
+TracedObject object_at(const TracedScene& scene, std::uint32_t index) {
+    const SceneLayout::Drawable& drawable = scene.layout.drawables[index];
+    return {scene, drawable, vertices_of(drawable, scene.placement.deformed),
+            scene.placement.world[drawable.item]};
+}
+
+/// Calls `found(hit, triangle)` for surfaces that the ray meets, roughly from near to far. It returns the
+/// distance beyond which others can be skipped.
+template <class Found>
+void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
+    float limit = ray.t_max;
+    traverse(scene.hierarchy.top.bvh, ray, [&](std::uint32_t i) {
+        const TopBvh::Leaf& leaf = scene.hierarchy.top.leaves[i];
+        const TracedObject object = object_at(scene, leaf.object);
+        const auto visit = [&](std::uint32_t index) {
+            const Triangle triangle = object.triangle(index);
+            const auto hit = intersect(triangle, index, ray);
+            if (hit && hit->t < limit && !object.has_hole(*hit)) limit = found(*hit, triangle);
+            return limit;
+        };
+        traverse(scene.hierarchy.objects[leaf.object].bvh, ray, visit, leaf.node);
+        return limit;
+    });
+}
+
+}  // namespace
+
+std::optional<SurfaceHit> nearest_surface(const TracedScene& scene, const Ray& ray) {
+    std::optional<float> nearest;
+    Triangle hit_triangle{};
+    trace(scene, ray, [&](const Hit& hit, const Triangle& triangle) {
+        nearest = hit.t;
+        hit_triangle = triangle;
+        return hit.t;
+    });
+    if (!nearest) return std::nullopt;
+    const glm::vec3 cross = glm::cross(hit_triangle.b - hit_triangle.a, hit_triangle.c - hit_triangle.a);
+    const glm::vec3 normal = glm::normalize(cross);
+    return SurfaceHit{*nearest, ray.origin + *nearest * ray.direction,
+                      glm::dot(cross, ray.direction) < 0.0F ? normal : -normal};
+}
+
+bool is_blocked(const TracedScene& scene, const glm::vec3& from, const glm::vec3& to) {
+    bool blocked = false;
+    trace(scene, {from, to - from, 0.0F, 1.0F}, [&](const Hit&, const Triangle&) {
+        blocked = true;
+        return -1.0F;  // nothing else matters
+    });
+    return blocked;
+}
+
+}  // namespace candela

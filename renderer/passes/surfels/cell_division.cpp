@@ -1,0 +1,158 @@
+#include "renderer/passes/surfels/cell_division.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+namespace candela {
+namespace {
+
+constexpr float least_cosine = 0.7F;
+
+/// A surfel or a point, and where rays to it end.
+struct Seat {
+    glm::vec3 position;
+    glm::vec3 normal;  // unit
+    glm::vec3 above;
+};
+
+/// Rays of a cell are so high above its surface, metres.
+float lift_of(const gpu::Surfel& surfel) {
+    return 0.25F * std::sqrt(surfel.area);
+}
+
+Seat seat_of(const glm::vec3& position, const glm::vec3& normal, float lift, const TracedScene& scene,
+             float ray_offset) {
+    const glm::vec3 start = position + ray_offset * normal;
+    const auto hit = nearest_surface(scene, {start, normal, 0.0F, 2.0F * lift});
+    return {position, normal, start + (hit ? 0.5F * hit->distance : lift) * normal};
+}
+
+std::span<const gpu::CellPoint> points_of(const SurfelSet& set, std::size_t surfel) {
+    return std::span(set.points).subspan(set.surfels[surfel].first_point, set.surfels[surfel].point_count);
+}
+
+bool sees(const Seat& from, const Seat& to, const TracedScene& scene) {
+    return glm::dot(from.normal, to.normal) >= least_cosine && !is_blocked(scene, from.above, to.above);
+}
+
+/// The point nearest to the centroid of those that are in no part; none if they have no area.
+std::optional<std::uint32_t> middle_of_rest(std::span<const gpu::CellPoint> points,
+                                            const CellDivision& division) {
+    const auto is_left = [&](std::size_t i) {
+        return division.part_of[i] == most_cell_parts && points[i].area > 0.0F;
+    };
+    glm::vec3 sum(0.0F);
+    float area = 0.0F;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!is_left(i)) continue;
+        // From one of the points, so that it is exact far from the origin.
+        sum += points[i].area * (points[i].position - points[0].position);
+        area += points[i].area;
+    }
+    const glm::vec3 centroid = points[0].position + sum / area;
+    std::optional<std::uint32_t> middle;
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const float distance = glm::distance(points[i].position, centroid);
+        if (!is_left(i) || !(distance < least)) continue;
+        least = distance;
+        middle = static_cast<std::uint32_t>(i);
+    }
+    return middle;
+}
+
+/// Appends a part of a cell, if it has points.
+void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const CellDivision& division,
+                 std::uint8_t part) {
+    gpu::Surfel surfel = set.surfels[cell];
+    const std::uint32_t first = surfel.first_point;
+    SurfacePoint place = set.surfel_places[cell];
+    if (part > 0) {
+        const std::uint32_t middle = first + division.middles[part];
+        surfel.position = set.points[middle].position;
+        surfel.normal = set.points[middle].normal;
+        place = set.point_places[middle];
+    }
+    surfel.first_point = static_cast<std::uint32_t>(to.points.size());
+    surfel.area = 0.0F;
+    for (std::size_t i = 0; i < division.part_of.size(); ++i) {
+        if (division.part_of[i] != part) continue;
+        to.points.push_back(set.points[first + i]);
+        to.points.back().surfel = static_cast<std::uint32_t>(to.surfels.size());
+        to.point_places.push_back(set.point_places[first + i]);
+        surfel.area += to.points.back().area;
+    }
+    surfel.point_count = static_cast<std::uint32_t>(to.points.size()) - surfel.first_point;
+    if (surfel.point_count == 0) return;
+    surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
+    to.surfels.push_back(surfel);
+    to.surfel_places.push_back(place);
+    to.item_of.push_back(set.item_of[cell]);
+}
+
+}  // namespace
+
+CellDivision divide_cell(const SurfelSet& set, std::size_t surfel, const TracedScene& scene,
+                         float ray_offset) {
+    const gpu::Surfel& own = set.surfels[surfel];
+    const std::span<const gpu::CellPoint> points = points_of(set, surfel);
+    const float lift = lift_of(own);
+    std::vector<Seat> seats;
+    seats.reserve(points.size());
+    for (const gpu::CellPoint& point : points) {
+        seats.push_back(seat_of(point.position, point.normal, lift, scene, ray_offset));
+    }
+    CellDivision division;
+    division.part_of.assign(points.size(), most_cell_parts);
+    Seat from = seat_of(own.position, own.normal, lift, scene, ray_offset);
+    for (std::uint8_t part = 0; part < most_cell_parts; ++part) {
+        if (part > 0) {
+            const auto middle = middle_of_rest(points, division);
+            if (!middle) break;
+            from = seats[*middle];
+            division.middles[part] = *middle;
+            division.part_of[*middle] = part;
+        }
+        for (std::size_t i = 0; i < seats.size(); ++i) {
+            const bool is_left = division.part_of[i] == most_cell_parts;
+            if (is_left && sees(from, seats[i], scene)) division.part_of[i] = part;
+        }
+    }
+    return division;
+}
+
+Box box_of_division(const SurfelSet& set, std::size_t surfel, float ray_offset) {
+    const gpu::Surfel& own = set.surfels[surfel];
+    const float reach = 2.0F * lift_of(own) + ray_offset;
+    Box box;
+    box.grow(own.position);
+    box.grow(own.position + reach * own.normal);
+    for (const gpu::CellPoint& point : points_of(set, surfel)) {
+        box.grow(point.position);
+        box.grow(point.position + reach * point.normal);
+    }
+    return box;
+}
+
+SurfelSet divided(const SurfelSet& set, std::span<const CellDivision> cells) {
+    SurfelSet parts;
+    parts.surfels.reserve(set.surfels.size());
+    parts.points.reserve(set.points.size());
+    const std::size_t first_emitting = set.surfels.size() - set.emitting_count;
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        const std::size_t before = parts.surfels.size();
+        for (std::uint8_t part = 0; part < most_cell_parts; ++part) {
+            append_part(parts, set, cell, cells[cell], part);
+        }
+        const auto added = static_cast<std::uint32_t>(parts.surfels.size() - before);
+        if (cell >= first_emitting) parts.emitting_count += added;
+    }
+    return parts;
+}
+
+}  // namespace candela
