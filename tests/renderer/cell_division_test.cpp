@@ -283,6 +283,23 @@ TEST_SUITE("surfels: division") {
         CHECK((dropped == doctest::Approx(0.125) || dropped == doctest::Approx(0.25)));
     }
 
+    TEST_CASE("which point becomes a surfel does not depend on where the cell is") {
+        // Two points are left, as far from their centroid, which is rounded.
+        std::mt19937 engine(test_seed());
+        std::uniform_real_distribution<float> number(-100.0F, 100.0F);
+        for (int i = 0; i < 50; ++i) {
+            const glm::vec3 offset(number(engine), 0.0F, number(engine));
+            SurfelSet set = floor_cell(2);
+            for (gpu::CellPoint& point : set.points) point.position += offset;
+            set.surfels[0].position += offset;
+            Surroundings surroundings;
+            surroundings.add(wall(), glm::translate(glm::mat4(1.0F), offset) * upright(0.1F));
+            const SurfelSet parts = divided_in(surroundings, set);
+            REQUIRE(parts.surfels.size() == 2);
+            CHECK(parts.surfel_places[1].triangle == 2);
+        }
+    }
+
     TEST_CASE("points without area or normal, as of triangles that are deformed to nothing, end nothing") {
         SurfelSet set = floor_cell(2);
         for (gpu::CellPoint& point : set.points) point.area = 0.0F, point.normal = glm::vec3(0.0F);
