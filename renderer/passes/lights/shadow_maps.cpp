@@ -15,6 +15,7 @@
 #include "renderer/gpu/layer_target.hpp"
 #include "renderer/passes/inspect/depth_note.hpp"
 #include "renderer/passes/lights/light_kind.hpp"
+#include "renderer/passes/lights/shadow_draws.hpp"
 #include "renderer/passes/surfaces/draw_scene.hpp"
 
 namespace candela {
@@ -167,6 +168,10 @@ std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, c
     return due;
 }
 
+std::uint32_t resolution_of(const ShadowPlan::View& view, const ShadowSettings& settings) {
+    return view.cube ? settings.cube_resolution : settings.map_resolution;
+}
+
 /// What the node is made of.
 struct ShadowNode {
     SceneData scene;
@@ -176,17 +181,42 @@ struct ShadowNode {
     ValueHandle<SceneMetrics> metrics;
 };
 
+/// The draws of a view: `count` from number `first` on.
+struct DrawRange {
+    std::size_t first;
+    std::size_t count;
+};
+
+/// Uploads the draws of all views and makes them those that are drawn next. Returns their ranges, by view.
+std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const ShadowNode& node,
+                                    const std::vector<ShadowPlan::View>& views) {
+    const std::vector<ShadowCaster> casters = shadow_casters(
+        run.value(node.scene.layout), run.value(node.scene.placement), run.value(node.metrics).ray_offset());
+    std::vector<gpu::DrawCommand> draws;
+    std::vector<DrawRange> ranges;
+    ranges.reserve(views.size());
+    for (const ShadowPlan::View& view : views) {
+        const std::size_t first = draws.size();
+        append_shadow_draws(casters, view.clip_from_world, resolution_of(view, node.settings), draws);
+        ranges.push_back({first, draws.size() - first});
+    }
+    upload<gpu::DrawCommand>(gpu, run, node.out.draws, draws);
+    gpu.gl().BindBuffer(GL_DRAW_INDIRECT_BUFFER, run.object(node.out.draws));
+    return ranges;
+}
+
 void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vector<ShadowPlan::View>& due) {
     const auto& out = node.out;
-    const ShadowSettings& settings = node.settings;
     run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
 
     // Rays end nearer to the light.
     const float least_distance = 0.5F * run.value(node.metrics).ray_offset();
     bind_meshes(gpu, run, node.scene);
+    const std::vector<DrawRange> draws = upload_draws(gpu, run, node, due);
     LayerTarget target(gpu);
-    for (const ShadowPlan::View& view : due) {
-        const std::uint32_t resolution = view.cube ? settings.cube_resolution : settings.map_resolution;
+    for (std::size_t i = 0; i < due.size(); ++i) {
+        const ShadowPlan::View& view = due[i];
+        const std::uint32_t resolution = resolution_of(view, node.settings);
         target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer, resolution);
         target.clear();
         node.program.use({{"clip_from_world", view.clip_from_world},
@@ -194,7 +224,7 @@ void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vec
                           {"light_position", view.light_position},
                           {"least_w", view.depth_scale > 0.0F ? least_distance : 0.5F},
                           {"texel", 2.0F / static_cast<float>(resolution)}});
-        draw_solid(gpu, run, node.scene, {.depth_test = gl::DepthTest::nearer});
+        draw_commands(gpu, draws[i].first, draws[i].count, {.depth_test = gl::DepthTest::nearer});
     }
 }
 
@@ -271,6 +301,7 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
     const PlannedShadows planned = add_shadow_plan(graph, gpu, lights, metrics, settings);
     return graph.add("shadow-maps", [&](Pass& pass) {
         const std::vector<ResourceHandle> surfaces = read_meshes(pass, scene);
+        pass.read(scene.placement);
         pass.read(planned.plan);
         pass.parameter(settings);
         pass.read(metrics);
@@ -283,7 +314,8 @@ ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                  Usage::layer_target),
             .maps = pass.update(graph.texture("shadow maps", array_desc(1, 1), Lifetime::persistent),
                                 Usage::layer_target),
-            .drawn = pass.update(graph.value<DrawnShadows>("drawn shadows"))};
+            .drawn = pass.update(graph.value<DrawnShadows>("drawn shadows")),
+            .draws = pass.write(growing_buffer<gpu::DrawCommand>(graph, "shadow draws"), Usage::copy)};
         for (const bool cubes : {true, false}) {
             graph.note(cubes ? out.cubes : out.maps,
                        depth_note(planned.plan, [=](const ShadowPlan& drawn, std::uint32_t layer) {

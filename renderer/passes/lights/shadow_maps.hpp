@@ -45,6 +45,7 @@ struct ShadowMaps {
     TextureHandle cubes;                ///< 2D array, depth32f, reversed; six layers for each light
     TextureHandle maps;                 ///< 2D array, depth32f, reversed
     ValueHandle<DrawnShadows> drawn;
+    BufferHandle<gpu::DrawCommand> draws;  ///< of the views drawn in the last run of the node
 };
 
 /// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts.
@@ -56,9 +57,9 @@ struct ShadowMaps {
 /// Curved Surfaces", 1978). A point light has the six faces of a cube, or one map if the scene is far away, a
 /// spot light the cone or the same as a point light, a directional light the rectangle that the scene covers.
 /// The maps are conservative, and where one does not decide, shading traces a ray: shaders/theory.md, "Shadow
-/// maps". Both sides of all triangles are drawn, but no blended surfaces. Views whose content is unchanged
-/// are kept: if a light moves, only its views are drawn; if a mesh moves, all are; if the camera moves, none.
-/// Depends on meshes, materials, lights and the scene's metrics.
+/// maps". Both sides of all triangles are drawn that may be in a map, but no blended surfaces. Views whose
+/// content is unchanged are kept: if a light moves, only its views are drawn; if a mesh moves, all are; if
+/// the camera moves, none. Depends on meshes, materials, lights and the scene's metrics.
 [[nodiscard]] ShadowMaps add_shadow_maps(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                          ValueHandle<LightTable> lights, ValueHandle<SceneMetrics> metrics,
                                          const ShadowSettings& settings);

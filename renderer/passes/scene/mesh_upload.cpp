@@ -1,5 +1,6 @@
 #include "renderer/passes/scene/mesh_upload.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace candela {
@@ -11,6 +12,17 @@ glm::vec3 mean_colour_of(const Primitive& primitive) {
         sum += glm::dvec3(vertex.colour);
     }
     return glm::vec3(sum / (65535.0 * static_cast<double>(primitive.vertices.size())));
+}
+
+std::shared_ptr<const std::vector<Box>> boxes_of_parts(const Primitive& primitive) {
+    constexpr std::size_t part_size = 3 * triangles_per_part;
+    const std::vector<std::uint32_t>& indices = primitive.indices;
+    if (indices.size() <= part_size) return nullptr;
+    std::vector<Box> boxes((indices.size() + part_size - 1) / part_size);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        boxes[i / part_size].grow(primitive.vertices[indices[i]].position);
+    }
+    return std::make_shared<const std::vector<Box>>(std::move(boxes));
 }
 
 }  // namespace
@@ -34,6 +46,7 @@ const UploadedPrimitive& MeshTable::add(const std::shared_ptr<const Mesh>& mesh,
         return UploadedPrimitive{.mesh = mesh,
                                  .primitive = &primitive,
                                  .bounds = box_around(primitive.vertices),
+                                 .parts = boxes_of_parts(primitive),
                                  .mean_colour = mean_colour_of(primitive),
                                  .vertices = {.count = static_cast<std::uint32_t>(primitive.vertices.size())},
                                  .indices = {.count = static_cast<std::uint32_t>(primitive.indices.size())}};

@@ -18,8 +18,9 @@ namespace candela {
 struct UploadedPrimitive {
     std::shared_ptr<const Mesh> mesh;  ///< keeps the primitive alive
     const Primitive* primitive = nullptr;
-    Box bounds;                   ///< local space
-    glm::vec3 mean_colour{0.0F};  ///< of its vertices, linear
+    Box bounds;                                       ///< local space
+    std::shared_ptr<const std::vector<Box>> parts{};  ///< as in SceneLayout::Drawable
+    glm::vec3 mean_colour{0.0F};                      ///< of its vertices, linear
     BufferRange vertices;
     BufferRange indices;
 };

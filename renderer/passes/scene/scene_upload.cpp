@@ -101,8 +101,8 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
             const std::uint32_t material = store.materials.index_of(primitive.material);
             const UploadedPrimitive& uploaded = store.meshes.add(mesh, primitive);
             const glm::vec3 albedo = store.materials.mean_albedo(material) * uploaded.mean_colour;
-            drawables.push_back(
-                {item, &primitive, material, uploaded.bounds, std::max({albedo.r, albedo.g, albedo.b}), i});
+            drawables.push_back({item, &primitive, material, uploaded.bounds,
+                                 std::max({albedo.r, albedo.g, albedo.b}), i, uploaded.parts});
         }
     }
     const auto key = [&](std::uint32_t i) {
@@ -203,6 +203,11 @@ std::span<const Vertex> vertices_of(const SceneLayout::Drawable& drawable, const
 const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
     const Deformation* const found = find(deformed, drawable.item);
     return found == nullptr ? drawable.bounds : found->bounds[drawable.index_in_mesh];
+}
+
+std::span<const Box> parts_of(const SceneLayout::Drawable& drawable, const Deformations& deformed) {
+    if (drawable.parts && find(deformed, drawable.item) == nullptr) return *drawable.parts;
+    return {&bounds_of(drawable, deformed), 1};
 }
 
 std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) const {

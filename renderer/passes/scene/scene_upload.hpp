@@ -46,6 +46,9 @@ struct ScenePlacement {
     bool operator==(const ScenePlacement&) const = default;
 };
 
+/// A part of a primitive: so many triangles that follow each other, the last part fewer.
+inline constexpr std::uint32_t triangles_per_part = 256;
+
 /// What the GPU buffers of the scene contain.
 struct SceneLayout {
     /// One primitive of one item. It has one draw command and one record in the instance buffer.
@@ -56,6 +59,8 @@ struct SceneLayout {
         Box bounds;                       ///< bounding box of the primitive, local space: see bounds_of
         float albedo = 0.0F;              ///< strongest channel of its mean albedo
         std::uint32_t index_in_mesh = 0;  ///< of the primitive
+        /// The boxes around its parts, local space: see parts_of. Null if there is only one.
+        std::shared_ptr<const std::vector<Box>> parts{};
     };
     /// Consecutive draws of materials with the same binding. Each blended draw has its own group, so that
     /// they can be sorted.
@@ -83,6 +88,9 @@ struct SceneLayout {
                                                   const Deformations& deformed);
 /// The box around them; local space.
 [[nodiscard]] const Box& bounds_of(const SceneLayout::Drawable& drawable, const Deformations& deformed);
+/// The boxes around its parts; a single one around all that is deformed. Local space.
+[[nodiscard]] std::span<const Box> parts_of(const SceneLayout::Drawable& drawable,
+                                            const Deformations& deformed);
 
 /// The scene on the GPU, with its description on the CPU.
 struct SceneData {

@@ -34,9 +34,9 @@ void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
     vertices.bind();
 }
 
-void draw_solid(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state) {
+void draw_commands(Gpu& gpu, std::size_t first, std::size_t count, const gl::RasterState& state) {
     gpu.device().set_raster_state(state);
-    multi_draw(gpu.gl(), 0, run.value(scene.layout).solid_count);
+    multi_draw(gpu.gl(), first, count);
 }
 
 void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,9 @@ std::vector<ResourceHandle> read_meshes(Pass& pass, const SceneData& scene);
 /// Sets up the vertex array for the meshes: vertices, instance numbers and indices.
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene);
 
-/// Draws all surfaces that stop light, opaque and masked, in one call with the bound program. Requires
-/// bind_meshes; needs no materials.
-void draw_solid(Gpu& gpu, Execution& run, const SceneData& scene, const gl::RasterState& state);
+/// Draws `count` commands of the bound indirect buffer, from number `first` on, with the bound program.
+/// Requires bind_meshes; needs no materials.
+void draw_commands(Gpu& gpu, std::size_t first, std::size_t count, const gl::RasterState& state);
 
 /// Draws one group with the bound program. Binds its images; its winding replaces that of `state`.
 void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state);
