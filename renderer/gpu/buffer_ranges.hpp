@@ -1,9 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -48,35 +47,67 @@ bool place_ranges(Execution& run, BufferHandle<T> buffer, std::span<BufferRange*
     return true;
 }
 
-/// Uploads the ranges that are not uploaded. `append(i, elements)` appends the elements of range i to a
-/// vector.
-template <class T, class Append>
-void upload_ranges(const Gpu& gpu, Execution& run, BufferHandle<T> buffer,
-                   std::span<BufferRange* const> ranges, Append append) {
-    std::vector<T> elements;
-    elements.reserve(std::transform_reduce(
-        ranges.begin(), ranges.end(), std::size_t{0}, std::plus<>(),
-        [](const BufferRange* range) { return range->uploaded ? std::size_t{0} : range->count; }));
-    std::size_t first = 0;
-    const auto flush = [&] {
-        if (!elements.empty()) {
-            gpu.gl().NamedBufferSubData(run.object(buffer), static_cast<GLintptr>(first * sizeof(T)),
-                                        static_cast<GLsizeiptr>(elements.size() * sizeof(T)),
-                                        elements.data());
+/// Uploads elements to a buffer in the order in which they come. Collects about a MiB of them: one upload for
+/// each would take long, and a copy of all of them much memory.
+template <class T>
+class BufferWriter {
+ public:
+    BufferWriter(const Gpu& gpu, ObjectId buffer) : gpu_(gpu), buffer_(buffer) {}
+
+    /// The next element becomes that with this index.
+    void seek(std::size_t index) {
+        if (index == first_ + elements_.size()) return;
+        flush();
+        first_ = index;
+    }
+    void push_back(const T& element) {
+        if (elements_.size() == most) flush();
+        elements_.push_back(element);
+    }
+    void append(std::span<const T> added) {
+        if (elements_.size() + added.size() > most) flush();
+        if (added.size() > most) {
+            upload(added);
+        } else {
+            elements_.insert(elements_.end(), added.begin(), added.end());
         }
-        elements.clear();
-    };
+    }
+    /// Uploads what is left. Must be the last call.
+    void flush() {
+        upload(elements_);
+        elements_.clear();
+    }
+
+ private:
+    static constexpr std::size_t most = (std::size_t{1} << 20U) / sizeof(T);
+
+    void upload(std::span<const T> elements) {
+        if (elements.empty()) return;
+        gpu_.gl().NamedBufferSubData(buffer_, static_cast<GLintptr>(first_ * sizeof(T)),
+                                     static_cast<GLsizeiptr>(elements.size_bytes()), elements.data());
+        first_ += elements.size();
+    }
+
+    const Gpu& gpu_;
+    ObjectId buffer_;
+    std::size_t first_ = 0;  // index of elements_[0]
+    std::vector<T> elements_;
+};
+
+/// Uploads the ranges that are not uploaded. `write(i, writer)` writes the elements of range i to a
+/// BufferWriter.
+template <class T, class Write>
+void upload_ranges(const Gpu& gpu, Execution& run, BufferHandle<T> buffer,
+                   std::span<BufferRange* const> ranges, Write write) {
+    BufferWriter<T> writer(gpu, run.object(buffer));
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         BufferRange& range = *ranges[i];
         if (range.uploaded) continue;
-        if (range.first != first + elements.size()) {
-            flush();
-            first = range.first;
-        }
-        append(i, elements);
+        writer.seek(range.first);
+        write(i, writer);
         range.uploaded = true;
     }
-    flush();
+    writer.flush();
 }
 
 }  // namespace candela

@@ -61,21 +61,19 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
     std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
     const std::vector<PlacedBvh> placed_bvhs = uploaded.scene.placed_objects();
     upload_ranges(gpu, run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes),
-                  [&](std::size_t i, std::vector<gpu::WideNode>& nodes) {
-                      const std::vector<WideNode> own = wide_nodes(placed_bvhs[i]);
-                      nodes.insert(nodes.end(), own.begin(), own.end());
+                  [&](std::size_t i, BufferWriter<gpu::WideNode>& writer) {
+                      writer.append(wide_nodes(placed_bvhs[i]));
                   });
-    upload_ranges(
-        gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
-        [&](std::size_t i, std::vector<gpu::TraceTriangle>& triangles) {
-            const ObjectHierarchy& object = objects[i];
-            const SceneLayout::Drawable& drawable = layout.drawables[i];
-            const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
-            for (const std::uint32_t triangle : object.bvh.order) {
-                triangles.push_back(trace_triangle(layout, drawable, vertices, triangle, object.source.world,
-                                                   object.first_id + triangle));
-            }
-        });
+    upload_ranges(gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
+                  [&](std::size_t i, BufferWriter<gpu::TraceTriangle>& writer) {
+                      const ObjectHierarchy& object = objects[i];
+                      const SceneLayout::Drawable& drawable = layout.drawables[i];
+                      const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
+                      for (const std::uint32_t triangle : object.bvh.order) {
+                          writer.push_back(trace_triangle(layout, drawable, vertices, triangle,
+                                                          object.source.world, object.first_id + triangle));
+                      }
+                  });
 }
 
 void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,

@@ -220,9 +220,8 @@ void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials
         ranges.push_back(&image->range);
     }
     place_ranges(run, texels, ranges, texels_end_);
-    upload_ranges(*gpu_, run, texels, ranges, [&](std::size_t i, std::vector<std::uint32_t>& elements) {
-        const std::vector<std::uint32_t>& added = images_.used()[i]->texels;
-        elements.insert(elements.end(), added.begin(), added.end());
+    upload_ranges(*gpu_, run, texels, ranges, [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {
+        writer.append(images_.used()[i]->texels);
     });
     std::vector<gpu::Material> records;
     for (const Listed& listed : by_index_) {

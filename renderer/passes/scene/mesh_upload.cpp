@@ -78,13 +78,11 @@ void MeshTable::upload(const Gpu& gpu, Execution& run, BufferHandle<Vertex> vert
     }
 
     place_ranges(run, vertices, vertex_ranges, vertices_end_);
-    upload_ranges(gpu, run, vertices, vertex_ranges, [&](std::size_t i, std::vector<Vertex>& elements) {
-        elements.insert(elements.end(), contents[i].begin(), contents[i].end());
-    });
+    upload_ranges(gpu, run, vertices, vertex_ranges,
+                  [&](std::size_t i, BufferWriter<Vertex>& writer) { writer.append(contents[i]); });
     place_ranges(run, indices, index_ranges, indices_end_);
-    upload_ranges(gpu, run, indices, index_ranges, [&](std::size_t i, std::vector<std::uint32_t>& elements) {
-        const std::vector<std::uint32_t>& added = primitives_.used()[i]->primitive->indices;
-        elements.insert(elements.end(), added.begin(), added.end());
+    upload_ranges(gpu, run, indices, index_ranges, [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {
+        writer.append(primitives_.used()[i]->primitive->indices);
     });
 }
 
