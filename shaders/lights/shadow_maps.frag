@@ -8,9 +8,11 @@ flat in mat3 edges;
 flat in vec3 base;
 flat in vec2 slope;
 flat in uint has_holes;
+flat in vec4 rectangle;  // lower and upper corner
 
 void main() {
     vec2 at = gl_FragCoord.xy * texel - 1.0;
+    if (any(lessThan(at, rectangle.xy)) || any(greaterThan(at, rectangle.zw))) discard;
     vec3 inside = vec3(at, 1.0) * edges;
     vec3 within = SHADOW_REACH * texel * (abs(row(edges, 0)) + abs(row(edges, 1)));
     if (any(lessThan(inside, -within))) discard;

@@ -21,6 +21,7 @@ flat out mat3 edges;
 flat out vec3 base;
 flat out vec2 slope;
 flat out uint has_holes;
+flat out vec4 rectangle;  // its lower and its upper corner
 
 void main() {
     vec3 normal = cross(vertex_in_world[1] - vertex_in_world[0], vertex_in_world[2] - vertex_in_world[0]);
@@ -51,12 +52,16 @@ void main() {
     if (dot(lines[0], clip[0].xyw) < 0.0) lines = -lines;
     vec3 point = clip[farthest].xyz / clip[farthest].w;
     float height = dot(normal, vertex_in_world[farthest] - light_position);
-    for (int i = 0; i < 4; ++i) {
+    // A small rectangle is the corner of one triangle, which takes less time than two; the rest is discarded.
+    bool is_small = all(lessThan(upper - lower, vec2(16.0 * texel)));
+    vec2 far = is_small ? 2.0 * upper - lower : upper;
+    for (int i = 0; i < (is_small ? 3 : 4); ++i) {
         edges = lines;
         base = point;
         slope = plane_slope(clip_from_world, depth_scale, normal, height);
+        rectangle = vec4(lower, upper);
         has_holes = vertex_has_holes[0];
-        gl_Position = vec4((i & 1) == 0 ? lower.x : upper.x, (i & 2) == 0 ? lower.y : upper.y, 0.5, 1.0);
+        gl_Position = vec4((i & 1) == 0 ? lower.x : far.x, (i & 2) == 0 ? lower.y : far.y, 0.5, 1.0);
         EmitVertex();
     }
     EndPrimitive();
