@@ -34,6 +34,12 @@
 #define BINDING_FORM_FACTORS BINDING_LIST_FIRST
 #define BINDING_COVER BINDING_LIST_COUNT
 #define BINDING_BOUNCE BINDING_LIST_ENTRIES
+// Passes that trace rays between surfels, or in their depth maps, light nothing.
+#define BINDING_KEPT_SURFELS BINDING_SHADOWS
+#define BINDING_LAST_FORM_FACTORS BINDING_TRACED_VPLS
+#define BINDING_LAST_COVER BINDING_PATH_WEIGHTS
+#define BINDING_LISTED_SURFELS BINDING_FLUX
+#define BINDING_NEW_MAPS BINDING_SHADOWS
 // Passes that gather VPLs read no light lists.
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_FILL_MASK BINDING_LIST_COUNT
@@ -93,7 +99,12 @@
 #define SAMPLE_COLUMNS 24   // of the grid of pixels in vpl_samples.comp
 #define SAMPLE_ROWS 18
 #define INSPECT_GROUP 64    // invocations of a work group of inspect_range.comp: a power of two
+#define NO_SURFEL 0xffffffffu
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
+// Rays that an invocation of surfel_light.comp casts to sources of one kind in a dispatch, at most. Each ray loops over
+// nodes of the BVH, and software drivers stop all loops of an invocation after 65,535 iterations in total.
+#define MOST_POINT_RAYS 64
+#define MOST_CELL_SHARES 16 // of many sources, which the points of a cell divide among them, unless a point's share is too large
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
 #define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl

@@ -115,7 +115,7 @@ struct TileDepth {
 #define VPL_PLACED 0u
 #define VPL_ESCAPED 1u  // the path has left the scene before this bounce
 
-// A VPL at a bounce of a path. Its depth map is in the slot of its index.
+// A VPL at a bounce of a path. Its depth map is in the slot of its index, and shows the hemisphere.
 struct TracedVpl {
     vec3 position;    // metres, on the surface
     uint state;       // VPL_*
@@ -136,12 +136,14 @@ struct Surfel {
     vec3 normal;       // unit; of deformed triangles without area 0
     uint point_count;  // points of its cell
     float area;        // m², of its cell
-    float radius2;     // m², squared radius of the disc of that area
-    float pad0 DEFAULT(0.0);
-    float pad1 DEFAULT(0.0);
+    float width2;      // m², squared width of its cell: the area of a square one
+    uint map DEFAULT(0u);   // slot of its depth map, and SURFEL_MAP_OF_FOCUS; unused if it emits light
+    uint seed DEFAULT(0u);  // of its random directions
 };
 
-// A surfel with the light that its cell reflects, as a VPL. Its depth map is in the slot of its index.
+#define SURFEL_MAP_OF_FOCUS 0x80000000u  // the depth map is a picture of VplConstants::focus_*, not of the hemisphere
+
+// A surfel with the light that its cell reflects, as a VPL.
 struct LitSurfel {
     vec3 position;     // metres, of the surfel; its depth map is seen from ray_offset above it
     uint first_point;  // index of its cell's first LitPoint
@@ -151,6 +153,10 @@ struct LitSurfel {
     float radius2;     // m², squared radius of the disc that the flux comes from
     vec3 flux;
     float area;        // m², of its cell
+    float width2;      // m², squared width of its cell: the area of a square one
+    uint map;          // Surfel::map
+    uint pad0 DEFAULT(0u);
+    uint pad1 DEFAULT(0u);
 };
 
 // A surfel on a surface that emits light, with that light and what its cell reflects, as a VPL.
@@ -232,7 +238,7 @@ struct VplConstants {
     uint map_tiles;           // slots along a side of a layer
     float map_side;           // texels along a side of a layer
     float map_near;           // metres, the octahedral distance at which map depth is 1
-    vec3 focus_centre;        // metres; depth maps of VPLs far from this sphere see only its surroundings
+    vec3 focus_centre;        // metres; SURFEL_MAP_OF_FOCUS: depth maps of surfels far from this sphere see it alone
     float focus_radius;       // metres; 0: there is no such sphere
 };
 

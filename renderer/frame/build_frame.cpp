@@ -7,6 +7,7 @@
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/sky/sky_vpls.hpp"
 #include "renderer/passes/surfels/surfel_light.hpp"
+#include "renderer/passes/surfels/surfel_visibility.hpp"
 #include "renderer/passes/vpls/vpl_maps.hpp"
 #include "renderer/passes/vpls/vpl_trace.hpp"
 
@@ -101,7 +102,7 @@ WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& 
 /// What all sets of surfels have in common.
 struct SurfelInputs {
     ValueHandle<SceneMotion> motion;
-    ValueHandle<std::vector<Focus>> foci;
+    SurfelFoci foci;
     SurfelSources sources;
 };
 
@@ -129,10 +130,10 @@ VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
                                         inputs.foci, wanted.settings);
     const SurfelVisibility visibility =
         add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion);
-    return {
-        .vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, inputs.sources, wanted.settings.bounces,
-                                 wanted.shown),
-        .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.set, inputs.motion}, inputs.foci}};
+    return {.vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, inputs.sources,
+                                     wanted.settings.bounces, wanted.shown),
+            .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion},
+                       inputs.foci.of_maps}};
 }
 
 VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
@@ -161,7 +162,7 @@ VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const Lit
     if (occluded) visibility.method = VplVisibility::rays;
     const VplLight light{.vpls = set.vpls,
                          .common = add_vpl_constants(graph, gpu, lit.tracing.metrics, set.vpls.counts,
-                                                     set.mapped.foci, visibility),
+                                                     set.mapped.focus, visibility),
                          .rays = occluded ? std::optional(lit.tracing) : std::nullopt};
     graph.append_to_names("");
     return light;
@@ -181,7 +182,7 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
     const VplSet set = add_vpl_set(graph, gpu, wanted, lit, refinement, inputs);
     frame.vpls = set.vpls;
     VplLight light{.vpls = set.vpls,
-                   .common = add_vpl_constants(graph, gpu, frame.metrics, set.vpls.counts, set.mapped.foci,
+                   .common = add_vpl_constants(graph, gpu, frame.metrics, set.vpls.counts, set.mapped.focus,
                                                configuration.visibility)};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, set.mapped, light.common);

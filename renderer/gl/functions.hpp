@@ -60,6 +60,7 @@
     X(NamedBufferStorage, NAMEDBUFFERSTORAGE) \
     X(NamedBufferSubData, NAMEDBUFFERSUBDATA) \
     X(GetNamedBufferSubData, GETNAMEDBUFFERSUBDATA) \
+    X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA) \
     X(BindBuffer, BINDBUFFER) \
     X(BindBufferBase, BINDBUFFERBASE) \
     X(BindBufferRange, BINDBUFFERRANGE) \

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -30,6 +32,20 @@ void upload(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, std::span<co
 template <class T>
 void upload_one(const Gpu& gpu, Execution& run, BufferHandle<T> buffer, const T& element) {
     upload<T>(gpu, run, buffer, {&element, 1});
+}
+
+/// Copies the first `count` elements of a buffer that the running pass writes with Usage::storage to another,
+/// which it writes with Usage::copy; fewer if there are not so many. To be called before the pass reserves
+/// `from`.
+template <class T>
+void copy_content(const Gpu& gpu, Execution& run, BufferHandle<T> from, BufferHandle<T> to,
+                  std::uint64_t count) {
+    count = std::min(count, run.count(from));
+    run.reserve(to, count);
+    // The graph plans the barriers for shaders only, as the pass declares one usage.
+    gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gpu.gl().CopyNamedBufferSubData(run.object(from), run.object(to), 0, 0,
+                                    static_cast<GLsizeiptr>(count * sizeof(T)));
 }
 
 }  // namespace candela

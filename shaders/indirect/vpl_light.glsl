@@ -49,7 +49,7 @@ vec3 irradiance_from_traced(uint index, TracedVpl vpl, VplPose pose, Surface sur
 // frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
     TracedVpl vpl = traced_vpls[index];
-    VplPose pose = vpl_pose(vpl.position, vpl.normal);
+    VplPose pose = vpl_pose(vpl.position, vpl.normal, index);
     for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_traced(index, vpl, pose, surfaces[s]);
 }
 
@@ -75,18 +75,18 @@ vec3 unoccluded_from_points(uint first, uint count, Surface surface) {
 
 // π times the unoccluded irradiance from the cell of a surfel. Near the cell, its points are evaluated one by one.
 vec3 unoccluded_from_cell(LitSurfel surfel, Surface surface) {
-    if (is_near(surfel.position - surface.position, surfel.area)) {
+    if (is_near(surfel.position - surface.position, surfel.width2)) {
         return unoccluded_from_points(surfel.first_point, surfel.point_count, surface);
     }
     return surfel.flux * disc_term_at(surface, surfel.centre, surfel.normal, surfel.radius2);
 }
 
-// π times the irradiance from a surfel, whose index is that of its depth map.
-vec3 irradiance_from_surfel(uint index, LitSurfel surfel, VplPose pose, Surface surface) {
+// π times the irradiance from a surfel.
+vec3 irradiance_from_surfel(LitSurfel surfel, VplPose pose, Surface surface) {
     if (surfel.flux == vec3(0.0)) return vec3(0.0);
     vec3 unoccluded = unoccluded_from_cell(surfel, surface);
     if (unoccluded == vec3(0.0)) return vec3(0.0);
-    return unoccluded * visibility_of_vpl(index, pose, surface);
+    return unoccluded * visibility_of_vpl(surfel.map, pose, surface);
 }
 
 #ifdef EMITTERS
@@ -119,8 +119,8 @@ vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
 void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
         LitSurfel surfel = lit_surfels[index];
-        VplPose pose = vpl_pose(surfel.position, surfel.normal);
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_surfel(index, surfel, pose, surfaces[s]);
+        VplPose pose = vpl_pose(surfel.position, surfel.normal, surfel.map);
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_surfel(surfel, pose, surfaces[s]);
         return;
     }
 #ifdef EMITTERS

@@ -1,4 +1,4 @@
-// Surfels: points spread evenly over the surfaces, which gather light and reflect it. Each surfel represents a cell,
+// Surfels: points on the surfaces, which gather light and reflect it. Each surfel represents a cell,
 // the part of the surface around it. A cell is sampled by its cell points (types.glsl, CellPoint).
 #include "bindings.glsl"
 #include "vpls/disc.glsl"

@@ -13,13 +13,15 @@ layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccoun
 
 uniform uint bounce;  // number of the last bounce that was gathered; 1: none yet
 
-const float LITTLE = 1e-3;  // share of the directly reflected flux; gathering stops when no more than that is left
+// Gathering stops when the last bounce adds no more than this share to the light of any cell. A share of all light would
+// not do: that in a house is little beside that on the ground around it.
+const float LITTLE = 2e-4;
 
 shared vec3 emitted[SURFEL_GROUP];
 shared vec3 absorbed[SURFEL_GROUP];
 shared vec3 escaped[SURFEL_GROUP];
 shared vec3 truncated[SURFEL_GROUP];
-shared vec3 reflected[SURFEL_GROUP];
+shared bool is_spent[SURFEL_GROUP];
 
 // Flux that a cell reflects after the last bounce, which no surfel gathers any more.
 vec3 left_over(uint id, CellLight cell) {
@@ -30,7 +32,8 @@ vec3 left_over(uint id, CellLight cell) {
 void main() {
     if (bounce > 1u && flux[0].spent != 0u) return;
     uint lane = gl_LocalInvocationID.x;
-    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = reflected[lane] = vec3(0.0);
+    emitted[lane] = absorbed[lane] = escaped[lane] = truncated[lane] = vec3(0.0);
+    is_spent[lane] = true;
     for (uint id = lane; id < surfel_count; id += SURFEL_GROUP) {
         CellLight cell = cells[id];
         vec3 left = left_over(id, cell);
@@ -39,19 +42,17 @@ void main() {
         absorbed[lane] += cell.arriving + cell.emitted - cell.direct + (1.0 - cell.albedo) * indirect;
         escaped[lane] += rows[id].y * (cell.direct + cell.albedo * indirect - left);
         truncated[lane] += left;
-        reflected[lane] += cell.direct - cell.emitted;
+        if (any(greaterThan(left, LITTLE * (cell.direct + cell.albedo * indirect)))) is_spent[lane] = false;
     }
     barrier();
     if (lane > 0u) return;
-    vec3 first = vec3(0.0);
-    FluxAccount account = FluxAccount(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    FluxAccount account = FluxAccount(vec3(0.0), 1u, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     for (uint i = 0u; i < SURFEL_GROUP; ++i) {
         account.emitted += emitted[i];
         account.absorbed += absorbed[i];
         account.escaped += escaped[i];
         account.truncated += truncated[i];
-        first += reflected[i];
+        if (!is_spent[i]) account.spent = 0u;
     }
-    if (all(lessThanEqual(account.truncated, LITTLE * first))) account.spent = 1u;
     flux[0] = account;
 }

@@ -24,7 +24,7 @@ vec3 from_lit_cell(Surfel from, uint other) {
     vec3 reflected = cell.direct - cell.emitted;
     if (reflected == vec3(0.0)) return vec3(0.0);
     Surfel to = surfels[other];
-    if (!is_near(to.position - from.position, to.area)) {
+    if (!is_near(to.position - from.position, to.width2)) {
         return reflected / PI * disc_term(cell.centre, to.normal, cell.radius2, from.position, from.normal);
     }
     vec3 sum = vec3(0.0);

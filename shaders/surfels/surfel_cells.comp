@@ -38,7 +38,7 @@ void main() {
         first += w * off;
         second += w * dot(off, off);
     }
-    CellLight cell = CellLight(surfel.position, surfel.radius2, arriving, 0.0, direct, 0.0, emitted, 0.0,
+    CellLight cell = CellLight(surfel.position, surfel.area / PI, arriving, 0.0, direct, 0.0, emitted, 0.0,
                                from_emitters, 0.0, vec3(0.0), area, vec3(0.0), 0.0);
     if (area > 0.0) cell.albedo = albedo / area;
     if (weight > 0.0) {

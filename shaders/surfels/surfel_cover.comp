@@ -1,10 +1,12 @@
 // Finds which share of a surfel's hemisphere is covered by reflecting surfaces, with COVER_PARTS · COVER_RAYS
-// cosine-weighted rays. The form factors of the surfel's row should add up to it. One work group per surfel, COVER_RAYS
-// rays an invocation, which bounds its loops.
+// cosine-weighted rays. The form factors of the surfel's row should add up to it. A surfel that stays keeps what its rays
+// have found, unless they pass a changed box. One work group per surfel, COVER_RAYS rays an invocation, which bounds its
+// loops.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "sampling.glsl"
 #include "surfels/surfel.glsl"
+#include "surfels/surfel_kept.glsl"
 
 layout(local_size_x = COVER_PARTS) in;
 
@@ -19,22 +21,26 @@ bool reflects(Hit hit, vec3 direction) {
     return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
 }
 
-vec3 ray_direction(Surfel surfel, uint id, uint i) {
-    return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, id));
+vec3 ray_direction(Surfel surfel, uint i) {
+    return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, surfel.seed));
+}
+
+bool rays_may_have_changed(Surfel surfel) {
+    if (everything_changed || changed_box_count == 0u) return everything_changed;
+    for (uint i = 0u; i < COVER_RAYS; ++i) {
+        if (may_have_changed(surfel.position, ray_direction(surfel, i), 1.0 / 0.0)) return true;
+    }
+    return false;
 }
 
 void main() {
     uint id = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
     if (id >= surfel_count) return;
     Surfel surfel = surfels[id];
-    bool changed = false;
-    for (uint i = 0u; i < COVER_RAYS && !changed; ++i) {
-        changed = may_have_changed(surfel.position, ray_direction(surfel, id, i), 1.0 / 0.0);
-    }
-    if (!changed) return;
+    if (!rays_may_have_changed(surfel) && kept[id] != NO_SURFEL) return;
     uint hits = 0u;
     for (uint i = 0u; i < COVER_RAYS; ++i) {
-        vec3 direction = ray_direction(surfel, id, i);
+        vec3 direction = ray_direction(surfel, i);
         Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
         if (reflects(hit, direction)) ++hits;
     }

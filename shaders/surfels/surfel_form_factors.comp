@@ -1,9 +1,11 @@
 // Form factors: the share of a surfel's cosine-weighted hemisphere that the cell in each column fills, 0 where a ray
-// finds the other surfel hidden. One invocation per row and two columns; work groups: x along rows, y along pairs of
-// columns.
+// finds the other surfel hidden. Pairs of surfels that stay keep theirs, unless the ray passes a changed box. One
+// invocation per row and two columns; work groups: x along rows, y along pairs of columns, of all or of those that are
+// listed.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "surfels/surfel.glsl"
+#include "surfels/surfel_kept.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
@@ -11,11 +13,17 @@ layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Sur
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_FORM_FACTORS) restrict buffer FormFactors { uint form_factors[]; };
 
+// Indices of rows, then of pairs of columns.
+layout(std430, binding = BINDING_LISTED_SURFELS) readonly restrict buffer Listed { uint listed[]; };
+
+uniform uint listed_rows;   // number of them; 0: all rows
+uniform uint listed_pairs;  // number of them; 0: all pairs
+uniform uint first_pair;    // place of the first pair in the list
 uniform float ray_offset;  // metres above both surfaces, where rays start and end
 
 float form_factor(Surfel from, Surfel to) {
-    if (!is_near(to.position - from.position, to.area)) {
-        return to.area / PI * disc_term(to.position, to.normal, to.radius2, from.position, from.normal);
+    if (!is_near(to.position - from.position, to.width2)) {
+        return to.area / PI * disc_term(to.position, to.normal, to.area / PI, from.position, from.normal);
     }
     float sum = 0.0;
     for (uint i = 0u; i < to.point_count; ++i) {
@@ -31,16 +39,21 @@ bool sees(Surfel from, Surfel to) {
     return !any_hit(origin, target - origin, 0.0, 1.0);
 }
 
-bool pair_may_have_changed(uint row, uint column) {
+bool has_surfel(uint row, uint column) { return column < columns && surfel_of(row, column) < surfel_count; }
+
+// Whether the factor that is there still holds.
+bool pair_stays(uint row, uint column) {
+    if (everything_changed || kept[row] == NO_SURFEL) return false;
+    if (!has_surfel(row, column)) return true;
     uint other = surfel_of(row, column);
-    if (column >= columns || other >= surfel_count) return everything_changed;
+    if (kept[other] == NO_SURFEL) return false;
     vec3 from = surfels[row].position;
-    return may_have_changed(from, surfels[other].position - from, 1.0);
+    return !may_have_changed(from, surfels[other].position - from, 1.0);
 }
 
 float visible_form_factor(uint row, uint column) {
     uint other = surfel_of(row, column);
-    if (column >= columns || other >= surfel_count || other == row) return 0.0;
+    if (!has_surfel(row, column) || other == row) return 0.0;
     Surfel from = surfels[row];
     Surfel to = surfels[other];
     float factor = form_factor(from, to);
@@ -48,10 +61,15 @@ float visible_form_factor(uint row, uint column) {
 }
 
 void main() {
-    uint row = gl_GlobalInvocationID.x;
-    uint pair = gl_WorkGroupID.y;
-    if (2u * pair >= columns || row >= surfel_count) return;
-    if (!pair_may_have_changed(row, 2u * pair) && !pair_may_have_changed(row, 2u * pair + 1u)) return;
-    vec2 factors = vec2(visible_form_factor(row, 2u * pair), visible_form_factor(row, 2u * pair + 1u));
-    form_factors[form_factors_at(row, pair)] = packHalf2x16(factors);
+    if (gl_GlobalInvocationID.x >= (listed_rows > 0u ? listed_rows : surfel_count)) return;
+    uint row = listed_rows > 0u ? listed[gl_GlobalInvocationID.x] : gl_GlobalInvocationID.x;
+    uint pair = listed_pairs > 0u ? listed[first_pair + gl_WorkGroupID.y] : gl_WorkGroupID.y;
+    if (2u * pair >= columns) return;
+    bvec2 stay = bvec2(pair_stays(row, 2u * pair), pair_stays(row, 2u * pair + 1u));
+    if (all(stay)) return;
+    uint place = form_factors_at(row, pair);
+    vec2 factors = unpackHalf2x16(form_factors[place]);
+    if (!stay.x) factors.x = visible_form_factor(row, 2u * pair);
+    if (!stay.y) factors.y = visible_form_factor(row, 2u * pair + 1u);
+    form_factors[place] = packHalf2x16(factors);
 }

@@ -21,10 +21,8 @@ uniform uint light_count;
 uniform float ray_offset;    // metres; rays start above the surface and end before the light, which may lie on another
 uniform uint surfel_count;
 uniform uint emitting_count;  // surfels that emit light: the last ones
-uniform uint emitter_shares;  // a cell point receives the light of one in so many of them, and of all near its cell
 #ifdef SKY
 uniform uint sky_patch_count;
-uniform uint sky_shares;  // a cell point receives the light of one in so many patches
 #endif
 
 // Most emitting surfels for which each cell point sums all that are near. With more, an invocation would have more rays
@@ -67,27 +65,31 @@ vec3 visible_from_cell(Surfel emitter, CellPoint point) {
 // of a cell together receive all sources.
 struct Share {
     uint first;
+    uint step;  // `shares`
     float weight;
 };
 
-Share share_of(uint id, Surfel own, uint shares) {
+// As many shares as the cell has points, up to MOST_CELL_SHARES, but enough that a point casts MOST_POINT_RAYS at most.
+Share share_of(uint id, Surfel own, uint sources) {
+    uint least = (sources + MOST_POINT_RAYS - 1u) / MOST_POINT_RAYS;
+    uint shares = clamp(own.point_count, least, max(MOST_CELL_SHARES, least));
     bool covers_all = shares <= own.point_count;
     uint first = (covers_all ? id - own.first_point : id) % shares;
     // How many points of the cell have the same share.
     float same = float((own.point_count - 1u - first) / shares + 1u);
-    return Share(first, covers_all ? float(own.point_count) / same : float(shares));
+    return Share(first, shares, covers_all ? float(own.point_count) / same : float(shares));
 }
 
 // Irradiance from surfaces that emit light: the point's share of them, and all that are near its cell.
 vec3 irradiance_from_emitters(uint id, CellPoint point) {
     Surfel own = surfels[point.surfel];
-    Share share = share_of(id, own, emitter_shares);
+    Share share = share_of(id, own, emitting_count);
     bool sums_near = emitting_count <= MOST_NEAR_EMITTERS;
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < emitting_count; ++i) {
         Surfel emitter = surfels[surfel_count - emitting_count + i];
-        bool near = sums_near && is_near(emitter.position - own.position, own.area + emitter.area);
-        if (near || i % emitter_shares == share.first) sum += (near ? 1.0 : share.weight) * visible_from_cell(emitter, point);
+        bool near = sums_near && is_near(emitter.position - own.position, own.width2 + emitter.width2);
+        if (near || i % share.step == share.first) sum += (near ? 1.0 : share.weight) * visible_from_cell(emitter, point);
     }
     return sum;
 }
@@ -95,10 +97,10 @@ vec3 irradiance_from_emitters(uint id, CellPoint point) {
 #ifdef SKY
 
 vec3 irradiance_from_sky(uint id, CellPoint point) {
-    Share share = share_of(id, surfels[point.surfel], sky_shares);
+    Share share = share_of(id, surfels[point.surfel], sky_patch_count);
     vec3 origin = point.position + ray_offset * point.normal;
     vec3 sum = vec3(0.0);
-    for (uint i = share.first; i < sky_patch_count; i += sky_shares) {
+    for (uint i = share.first; i < sky_patch_count; i += share.step) {
         PatchLight light = light_of_patch(sky_patches[i], point.normal);
         if (light.cosine > 0.0 && !any_hit(origin, light.direction, 0.0, 1.0 / 0.0)) {
             sum += light.cosine / PI * sky_patches[i].light;

@@ -28,7 +28,7 @@ void write_points(Surfel surfel, vec3 indirect) {
 // `spread`: flux of indirect light that the cell reflects, evenly over its area.
 LitSurfel lit_surfel(Surfel surfel, CellLight cell, vec3 spread, vec3 flux) {
     vec3 centre = surfel.position;
-    float radius2 = surfel.radius2;
+    float radius2 = surfel.area / PI;
     float direct_weight = dot(cell.direct, vec3(1.0));
     float spread_weight = dot(spread, vec3(1.0));
     if (direct_weight + spread_weight > 0.0) {
@@ -41,7 +41,7 @@ LitSurfel lit_surfel(Surfel surfel, CellLight cell, vec3 spread, vec3 flux) {
         radius2 = min(mix(radius2, cell.radius2, share) + between, radius2);
     }
     return LitSurfel(surfel.position, surfel.first_point, surfel.normal, surfel.point_count, centre, radius2, flux,
-                     surfel.area);
+                     surfel.area, surfel.width2, surfel.map, 0u, 0u);
 }
 
 #ifdef EMITTERS

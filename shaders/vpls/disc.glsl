@@ -30,5 +30,5 @@ float disc_term(vec3 position, vec3 normal, float radius2, vec3 from, vec3 from_
     return disc_term(position, normal, radius2, from, from_normal, from_normal);
 }
 
-// Whether a cell of that area is nearer than three times its width. Its points are then evaluated one by one.
-bool is_near(vec3 apart, float area) { return dot(apart, apart) < 9.0 * area; }
+// Whether a cell of that squared width is nearer than three times its width. Its points are then evaluated one by one.
+bool is_near(vec3 apart, float width2) { return dot(apart, apart) < 9.0 * width2; }

@@ -1,20 +1,32 @@
-// The VPLs that have depth maps, each in the slot of its index: surfels (SURFELS), or traced VPLs.
+// The VPLs that have depth maps: surfels (SURFELS), or traced VPLs, each in the slot of its index. Behind them follow the
+// slots that surfels had in the last frame and have no more.
 #include "bindings.glsl"
 #include "types.glsl"
+#include "vpls/vpl_constants.glsl"
 
 struct MappedVpl {
     vec3 position;  // metres, on the surface
     vec3 normal;    // unit
+    uint map;       // see vpl_atlas.glsl
 };
 
 #ifdef SURFELS
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
+layout(std430, binding = BINDING_NEW_MAPS) readonly restrict buffer NewMaps { uint new_maps[]; };
 
-// All but those on deformed triangles without area.
-bool has_map(uint index) { return surfels[index].normal != vec3(0.0); }
+bool is_freed(uint index) { return index >= vpl_constants.first_emitter; }
 
-MappedVpl mapped_vpl(uint index) { return MappedVpl(surfels[index].position, surfels[index].normal); }
+// All but those on deformed triangles without area, and freed slots.
+bool has_map(uint index) { return !is_freed(index) && surfels[index].normal != vec3(0.0); }
+
+// Whether all of the slot has to be drawn, as it was of another surfel. Unknown if everything has changed.
+bool is_new(uint index) { return is_freed(index) || new_maps[index] != 0u; }
+
+MappedVpl mapped_vpl(uint index) {
+    if (is_freed(index)) return MappedVpl(vec3(0.0), vec3(0.0), index);
+    return MappedVpl(surfels[index].position, surfels[index].normal, surfels[index].map);
+}
 
 #else
 
@@ -22,6 +34,8 @@ layout(std430, binding = BINDING_TRACED_VPLS) readonly restrict buffer TracedVpl
 
 bool has_map(uint index) { return traced_vpls[index].state == VPL_PLACED; }
 
-MappedVpl mapped_vpl(uint index) { return MappedVpl(traced_vpls[index].position, traced_vpls[index].normal); }
+bool is_new(uint index) { return true; }
+
+MappedVpl mapped_vpl(uint index) { return MappedVpl(traced_vpls[index].position, traced_vpls[index].normal, index); }
 
 #endif

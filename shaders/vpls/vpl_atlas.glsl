@@ -1,6 +1,7 @@
 // The atlas of the VPLs' depth maps: square slots (VplTile) in the layers of an array texture. A slot holds what is seen
 // from a VPL (MapFrame): the hemisphere above its surface in the hemi-octahedral map, or, if the VPL is far from the
-// focus, a perspective picture of the focus, in which a texel is much smaller there. Depth is the inverse of the
+// focus (SURFEL_MAP_OF_FOCUS), a perspective picture of the focus, in which a texel is much smaller there. `map` is
+// Surfel::map, or the index of a traced VPL. Depth is the inverse of the
 // octahedral distance |x| + |y| + z or of z, so that it is linear over a plane (theory.md, "One plane in a VPL map"): 1 at
 // VplConstants::map_near and nearer, 0 where there is no surface.
 #include "maths.glsl"
@@ -14,9 +15,10 @@ struct VplTile {
 
 VplTile vpl_tile(uint map) {
     uint tiles = vpl_constants.map_tiles;
-    uint of_layer = map % (tiles * tiles);
+    uint slot = map & ~SURFEL_MAP_OF_FOCUS;
+    uint of_layer = slot % (tiles * tiles);
     uvec2 place = uvec2(of_layer % tiles, of_layer / tiles);
-    return VplTile(place * vpl_constants.map_resolution, map / (tiles * tiles));
+    return VplTile(place * vpl_constants.map_resolution, slot / (tiles * tiles));
 }
 
 // Where the depth map of a VPL at that position is seen from.
@@ -30,11 +32,11 @@ struct MapFrame {
     float width;  // half a diagonal of the square that the map covers on that surface
 };
 
-MapFrame vpl_map_frame(vec3 position, vec3 normal) {
+MapFrame vpl_map_frame(vec3 position, vec3 normal, uint map) {
     vec3 to_focus = vpl_constants.focus_centre - position;
     float radius2 = vpl_constants.focus_radius * vpl_constants.focus_radius;
     float distance2 = dot(to_focus, to_focus);
-    bool is_far = radius2 > 0.0 && distance2 > 4.0 * radius2;
+    bool is_far = (map & SURFEL_MAP_OF_FOCUS) != 0u;
     vec3 axis = is_far ? to_focus * inversesqrt(distance2) : normal;
     vec3 tangent, bitangent;
     basis_around(axis, tangent, bitangent);

@@ -1,4 +1,5 @@
-// Emits the square of a VPL's slot in its layer of the atlas. One invocation per VPL.
+// Emits the square of a VPL's slot in its layer of the atlas, if anything in it may have changed. One invocation per VPL
+// or freed slot.
 #include "scene/changed_boxes.glsl"
 #include "vpls/mapped_vpl.glsl"
 #include "vpls/vpl_atlas.glsl"
@@ -9,12 +10,17 @@ layout(triangle_strip, max_vertices = 4) out;
 flat in uint vpl_id[];
 flat out uint vpl_index;
 
+bool is_outdated(uint index, MappedVpl vpl) {
+    if (everything_changed) return has_map(index);  // the atlas is cleared
+    if (is_new(index)) return true;
+    bool sees_above = (vpl.map & SURFEL_MAP_OF_FOCUS) == 0u;
+    return has_map(index) && (!sees_above || may_have_changed_above(vpl.position, vpl.normal));
+}
+
 void main() {
-    if (!has_map(vpl_id[0])) return;
     MappedVpl vpl = mapped_vpl(vpl_id[0]);
-    bool sees_above = vpl_map_frame(vpl.position, vpl.normal).bend > 0.0;
-    if (sees_above && !may_have_changed_above(vpl.position, vpl.normal)) return;
-    VplTile tile = vpl_tile(vpl_id[0]);
+    if (!is_outdated(vpl_id[0], vpl)) return;
+    VplTile tile = vpl_tile(vpl.map);
     for (uint i = 0u; i < 4u; ++i) {
         uvec2 texel = tile.corner + uvec2(i & 1u, i >> 1u) * vpl_constants.map_resolution;
         gl_Position = vec4(vec2(texel) / vpl_constants.map_side * 2.0 - 1.0, 0.0, 1.0);

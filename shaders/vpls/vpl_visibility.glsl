@@ -40,8 +40,8 @@ struct VplPose {
     MapFrame frame;
 };
 
-VplPose vpl_pose(vec3 position, vec3 normal) {
-    return VplPose(vpl_map_origin(position, normal), vpl_map_frame(position, normal));
+VplPose vpl_pose(vec3 position, vec3 normal, uint map) {
+    return VplPose(vpl_map_origin(position, normal), vpl_map_frame(position, normal, map));
 }
 
 layout(binding = UNIT_VPL_MAPS) uniform sampler2DArray vpl_maps;
@@ -114,7 +114,7 @@ float lift_above_map(float aside, float distance, float sine) {
 const float OUTSIDE = 1.0;  // visibility beyond the field of view of a perspective map
 
 // Share of the VPL's light that reaches the surface, in [0, 1]. Where the map sees one plane in the surface's direction,
-// it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons. `map`: its slot.
+// it is 0 or 1, by the exact depth of that plane. Elsewhere it comes from four depth comparisons. `map`: see vpl_atlas.glsl.
 float visibility_of_vpl(uint map, VplPose pose, Surface surface) {
     MapFrame frame = pose.frame;
     vec3 facing = frame.map_from_world * face_normal(surface);
@@ -139,7 +139,7 @@ struct VplPose {
     vec3 normal;
 };
 
-VplPose vpl_pose(vec3 position, vec3 normal) { return VplPose(position, normal); }
+VplPose vpl_pose(vec3 position, vec3 normal, uint map) { return VplPose(position, normal); }
 
 #if defined(VPL_VISIBILITY_RAYS)
 

@@ -179,7 +179,7 @@ std::vector<FaultCase> transform_faults() {
                   "it reaches farther than 1e+09 metres from the origin"),
         misplaced(MeshInstance{square(0.3F, emitter(glm::vec3(2.0F)))}, nowhere, upside_down_at(in_the_box)),
         misplaced(PointLight{.intensity = 0.1F}, nowhere, right),
-        misplaced(SpotLight{.intensity = 1.0F}, turned, right),
+        misplaced(SpotLight{.intensity = 1.0F, .outer_cone = 1.3F}, turned, right),
         misplaced(DirectionalLight{.illuminance = 0.5F}, turned, looking({0, 1, 3}, {0, 1, 0})),
         {"left out, because the world matrix is not finite", by_parent, sets(right)}};
 }
@@ -196,7 +196,7 @@ std::vector<FaultCase> light_faults() {
         return bad_light<PointLight>(std::move(words), {.intensity = 0.1F}, change);
     };
     const auto spot = [](std::string words, const std::function<void(SpotLight&)>& change) {
-        return bad_light<SpotLight>(std::move(words), {.intensity = 1.0F}, change);
+        return bad_light<SpotLight>(std::move(words), {.intensity = 1.0F, .outer_cone = 1.3F}, change);
     };
     const auto sun = [](std::string words, const std::function<void(DirectionalLight&)>& change) {
         return bad_light<DirectionalLight>(std::move(words), {.illuminance = 0.5F}, change);

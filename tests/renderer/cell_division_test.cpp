@@ -93,7 +93,8 @@ void add_cell(SurfelSet& set, const std::vector<glm::vec3>& positions,
                            .normal = normals[0],
                            .point_count = count,
                            .area = 1.0F,
-                           .radius2 = glm::one_over_pi<float>()});
+                           .width2 = 1.0F});
+    set.ids.push_back(set.surfels.size());
     set.surfel_places.push_back(set.point_places[first]);
     set.item_of.push_back(static_cast<std::uint32_t>(set.surfels.size() % 3));
 }
@@ -150,7 +151,6 @@ void check_consistent(const SurfelSet& set) {
         }
         CHECK(is_at_point);
         CHECK(surfel.area == doctest::Approx(area));
-        CHECK(surfel.radius2 == doctest::Approx(area * glm::one_over_pi<float>()));
     }
     CHECK(next == set.points.size());
 }

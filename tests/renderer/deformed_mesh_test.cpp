@@ -140,7 +140,7 @@ TEST_SUITE("deformed meshes") {
 
     TEST_CASE_FIXTURE(RenderFixture, "a mesh that is stretched reflects as much as a mesh of that size") {
         Configuration configuration = lit(VplPlacement::surfels, VplVisibility::rays);
-        configuration.vpls.count = 256;
+        configuration.vpls.count = 1024;
         configuration.show = Show::indirect;
         configure(configuration);
         const auto mesh = cloth(6, diffuse({0.8F, 0.8F, 0.8F}, true));

@@ -54,6 +54,11 @@ SceneTriangles cube() {
     return scene;
 }
 
+SurfelSet placed(const SceneTriangles& scene, const SurfelCounts& counts, std::uint32_t seed,
+                 const std::vector<std::vector<Focus>>& foci = {}) {
+    return SurfelPlacement(scene, seed).place(counts, foci);
+}
+
 double total_area(const SurfelSet& set) {
     double area = 0.0;
     for (const gpu::Surfel& surfel : set.surfels) area += static_cast<double>(surfel.area);
@@ -86,7 +91,7 @@ TEST_SUITE("surfels: placement") {
     TEST_CASE("cells cover the area of all surfaces, and have about equal areas") {
         for (const std::uint32_t count : {24U, 100U, 1000U}) {
             CAPTURE(count);
-            const SurfelSet set = place_surfels(cube(), {.reflecting = count}, test_seed());
+            const SurfelSet set = placed(cube(), {.reflecting = count}, test_seed());
             CHECK(set.surfels.size() <= count);
             CHECK(set.surfels.size() > 0.8 * count);
             CHECK(total_area(set) == doctest::Approx(24.0).epsilon(1e-4));
@@ -96,14 +101,14 @@ TEST_SUITE("surfels: placement") {
                 const double off = static_cast<double>(surfel.area) / mean - 1.0;
                 squares += off * off;
             }
-            // The areas of the cells of random points have a standard deviation of 0.53 times their mean
-            // (Voronoi cells: Gilbert, 1962).
-            CHECK(std::sqrt(squares / static_cast<double>(set.surfels.size())) < 0.4);
+            // More even than the cells of random points, whose areas have a standard deviation of 0.53 times
+            // their mean (Voronoi cells: Gilbert, 1962).
+            CHECK(std::sqrt(squares / static_cast<double>(set.surfels.size())) < 0.5);
         }
     }
 
     TEST_CASE("a cell is flat, on one side of the surface, and near its surfel") {
-        const SurfelSet set = place_surfels(cube(), {.reflecting = 200}, test_seed());
+        const SurfelSet set = placed(cube(), {.reflecting = 200}, test_seed());
         const float width = std::sqrt(24.0F / 200.0F);
         std::size_t points = 0;
         for (const gpu::Surfel& surfel : set.surfels) {
@@ -124,7 +129,7 @@ TEST_SUITE("surfels: placement") {
         add_parallelogram(sheet, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         for (const bool both : {false, true}) {
             sheet.double_sided[0] = both;
-            const SurfelSet set = place_surfels(sheet, {.reflecting = 50}, 0);
+            const SurfelSet set = placed(sheet, {.reflecting = 50}, 0);
             const auto front = std::ranges::count_if(
                 set.surfels, [](const gpu::Surfel& surfel) { return surfel.normal.z > 0.5F; });
             CHECK(total_area(set) == doctest::Approx(both ? 2.0 : 1.0).epsilon(1e-4));
@@ -137,7 +142,7 @@ TEST_SUITE("surfels: placement") {
         SceneTriangles two{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
         add_parallelogram(two, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         add_parallelogram(two, 1, {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
-        const SurfelSet set = place_surfels(two, {.reflecting = 40}, test_seed());
+        const SurfelSet set = placed(two, {.reflecting = 40}, test_seed());
         for (std::size_t i = 0; i < set.surfels.size(); ++i) {
             const gpu::Surfel& surfel = set.surfels[i];
             for (std::uint32_t p = 0; p < surfel.point_count; ++p) {
@@ -151,13 +156,12 @@ TEST_SUITE("surfels: placement") {
         constexpr float radius = 5.0F;
         SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
         add_parallelogram(plane, 0, {-half, -half, 0}, {2 * half, 0, 0}, {0, 2 * half, 0});
-        plane.foci = {{{glm::vec3(3.0F, -2.0F, 0.0F), radius}}};
-        const SurfelSet set = place_surfels(plane, {.reflecting = 1000}, test_seed());
+        const Focus focus{glm::vec3(3.0F, -2.0F, 0.0F), radius};
+        const SurfelSet set = placed(plane, {.reflecting = 1000}, test_seed(), {{focus}});
         const auto radii = [&](const gpu::Surfel& surfel) {
-            return glm::distance(surfel.position, plane.foci[0][0].centre) / radius;
+            return glm::distance(surfel.position, focus.centre) / radius;
         };
-        // Far away a single point represents 10,000 m², 1 % of the plane.
-        CHECK(total_area(set) == doctest::Approx(4.0 * half * half).epsilon(0.05));
+        CHECK(total_area(set) == doctest::Approx(4.0 * half * half).epsilon(1e-4));
         // The density falls with the third power of the distance r: within R there are πR² parts of the
         // surfels, beyond it ∫ 2πr (R/r)³ dr = 2πR² (1 - R/500 m). It is constant within parts of half a
         // distance.
@@ -175,11 +179,73 @@ TEST_SUITE("surfels: placement") {
         CHECK((far / far_count) / (near / near_count) > 30.0);
     }
 
+    TEST_CASE("most surfels stay where a focus moves a little, and where it was before does not matter") {
+        SceneTriangles plane{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+        add_parallelogram(plane, 0, {-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0});
+        const auto focus_at = [](float x) {
+            return std::vector<std::vector<Focus>>{{Focus{.centre = {x, 2.0F, 0.0F}, .radius = 5.0F}}};
+        };
+        const SurfelCounts counts{.reflecting = 500};
+        SurfelPlacement walked(plane, test_seed());
+        SurfelSet before;
+        for (const float x : {300.0F, 0.0F, 0.3F, 0.6F}) {
+            CAPTURE(x);
+            const SurfelSet set = walked.place(counts, focus_at(x));
+            const SurfelSet fresh = placed(plane, counts, test_seed(), focus_at(x));
+            CHECK(set.ids == fresh.ids);
+            CHECK(std::ranges::equal(set.points, fresh.points, {}, &gpu::CellPoint::position,
+                                     &gpu::CellPoint::position));
+            if (x > 0.0F && x < 1.0F) {
+                const std::set<std::uint64_t> known(before.ids.begin(), before.ids.end());
+                const auto stay =
+                    std::ranges::count_if(set.ids, [&](std::uint64_t id) { return known.contains(id); });
+                // A step of 6 % of the radius changes the density by at most 3 · 6 %, and a cell is cut for
+                // an eighth of an octave at most, of the one in which it may be.
+                CHECK(static_cast<double>(stay) > 0.7 * static_cast<double>(set.ids.size()));
+            }
+            before = set;
+        }
+    }
+
+    TEST_CASE("of many items some have surfels, which stand for all") {
+        constexpr int count = 3000;
+        SceneTriangles many{.triangles = {}, .item_of = {}, .double_sided = {false}, .emits = {false}};
+        double area = 0.0;
+        for (int i = 0; i < count; ++i) {
+            const float size = i % 7 == 0 ? 2.0F : 0.5F;
+            add_parallelogram(many, static_cast<std::uint32_t>(i), {3.0F * static_cast<float>(i), 0, 0},
+                              {size, 0, 0}, {0, size, 0});
+            area += static_cast<double>(size * size);
+        }
+        constexpr int sets = 32;
+        double mean = 0.0;
+        for (int i = 0; i < sets; ++i) {
+            const SurfelSet set = placed(many, {.reflecting = 200}, test_seed() + static_cast<unsigned>(i));
+            CHECK(set.surfels.size() == 200);
+            mean += total_area(set) / sets;
+        }
+        // Some fifty items are chosen for each set, each at random: the mean of 32 sets is off by about
+        // 1 / √1600, 2.5 %. Four times as much is hardly ever.
+        CHECK(mean == doctest::Approx(area).epsilon(0.1));
+    }
+
+    TEST_CASE("triangles without an area have no surfels and do no harm") {
+        SceneTriangles scene{.triangles = {}, .item_of = {}, .double_sided = {true}, .emits = {false}};
+        add_parallelogram(scene, 0, {0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+        CHECK(placed(scene, {.reflecting = 20}, test_seed()).surfels.empty());
+        add_parallelogram(scene, 0, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        const SurfelSet set = placed(scene, {.reflecting = 20}, test_seed());
+        CHECK(total_area(set) == doctest::Approx(2.0).epsilon(1e-4));
+        CHECK(std::ranges::all_of(set.points, [](const gpu::CellPoint& point) {
+            return std::abs(glm::length(point.normal) - 1.0F) < 1e-5F;
+        }));
+    }
+
     TEST_CASE("another seed gives another set, and empty input gives none") {
-        CHECK(place_surfels(cube(), {.reflecting = 100}, 1).surfels[0].position !=
-              place_surfels(cube(), {.reflecting = 100}, 2).surfels[0].position);
-        CHECK(place_surfels(cube(), {.reflecting = 0}, 1).surfels.empty());
-        CHECK(place_surfels({}, {.reflecting = 100}, 1).surfels.empty());
+        CHECK(placed(cube(), {.reflecting = 100}, 1).surfels[0].position !=
+              placed(cube(), {.reflecting = 100}, 2).surfels[0].position);
+        CHECK(placed(cube(), {.reflecting = 0}, 1).surfels.empty());
+        CHECK(placed({}, {.reflecting = 100}, 1).surfels.empty());
     }
 
     TEST_CASE("an item's shape does not depend on its rotation, bit for bit") {
@@ -313,6 +379,30 @@ TEST_SUITE("surfels: light") {
         CHECK(ran("surfel-visibility"));
         const Picture after = move_by({0.3F, 0.1F, -0.4F});
         CHECK(after == from_scratch(scene, {32, 24}));
+    }
+
+    TEST_CASE_FIXTURE(SurfelTests, "after a walk the picture is that of a new renderer, bit for bit") {
+        Configuration configuration = surfels(96);
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+        configure(configuration);
+        Scene scene = room_on_ground();
+        add(scene.world, upside_down_at({30.0F, 5.0F, 0.0F}), MeshInstance{square(1.0F, emitter({3, 2, 1}))});
+        const Entity post = add(scene.world, at({24.0F, 0.0F, 3.0F}),
+                                MeshInstance{box_inwards(0.5F, diffuse(glm::vec3(0.6F), true))});
+        const auto walk_to = [&](glm::vec3 eye) {
+            scene.world.set(scene.camera, looking(eye, {25.0F, -1.0F, 2.0F}));
+            scene.world.edit<Transform>(post, [](Transform& pose) { pose.translation.z -= 0.3F; });
+            return render(scene, {32, 24});
+        };
+        // Around the room, into it and out again, by small and by large steps and, last, by none.
+        for (const glm::vec3 eye :
+             {glm::vec3(40, 2, 0), glm::vec3(38, 2, 0), glm::vec3(30, 1, 6), glm::vec3(0.0F),
+              glm::vec3(20, 3, 1), glm::vec3(36, 3, 4), glm::vec3(33, 3, 4), glm::vec3(33, 3, 4)}) {
+            CAPTURE(eye.x);
+            const Picture picture = walk_to(eye);
+            CHECK(mean(picture) > 0.0);
+            CHECK(picture == fresh_picture(scene, {32, 24}));
+        }
     }
 
     TEST_CASE_FIXTURE(SurfelTests, "a camera close to a wall does not draw the surfels of a room to it") {

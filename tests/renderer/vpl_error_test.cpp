@@ -115,7 +115,7 @@ TEST_SUITE("error of VPLs") {
     }
 
     TEST_CASE_FIXTURE(VplErrorTests, "a warning names a view for which the VPLs are too few") {
-        const Scene scene = cornell_box();
+        const Scene scene = shipped_scene("two-rooms");
         std::vector<std::string> lines;
         Renderer logged(context->get_proc(),
                         {.log = [&](std::string_view line) { lines.emplace_back(line); }});

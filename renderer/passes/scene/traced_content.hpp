@@ -25,10 +25,18 @@ class TracedContent {
     /// it must be traced. The pass then has to bring it up to date.
     [[nodiscard]] std::optional<std::vector<Box>> outdated(Execution& run, const SceneMotion& motion, Key key,
                                                            std::vector<ObjectId> objects) const {
+        const std::vector<ObjectId> held = objects;
+        return outdated(run, motion, std::move(key), held, std::move(objects));
+    }
+
+    /// The same for a pass that has moved the content from the objects `held` to others.
+    [[nodiscard]] std::optional<std::vector<Box>> outdated(Execution& run, const SceneMotion& motion, Key key,
+                                                           const std::vector<ObjectId>& held,
+                                                           std::vector<ObjectId> objects) const {
         Record now{std::move(key), std::move(objects), motion.step};
         const Record* const last = run.previous(record_);
         std::optional<std::vector<Box>> changed;
-        if (last != nullptr && last->key == now.key && last->objects == now.objects) {
+        if (last != nullptr && last->key == now.key && last->objects == held) {
             changed = changed_boxes(motion, last->step);
         }
         run.set(record_, std::move(now));

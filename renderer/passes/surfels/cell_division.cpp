@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -93,8 +92,10 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
     }
     surfel.point_count = static_cast<std::uint32_t>(to.points.size()) - surfel.first_point;
     if (surfel.point_count == 0) return;
-    surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
+    surfel.width2 *= surfel.area / set.surfels[cell].area;
+    surfel.seed += part;
     to.surfels.push_back(surfel);
+    to.ids.push_back(combine_ids(set.ids[cell], part));
     to.surfel_places.push_back(place);
     to.item_of.push_back(set.item_of[cell]);
 }

@@ -94,13 +94,33 @@ std::optional<Focus> focus_of(const CameraView& view, const TracedScene& scene, 
                               float spacing) {
     const float distance = view_distance(view, scene, metrics.ray_offset());
     if (!(distance > 0.0F)) return std::nullopt;
-    const float radius = 2.0F * std::exp2(std::floor(std::log2(distance)));
+    const float radius = 1.5F * std::exp2(std::round(8.0F * std::log2(distance)) / 8.0F);
     if (least_spacings * spacing <= radius) return std::nullopt;
-    const float step = 0.25F * radius;
+    const float step = radius / 16.0F;
     return Focus{step * glm::round(view.eye / step), radius};
 }
 
+/// None if evenly spread surfels are dense enough for a view.
+std::vector<Focus> foci_of(const std::vector<CameraView>& views, const TracedScene& scene,
+                           const SceneMetrics& metrics, std::uint32_t count) {
+    const float spacing = std::sqrt(metrics.area / static_cast<float>(std::max(count, 1U)));
+    std::vector<Focus> foci;
+    for (const CameraView& view : views) {
+        const auto focus = focus_of(view, scene, metrics, spacing);
+        if (!focus) return {};
+        foci.push_back(*focus);
+    }
+    return foci;
+}
+
 }  // namespace
+
+Focus focus_of_maps(std::span<const Focus> foci) {
+    if (foci.size() != 1) return {};
+    const float radius = std::exp2(std::ceil(std::log2(2.0F * foci.front().radius)));
+    const float step = 0.25F * radius;
+    return {step * glm::round(foci.front().centre / step), radius};
+}
 
 float density_at(std::span<const Focus> foci, const glm::vec3& place) {
     if (foci.empty()) return 1.0F;
@@ -112,10 +132,8 @@ float density_at(std::span<const Focus> foci, const glm::vec3& place) {
     return 1.0F / (radii * radii * radii);
 }
 
-ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneData& scene,
-                                                 const Tracing& tracing,
-                                                 ValueHandle<std::vector<ViewRequest>> requests,
-                                                 std::uint32_t count) {
+SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
+                            ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count) {
     return graph.add("surfel-focus", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
@@ -125,19 +143,18 @@ ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneD
         pass.read<Camera>();
         pass.read<Transform>();
         pass.parameter(count);
-        const auto out = pass.write(graph.value<std::vector<Focus>>("surfel foci"));
+        const SurfelFoci out{.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci")),
+                             .of_maps = pass.write(graph.value<Focus>("focus of maps"))};
         pass.run([=](Execution& run) {
             const TracedScene traced{*run.value(tracing.hierarchy), run.value(scene.layout),
                                      run.value(scene.placement)};
-            const SceneMetrics& metrics = run.value(tracing.metrics);
-            const float spacing = std::sqrt(metrics.area / static_cast<float>(std::max(count, 1U)));
-            std::vector<Focus> foci;
+            std::vector<CameraView> views;
             for (const ViewRequest& request : run.value(requests)) {
-                const auto focus = focus_of(requested_view(run.world(), request), traced, metrics, spacing);
-                if (!focus) return run.set(out, std::vector<Focus>{});
-                foci.push_back(*focus);
+                views.push_back(requested_view(run.world(), request));
             }
-            run.set(out, foci);
+            const std::vector<Focus> foci = foci_of(views, traced, run.value(tracing.metrics), count);
+            run.set(out.of_maps, focus_of_maps(foci));
+            run.set(out.foci, foci);
         });
         return out;
     });

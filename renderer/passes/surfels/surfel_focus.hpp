@@ -25,15 +25,25 @@ struct Focus {
 /// Density of surfels at a place, in (0, 1]: 1 in any of the spheres, or if there are none.
 [[nodiscard]] float density_at(std::span<const Focus> foci, const glm::vec3& place);
 
+/// What the depth maps of far surfels see alone: a sphere that encloses the only focus and has at least twice
+/// its radius r, a power of two, so that it has most of what is visible. Its centre is rounded to a multiple
+/// of r / 4 along each axis, and thus less than 0.22 r off, so that the maps stay while the focus moves less.
+/// Radius 0: there are no or several foci, and maps see everything.
+[[nodiscard]] Focus focus_of_maps(std::span<const Focus> foci);
+
+struct SurfelFoci {
+    ValueHandle<std::vector<Focus>> foci;
+    ValueHandle<Focus> of_maps;  ///< focus_of_maps
+};
+
 /// Adds node `surfel-focus` (CPU): where surfels should be dense, one sphere for each view. It is around the
-/// eye. Its radius is one to two times a distance, the greatest of three medians that rays find: of the
-/// surfaces in the picture, of those all around the eye, and, indoors, from what is in the picture to what
-/// lights it. It changes in steps only, so that surfels stay where they are while a camera moves a little.
+/// eye. Its radius is 1.5 times a distance, the greatest of three medians that rays find: of the surfaces in
+/// the picture, of those all around the eye, and, indoors, from what is in the picture to what lights it.
+/// Radius and centre change in steps, so that all surfels stay while a camera moves a little.
 /// There are no spheres if `count` surfels, spread evenly, are dense enough for a view. Depends on `requests`
 /// (imported: all views), Camera, Transform, and the scene's layout and placement.
-[[nodiscard]] ValueHandle<std::vector<Focus>> add_surfel_focus(FrameGraph& graph, const SceneData& scene,
-                                                               const Tracing& tracing,
-                                                               ValueHandle<std::vector<ViewRequest>> requests,
-                                                               std::uint32_t count);
+[[nodiscard]] SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
+                                          ValueHandle<std::vector<ViewRequest>> requests,
+                                          std::uint32_t count);
 
 }  // namespace candela

@@ -12,7 +12,6 @@
 #include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/loop_parts.hpp"
-#include "renderer/passes/scene/traced_content.hpp"
 
 namespace candela {
 namespace {
@@ -23,28 +22,6 @@ struct DirectLight {
     BufferHandle<gpu::CellLight> cells;
 };
 
-/// What the visibility of surfels was found for.
-struct VisibilityKey {
-    std::uint64_t set = 0;    // of surfels
-    float ray_offset = 0.0F;  // metres
-    bool operator==(const VisibilityKey&) const = default;
-};
-
-/// `surfel_count` and the uniforms that follow from it: shaders/surfels/surfel.glsl.
-gl::Uniforms count_uniforms(std::uint32_t count) {
-    const SurfelColumns columns = surfel_columns(count);
-    return {{"surfel_count", count}, {"columns", columns.count}, {"column_stride", columns.stride}};
-}
-
-struct VisibilityPrograms {
-    const gl::Program& factors;
-    const gl::Program& cover;
-    const gl::Program& rows;
-};
-
-/// Last round of scaling. Even, so that its results are in the first half of the rows.
-constexpr std::uint32_t last_round = 4;
-
 /// Numbers of surfels and of the points of their cells.
 struct SurfelNumbers {
     std::uint32_t surfels = 0;
@@ -53,21 +30,6 @@ struct SurfelNumbers {
 
 SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
     return {run.value(surfels.counts).all_surfels(), run.value(surfels.point_count)};
-}
-
-void find_visibility(const Gpu& gpu, const VisibilityPrograms& programs, std::uint32_t count,
-                     float ray_offset, const std::optional<std::vector<Box>>& changed) {
-    constexpr std::uint32_t most_a_line = 32768;  // work groups
-    const gl::Uniforms common = count_uniforms(count);
-    const gl::Uniforms traced = common + changed_box_uniforms(changed, 4.0F * ray_offset);
-    const gl::Uniforms offset{{"ray_offset", ray_offset}};
-    const std::uint32_t surfel_groups = groups(count, SURFEL_GROUP);
-    ComputeSteps steps(gpu);
-    steps.run(programs.factors, {surfel_groups, surfel_columns(count).count / 2}, traced + offset);
-    steps.run(programs.cover, {std::min(count, most_a_line), groups(count, most_a_line)}, traced + offset);
-    for (std::uint32_t round = 0; round <= last_round; ++round) {
-        steps.run(programs.rows, {surfel_groups}, common + gl::Uniforms{{"round", round}});
-    }
 }
 
 struct BouncePrograms {
@@ -93,16 +55,6 @@ void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::ui
             steps.run(programs.account, {}, uniforms(bounce));
         }
     }
-}
-
-/// Most shadow rays of an invocation in one dispatch. Each ray loops over nodes of the BVH, and software
-/// drivers stop all loops of an invocation after 65,535 iterations in total.
-constexpr std::uint32_t most_shadow_rays = 64;
-
-/// The points of a cell share the sources of one kind, so that each traces a few rays to them:
-/// `most_shadow_rays` at most.
-std::uint32_t shares_of(std::uint32_t sources) {
-    return std::max(points_a_surfel, groups(sources, most_shadow_rays));
 }
 
 /// Light is evaluated at the cells' points only. A spot that is narrower than they are apart, even where it
@@ -164,16 +116,11 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
             warn_of_narrow_spots(gpu.log(), table, metrics, points);
             const auto light_count = static_cast<std::uint32_t>(table.entries.size());
             const std::uint32_t patches = sky ? run.value(sky->count) : 0;
-            const gl::Uniforms uniforms{{"point_count", points},
-                                        {"light_count", light_count},
-                                        {"ray_offset", metrics.ray_offset()},
-                                        {"surfel_count", count},
-                                        {"emitting_count", emitters},
-                                        {"emitter_shares", shares_of(emitters)},
-                                        {"sky_patch_count", patches},
-                                        {"sky_shares", shares_of(patches)}};
+            const gl::Uniforms uniforms{
+                {"point_count", points}, {"light_count", light_count}, {"ray_offset", metrics.ray_offset()},
+                {"surfel_count", count}, {"emitting_count", emitters}, {"sky_patch_count", patches}};
             ComputeSteps steps(gpu);
-            for (const gl::Uniforms& part : loop_parts(light_count, most_shadow_rays)) {
+            for (const gl::Uniforms& part : loop_parts(light_count, MOST_POINT_RAYS)) {
                 steps.run(lighter, {groups(points, SURFEL_GROUP)}, uniforms + part);
             }
             steps.run(adder, {groups(count, SURFEL_GROUP)}, count_uniforms(count));
@@ -208,47 +155,6 @@ gl::Uniforms share_uniforms(ShownLight shown) {
 }
 
 }  // namespace
-
-SurfelColumns surfel_columns(std::uint32_t surfels) {
-    const std::uint32_t stride = std::max((surfels + MOST_COLUMNS - 1) / MOST_COLUMNS, 1U);
-    const std::uint32_t count = (surfels + stride - 1) / stride;
-    return {.count = count + count % 2, .stride = stride};
-}
-
-SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                       const Surfels& surfels, ValueHandle<SceneMotion> motion) {
-    return graph.add("surfel-visibility", [&](Pass& pass) {
-        pass.read(surfels.counts);
-        pass.read(surfels.set);
-        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
-        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
-        pass.read(motion);
-        read_tracing(pass, tracing);
-        const VisibilityPrograms programs{.factors = gpu.program({"surfels/surfel_form_factors.comp"}),
-                                          .cover = gpu.program({"surfels/surfel_cover.comp"}),
-                                          .rows = gpu.program({"surfels/surfel_rows.comp"})};
-        const SurfelVisibility out{
-            .surfels = surfels,
-            .form_factors = pass.update(growing_buffer<std::uint32_t>(graph, "form factors"),
-                                        {Usage::storage, BINDING_FORM_FACTORS}),
-            .rows = pass.write(growing_buffer<glm::vec2>(graph, "surfel rows"),
-                               {Usage::storage, BINDING_SURFEL_ROWS})};
-        const auto hits = pass.update(growing_buffer<std::uint32_t>(graph, "surfel cover"),
-                                      {Usage::storage, BINDING_COVER});
-        const TracedContent<VisibilityKey> known(graph, pass, "known visibility");
-        pass.run([=, &gpu](Execution& run) {
-            const std::uint32_t count = run.value(surfels.counts).all_surfels();
-            run.reserve(out.form_factors, std::uint64_t{count} * surfel_columns(count).count / 2);
-            run.reserve(out.rows, 2 * count);
-            run.reserve(hits, count * COVER_PARTS);
-            const float ray_offset = run.value(tracing.metrics).ray_offset();
-            const auto changed = known.outdated(run, run.value(motion), {run.value(surfels.set), ray_offset},
-                                                {run.object(out.form_factors), run.object(hits)});
-            if (count > 0) find_visibility(gpu, programs, count, ray_offset, changed);
-        });
-        return out;
-    });
-}
 
 Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const SurfelVisibility& visibility,
                       const SurfelSources& sources, std::uint32_t bounces, ShownLight shown) {

@@ -2,26 +2,21 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/surfels/patch_tree.hpp"
 #include "renderer/passes/surfels/surfel_focus.hpp"
 
 namespace candela {
-
-/// A point of a triangle.
-struct SurfacePoint {
-    std::uint32_t triangle = 0;  ///< gpu::TraceTriangle::id
-    glm::vec2 weights{0.0F};     ///< of its corners b and c
-    bool back = false;           ///< on its back
-};
 
 /// Surfels: points on the scene's surfaces that gather light and reflect it. Each represents a cell, the part
 /// of the surface around it, which is described by sample points.
 struct SurfelSet {
     std::vector<gpu::Surfel> surfels;
     std::vector<gpu::CellPoint> points;  ///< of the cells, in the order of the surfels
+    std::vector<std::uint64_t> ids;      ///< by surfel: equal ones are of the same cell of the same item
     std::vector<std::uint32_t> item_of;  ///< by surfel: index into SceneGeometry::items
     std::vector<SurfacePoint> surfel_places;
     std::vector<SurfacePoint> point_places;
@@ -34,11 +29,9 @@ struct SceneTriangles {
     std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
     std::vector<bool> double_sided;      ///< by material index
     std::vector<bool> emits;             ///< by material index
-    /// By item, in the triangles' space. An item without any has the density of a focus everywhere.
-    std::vector<std::vector<Focus>> foci{};
 };
 
-/// Average number of points of a cell, of surfels that only reflect light and of those that emit it.
+/// About how many points a cell has, of surfels that only reflect light and of those that emit it.
 inline constexpr std::uint32_t points_a_surfel = 16;
 inline constexpr std::uint32_t points_an_emitter = 64;
 
@@ -49,7 +42,7 @@ inline constexpr std::uint32_t points_an_emitter = 64;
     return std::clamp(count / 8, 64U, 128U);
 }
 
-/// About how many surfels are placed on surfaces that do not emit light, and on those that do.
+/// How many surfels are placed at most on surfaces that do not emit light, and on those that do.
 struct SurfelCounts {
     std::uint32_t reflecting = 0;
     std::uint32_t emitting = 0;
@@ -57,12 +50,54 @@ struct SurfelCounts {
 };
 
 /// Places surfels on the triangles that reflect light, and likewise on those that emit it, on both sides
-/// where the material is double-sided: evenly by area, or as dense as the foci ask for (density_at). Each has
-/// a cell of points_a_surfel or points_an_emitter points on average. A cell lies on one side of one item,
-/// where the surface is nearly flat; a point that fits no surfel becomes a surfel of its own. The points
-/// follow the R2 sequence; the surfels are relaxed by Lloyd's algorithm (1982). Equal arguments give equal
-/// results.
-[[nodiscard]] SurfelSet place_surfels(const SceneTriangles& scene, const SurfelCounts& counts,
-                                      std::uint32_t seed);
+/// where the material is double-sided. The surfaces of an item are the root of a tree of patches. A cell is a
+/// patch: the trees are cut where area times density is greatest (density_at), twice as much of it where
+/// surfaces bend, until there are as many cells as are wanted. The parts of the cell are its sample points,
+/// and the point nearest to its centre is its surfel. If there are more than a quarter as many items as
+/// surfels wanted, some items, chosen at random, also stand for others.
+///
+/// A patch has the same cell wherever the focus is. The set depends on the arguments of the constructor and
+/// of `place` only: the trees are kept between calls just to save time.
+class SurfelPlacement {
+ public:
+    SurfelPlacement(SceneTriangles scene, std::uint32_t seed);
+    SurfelPlacement(const SurfelPlacement&) = delete;
+    SurfelPlacement& operator=(const SurfelPlacement&) = delete;
+    ~SurfelPlacement() = default;
+
+    /// `foci`: by item, in the triangles' space; an item without any has the density of a focus everywhere.
+    /// Empty: no item has any.
+    [[nodiscard]] SurfelSet place(const SurfelCounts& counts, std::span<const std::vector<Focus>> foci = {});
+
+ private:
+    /// The surfaces of an item.
+    struct Root {
+        std::uint32_t patch;
+        std::uint32_t item;
+    };
+    /// A cell that surfels are placed on.
+    struct Cell {
+        std::uint32_t patch = 0;
+        std::uint32_t item = 0;
+        double scale = 1.0;  ///< how many times its area it stands for
+    };
+
+    void plant();
+    [[nodiscard]] std::vector<Root> roots_of(bool emitting);
+    [[nodiscard]] double weight_of(const Cell& cell, std::span<const std::vector<Focus>> foci) const;
+    [[nodiscard]] std::vector<Cell> share_items(const std::vector<Root>& roots, std::uint32_t count,
+                                                std::span<const std::vector<Focus>> foci) const;
+    [[nodiscard]] std::vector<Cell> cells_on(const std::vector<Root>& roots, std::uint32_t count,
+                                             std::span<const std::vector<Focus>> foci);
+    template <class Weight>
+    [[nodiscard]] std::vector<Cell> cut(std::vector<Cell> cells, std::uint32_t count, const Weight& weight);
+    void append(SurfelSet& set, const Cell& cell, std::uint32_t points);
+
+    SceneTriangles scene_;
+    std::uint32_t seed_;
+    PatchTree tree_;
+    std::vector<Root> reflecting_;
+    std::vector<Root> emitting_;
+};
 
 }  // namespace candela

@@ -8,12 +8,14 @@
 #include <memory>
 #include <numbers>
 #include <span>
+#include <unordered_map>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/scene/traced_content.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 #include "renderer/passes/surfels/cell_division.hpp"
+#include "renderer/passes/surfels/surfel_ids.hpp"
 
 namespace candela {
 namespace {
@@ -23,22 +25,28 @@ VplCounts counts_of(const SurfelSet& set) {
             .emitters = set.emitting_count};
 }
 
-/// Everything that the placement of surfels depends on. Each item is in its own space, transformed only by
+/// What the trees that surfels are placed with depend on. Each item is in its own space, transformed only by
 /// its shape matrix: see shape_of.
-struct SurfelKey {
+struct PlacementKey {
     SceneGeometry geometry;
     std::vector<glm::mat3> shapes;
-    SurfelCounts counts;
     std::uint32_t seed = 0;
-    std::vector<std::vector<Focus>> foci;  // by item, in its shape space
-    bool operator==(const SurfelKey&) const = default;
+    bool operator==(const PlacementKey&) const = default;
 };
 
-/// The last placement of the surfels, in the items' shape spaces. `number` changes with each placement.
+/// What the set of surfels depends on besides.
+struct SetKey {
+    SurfelCounts counts;
+    std::vector<std::vector<Focus>> foci;  // by item, in its shape space
+    bool operator==(const SetKey&) const = default;
+};
+
+/// The last placement of the surfels, in the items' shape spaces.
 struct SpreadSurfels {
-    SurfelKey key;
+    PlacementKey placement_key;
+    SetKey key;
+    std::shared_ptr<SurfelPlacement> placement;
     std::shared_ptr<const SurfelSet> set;
-    std::uint64_t number = 0;
     bool operator==(const SpreadSurfels&) const = default;
 };
 
@@ -52,9 +60,8 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
 
 /// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
 /// deformation came first.
-SceneTriangles triangles_of(const SceneLayout& layout, const SurfelKey& key) {
+SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) {
     SceneTriangles scene;
-    scene.foci = key.foci;
     for (const SceneLayout::Drawable& drawable : layout.solids()) {
         const std::vector<Vertex>& vertices = drawable.primitive->vertices;
         const glm::mat4 shape(key.shapes[drawable.item]);
@@ -123,12 +130,16 @@ std::vector<std::vector<Focus>> foci_by_item(const SceneLayout& layout, const Sc
 
 SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
                      const std::vector<Focus>& foci, const SurfelCounts& counts, std::uint32_t seed) {
-    std::vector<glm::mat3> shapes = shapes_of(placement);
-    std::vector<std::vector<Focus>> local = foci_by_item(layout, placement, shapes, foci);
-    SurfelKey key{layout.geometry, std::move(shapes), counts, seed, std::move(local)};
-    if (last != nullptr && last->key == key) return *last;
-    auto set = std::make_shared<const SurfelSet>(place_surfels(triangles_of(layout, key), counts, seed));
-    return {std::move(key), std::move(set), last == nullptr ? 0 : last->number + 1};
+    SpreadSurfels now;
+    now.placement_key = {layout.geometry, shapes_of(placement), seed};
+    now.key = {counts, foci_by_item(layout, placement, now.placement_key.shapes, foci)};
+    const bool same_items = last != nullptr && last->placement_key == now.placement_key;
+    if (same_items && last->key == now.key) return *last;
+    now.placement = same_items
+                        ? last->placement
+                        : std::make_shared<SurfelPlacement>(triangles_of(layout, now.placement_key), seed);
+    now.set = std::make_shared<const SurfelSet>(now.placement->place(counts, now.key.foci));
+    return now;
 }
 
 /// Moves surfels and points with the triangles that they were placed on, of items that are deformed.
@@ -171,6 +182,7 @@ class Deformer {
         const Moved centre = moved(set.surfel_places[i]);
         surfel.position = centre.position;
         surfel.normal = centre.normal;
+        const float area_before = surfel.area;
         surfel.area = 0.0F;
         for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
             const Moved at = moved(set.point_places[p]);
@@ -179,7 +191,7 @@ class Deformer {
             set.points[p].area *= at.stretch;
             surfel.area += set.points[p].area;
         }
-        surfel.radius2 = surfel.area / std::numbers::pi_v<float>;
+        surfel.width2 *= surfel.area / area_before;
     }
 
  private:
@@ -194,7 +206,7 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
     std::vector<glm::mat4> matrices;
     std::vector<glm::mat3> normal_matrices;
     for (std::size_t i = 0; i < placement.world.size(); ++i) {
-        matrices.push_back(world_from_shape(placement.world[i], spread.key.shapes[i]));
+        matrices.push_back(world_from_shape(placement.world[i], spread.placement_key.shapes[i]));
         normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(matrices.back()))));
     }
     const Deformer deformer(layout, placement);
@@ -215,22 +227,23 @@ SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout
             point.normal = glm::normalize(normal_matrix * point.normal);
         }
     }
+    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        set.surfels[i].seed = static_cast<std::uint32_t>(set.ids[i]);
+    }
     return set;
 }
 
 /// What rays have found about the cells of a set: see TracedContent.
 struct DivisionKey {
-    std::uint64_t set = 0;    // SpreadSurfels::number
     float ray_offset = 0.0F;  // metres
     bool operator==(const DivisionKey&) const = default;
 };
 
-/// The last division of the cells. `number` changes when there are other surfels or other points in a cell.
+/// The last division of the cells.
 struct DividedCells {
+    std::vector<std::uint64_t> ids;  // SurfelSet::ids
     std::vector<CellDivision> cells;
     ScenePlacement placement;
-    std::uint64_t set = 0;  // SpreadSurfels::number
-    std::uint64_t number = 0;
     bool operator==(const DividedCells&) const = default;
 };
 
@@ -242,24 +255,27 @@ bool has_moved(const ScenePlacement& before, const ScenePlacement& now, std::uin
     return before.world[item] != now.world[item] || shape_in(before) != shape_in(now);
 }
 
-/// Divides the cells again that have moved, or where something in a changed box is or was; those of `last`
-/// stay elsewhere. All, if `changed` is none.
-std::vector<CellDivision> divide_cells(const SurfelSet& set, const TracedScene& scene, float ray_offset,
-                                       const DividedCells* last,
-                                       const std::optional<std::vector<Box>>& changed) {
-    const auto is_known = [&](std::size_t i) {
-        if (last == nullptr || !changed || has_moved(last->placement, scene.placement, set.item_of[i])) {
-            return false;
-        }
+/// Divides new cells, and those again that have moved, or where something in a changed box is or was; those
+/// of `last` stay elsewhere. All, if `changed` is none.
+DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene, float ray_offset,
+                          const DividedCells* last, const std::optional<std::vector<Box>>& changed) {
+    std::unordered_map<std::uint64_t, const CellDivision*> known;
+    for (std::size_t i = 0; last != nullptr && changed && i < last->ids.size(); ++i) {
+        known.emplace(last->ids[i], &last->cells[i]);
+    }
+    const auto stays = [&](std::size_t i) {
+        if (has_moved(last->placement, scene.placement, set.item_of[i])) return false;
         const Box box = box_of_division(set, i, ray_offset);
         return std::ranges::none_of(*changed, [&](const Box& other) { return meet(box, other, ray_offset); });
     };
-    std::vector<CellDivision> cells;
-    cells.reserve(set.surfels.size());
+    DividedCells now{.ids = set.ids, .cells = {}, .placement = scene.placement};
+    now.cells.reserve(set.surfels.size());
     for (std::size_t i = 0; i < set.surfels.size(); ++i) {
-        cells.push_back(is_known(i) ? last->cells[i] : divide_cell(set, i, scene, ray_offset));
+        const auto found = known.find(set.ids[i]);
+        const bool is_known = found != known.end() && stays(i);
+        now.cells.push_back(is_known ? *found->second : divide_cell(set, i, scene, ray_offset));
     }
-    return cells;
+    return now;
 }
 
 ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
@@ -313,8 +329,9 @@ glm::mat3 shape_of(const glm::mat4& world) {
 
 Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, const Tracing& tracing,
                     ValueHandle<SceneMotion> motion, std::optional<ValueHandle<Refinement>> refinement,
-                    ValueHandle<std::vector<Focus>> foci, const VplSettings& settings) {
-    const ValueHandle<SpreadSurfels> spread_surfels = add_spread(graph, scene, refinement, foci, settings);
+                    const SurfelFoci& foci, const VplSettings& settings) {
+    const ValueHandle<SpreadSurfels> spread_surfels =
+        add_spread(graph, scene, refinement, foci.foci, settings);
     return graph.add("surfels", [&](Pass& pass) {
         pass.read(spread_surfels);
         pass.read(scene.layout);
@@ -322,34 +339,38 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
         pass.read(tracing.hierarchy);
         pass.read(tracing.metrics);
         pass.read(motion);
+        pass.read(foci.of_maps);
         pass.keeps_state();
         const auto divided_cells = pass.update(graph.value<DividedCells>("divided cells"));
         const TracedContent<DivisionKey> known(graph, pass, "known division");
         const Surfels out{
             .counts = pass.write(graph.value<VplCounts>("surfel counts")),
             .point_count = pass.write(graph.value<std::uint32_t>("cell point count")),
-            .set = pass.write(graph.value<std::uint64_t>("surfel set")),
+            .ids = pass.write(graph.value<std::vector<std::uint64_t>>("surfel ids")),
+            .maps = pass.update(graph.value<SurfelMaps>("surfel maps")),
             .surfels = pass.write(growing_buffer<gpu::Surfel>(graph, "surfels"), Usage::copy),
             .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
-        pass.run([=, &gpu, layout = scene.layout, placement = scene.placement](Execution& run) {
-            const SpreadSurfels& spread_now = run.value(spread_surfels);
+        pass.run([=, &gpu, layout = scene.layout, placement = scene.placement,
+                  focus = foci.of_maps](Execution& run) {
             const TracedScene traced{*run.value(tracing.hierarchy), run.value(layout), run.value(placement)};
             const float ray_offset = run.value(tracing.metrics).ray_offset();
-            const auto changed = known.outdated(run, run.value(motion), {spread_now.number, ray_offset}, {});
-            const SurfelSet whole = placed_in_world(spread_now, traced.layout, traced.placement);
-            const DividedCells* const last = run.previous(divided_cells);
-            DividedCells now{.cells = divide_cells(whole, traced, ray_offset, last, changed),
-                             .placement = traced.placement,
-                             .set = spread_now.number};
-            const bool is_same = last != nullptr && last->set == now.set && last->cells == now.cells;
-            now.number = last == nullptr ? 0 : last->number + (is_same ? 0 : 1);
-            const SurfelSet set = divided(whole, now.cells);
+            const auto changed = known.outdated(run, run.value(motion), {ray_offset}, {});
+            const SurfelSet whole =
+                placed_in_world(run.value(spread_surfels), traced.layout, traced.placement);
+            DividedCells cells =
+                divide_cells(whole, traced, ray_offset, run.previous(divided_cells), changed);
+            SurfelSet set = divided(whole, cells.cells);
+            set.ids = content_hashes(set, set.ids);
+            make_unique(set.ids);
+            const VplCounts counts = counts_of(set);
+            run.set(divided_cells, std::move(cells));
+            run.set(out.maps, place_maps(std::span(set.surfels).first(counts.surfels), set.ids,
+                                         run.value(focus), run.previous(out.maps)));
             upload<gpu::Surfel>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
-            run.set(out.counts, counts_of(set));
+            run.set(out.counts, counts);
             run.set(out.point_count, static_cast<std::uint32_t>(set.points.size()));
-            run.set(out.set, now.number);
-            run.set(divided_cells, std::move(now));
+            run.set(out.ids, std::move(set.ids));
         });
         return out;
     });

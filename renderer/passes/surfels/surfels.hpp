@@ -12,6 +12,7 @@
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/surfels/surfel_maps.hpp"
 #include "renderer/passes/surfels/surfel_placement.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/vpls/vpl_counts.hpp"
@@ -28,8 +29,10 @@ namespace candela {
 struct Surfels {
     ValueHandle<VplCounts> counts;
     ValueHandle<std::uint32_t> point_count;
-    /// Changes when surfels are placed again, or cells divided otherwise, not when they only move.
-    ValueHandle<std::uint64_t> set;
+    /// By surfel, each once. Surfels of the same id in two frames are at the same place and have the same
+    /// cell, whatever their indices are.
+    ValueHandle<std::vector<std::uint64_t>> ids;
+    ValueHandle<SurfelMaps> maps;       ///< of those that do not emit light
     BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;
 };
@@ -38,12 +41,12 @@ struct Surfels {
 /// of the current surfel set) and `surfels` (CPU, then upload: their positions in the world, where cells are
 /// divided that surfaces cut: see divide_cell). Surfels belong to the items of the scene and move with them,
 /// and with the triangles of a deformed one; all are placed again when an item is added, removed or changes
-/// its shape. Only cells that move, or near which something moves, are divided again. The nodes depend on the
-/// scene's layout and placement, on the foci and on the refinement, and on their own last results; `surfels`
-/// also on BVH and motion.
+/// its shape. Only cells that are new, that move, or near which something moves, are divided again. The nodes
+/// depend on the scene's layout and placement, on the foci and on the refinement, and on their own last
+/// results: surfels that stay keep the slots of their depth maps. `surfels` also depends on BVH and motion.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                   const Tracing& tracing, ValueHandle<SceneMotion> motion,
-                                  std::optional<ValueHandle<Refinement>> refinement,
-                                  ValueHandle<std::vector<Focus>> foci, const VplSettings& settings);
+                                  std::optional<ValueHandle<Refinement>> refinement, const SurfelFoci& foci,
+                                  const VplSettings& settings);
 
 }  // namespace candela

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <bit>
-#include <span>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/growing_buffer.hpp"
@@ -15,13 +14,6 @@ namespace {
 // few large ones: little of the last layer is wasted, and the layers are few enough for any driver.
 constexpr std::uint32_t least_side = 512;
 constexpr std::uint32_t least_tiles = 4;
-
-/// What the maps of far VPLs see alone: twice the sphere in which surfels are dense, which has most of what
-/// is visible. With several of them, maps see everything.
-Focus focus_of_maps(std::span<const Focus> foci) {
-    if (foci.size() != 1) return {};
-    return {foci.front().centre, 2.0F * foci.front().radius};
-}
 
 VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t maps,
                         const SceneMetrics& metrics, const gl::Limits& limits) {
@@ -65,13 +57,12 @@ VplAtlas plan_vpl_atlas(std::uint32_t resolution, std::uint32_t maps, const gl::
 }
 
 VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<SceneMetrics> metrics,
-                            ValueHandle<VplCounts> counts,
-                            std::optional<ValueHandle<std::vector<Focus>>> foci,
+                            ValueHandle<VplCounts> counts, std::optional<ValueHandle<Focus>> focus,
                             const VplVisibilitySettings& settings) {
     return graph.add("vpl-constants", [&](Pass& pass) {
         pass.read(metrics);
         pass.read(counts);
-        if (foci) pass.read(*foci);
+        if (focus) pass.read(*focus);
         pass.parameter(settings);
         const VplCommon out{
             .atlas = pass.write(graph.value<VplAtlas>("vpl atlas")),
@@ -80,7 +71,7 @@ VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu, ValueHandle<Scene
             const SceneMetrics& scene = run.value(metrics);
             const VplCounts& vpls = run.value(counts);
             VplAtlas atlas = atlas_of_scene(settings, vpls.mapped(), scene, gpu.device().limits());
-            if (foci) atlas.focus = focus_of_maps(run.value(*foci));
+            if (focus) atlas.focus = run.value(*focus);
             upload_one(gpu, run, out.constants, constants_of(vpls, scene, atlas));
             run.set(out.atlas, atlas);
         });

@@ -22,7 +22,7 @@ struct VplAtlas {
     /// Octahedral distance in metres at which depth is 1 (shaders/vpls/vpl_atlas.glsl); rarely changes while
     /// objects move.
     float near = 1.0F;
-    Focus focus{};  ///< maps of VPLs that are far from it see it alone; radius 0: there is none
+    Focus focus{};  ///< maps of surfels that are far from it see it alone; radius 0: there is none
     bool operator==(const VplAtlas&) const = default;
 };
 
@@ -37,10 +37,10 @@ struct VplCommon {
 };
 
 /// Adds node `vpl-constants` (CPU, then upload): VplCommon. Depends on the scene's metrics, the
-/// counts and the foci of the surfels, if it is they that have maps.
+/// counts and focus_of_maps, if it is surfels that have maps.
 [[nodiscard]] VplCommon add_vpl_constants(FrameGraph& graph, const Gpu& gpu,
                                           ValueHandle<SceneMetrics> metrics, ValueHandle<VplCounts> counts,
-                                          std::optional<ValueHandle<std::vector<Focus>>> foci,
+                                          std::optional<ValueHandle<Focus>> focus,
                                           const VplVisibilitySettings& settings);
 
 /// For a pass whose shader includes vpl_constants.glsl.

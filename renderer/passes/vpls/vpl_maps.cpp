@@ -1,10 +1,12 @@
 #include "renderer/passes/vpls/vpl_maps.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/layer_target.hpp"
 #include "renderer/passes/inspect/depth_note.hpp"
 #include "renderer/passes/scene/traced_content.hpp"
@@ -12,14 +14,22 @@
 namespace candela {
 namespace {
 
-TextureDesc atlas_desc(const VplAtlas& atlas) {
-    return {{atlas.side, atlas.side}, Format::depth32f, TextureShape::array, atlas.layers};
+TextureDesc atlas_desc(const VplAtlas& atlas, std::uint32_t layers) {
+    return {{atlas.side, atlas.side}, Format::depth32f, TextureShape::array, layers};
+}
+
+/// How many layers the texture should have: as many as it has, if that is enough and not far too much, as
+/// another texture would lose the maps of surfels that stay.
+std::uint32_t layers_of(const VplAtlas& atlas, const TextureDesc& now) {
+    const bool enough = now.layers >= atlas.layers && now.layers <= 2 * atlas.layers;
+    return enough ? now.layers : atlas.layers;
 }
 
 /// What the maps were made from.
 struct MapKey {
-    VplAtlas atlas;
-    std::uint64_t set = 0;  // of surfels
+    std::uint32_t resolution = 0;
+    std::uint32_t side = 0;
+    float near = 0.0F;
     bool operator==(const MapKey&) const = default;
 };
 
@@ -31,32 +41,55 @@ struct MapNode {
     VplCommon common;
     TextureHandle depth;
     TracedContent<MapKey> drawn;
+    ValueHandle<std::vector<std::uint64_t>> drawn_keys;  // SurfelMaps::keys
+    BufferHandle<std::uint32_t> new_maps;                // by surfel: not 0 if its whole map must be drawn
     const gl::Program* program;
 };
 
-/// Draws the texels whose rays pass through the boxes in `changed`; all texels without a value: see
-/// changed_boxes.
-void draw_maps(Gpu& gpu, Execution& run, const MapNode& node,
+/// By surfel: 1 if its slot has had another map than its own, else 0.
+std::vector<std::uint32_t> new_maps(const SurfelMaps& maps, const std::vector<std::uint64_t>& drawn) {
+    std::vector<std::uint32_t> is_new(maps.slots.size());
+    for (std::size_t i = 0; i < is_new.size(); ++i) {
+        const std::uint32_t slot = maps.slots[i];
+        is_new[i] = slot >= drawn.size() || drawn[slot] != maps.keys[slot] ? 1 : 0;
+    }
+    return is_new;
+}
+
+/// Draws the slots from 0 to `slots`: of maps that are not new, the texels whose rays pass through the boxes
+/// in `changed`; all texels without a value: see changed_boxes.
+void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, std::uint32_t slots,
                const std::optional<std::vector<Box>>& changed) {
     LayerTarget target(gpu);
     target.set_layers(run.object(node.depth), run.value(node.common.atlas).side);
     if (!changed) target.clear();
-    gpu.draw_points(*node.program, run.value(node.counts).mapped(),
+    gpu.draw_points(*node.program, slots,
                     changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()),
                     {.depth_test = gl::DepthTest::always});
 }
 
+void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const MappedSurfels& surfels) {
+    const VplAtlas& atlas = run.value(node.common.atlas);
+    const auto* const last = run.previous(node.drawn_keys);
+    const std::vector<std::uint64_t> drawn = last != nullptr ? *last : std::vector<std::uint64_t>{};
+    const SurfelMaps& maps = run.value(surfels.maps);
+    const auto changed = node.drawn.outdated(
+        run, run.value(surfels.motion), {atlas.resolution, atlas.side, atlas.near}, {run.object(node.depth)});
+    if (changed) upload<std::uint32_t>(gpu, run, node.new_maps, new_maps(maps, drawn));
+    draw_maps(gpu, run, node, static_cast<std::uint32_t>(std::max(maps.keys.size(), drawn.size())), changed);
+    run.set(node.drawn_keys, maps.keys);
+}
+
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     const VplAtlas& atlas = run.value(node.common.atlas);
-    run.reserve(node.depth, atlas_desc(atlas));
-    if (!node.surfels) {
-        node.drawn.forget(run);
-        draw_maps(gpu, run, node, std::nullopt);
+    run.reserve(node.depth, atlas_desc(atlas, layers_of(atlas, run.desc(node.depth))));
+    if (node.surfels) {
+        update_surfel_maps(gpu, run, node, *node.surfels);
         return;
     }
-    draw_maps(gpu, run, node,
-              node.drawn.outdated(run, run.value(node.surfels->motion), {atlas, run.value(node.surfels->set)},
-                                  {run.object(node.depth)}));
+    node.drawn.forget(run);
+    run.set(node.drawn_keys, {});
+    draw_maps(gpu, run, node, run.value(node.counts).mapped(), std::nullopt);
 }
 
 const gl::Program& map_program(Gpu& gpu, const std::vector<std::string>& defined) {
@@ -72,7 +105,7 @@ std::vector<std::string> read_mapped(Pass& pass, const MappedVpls& vpls) {
     }
     const auto& mapped = std::get<MappedSurfels>(vpls.records);
     pass.read(mapped.surfels, {Usage::storage, BINDING_SURFELS});
-    pass.read(mapped.set);
+    pass.read(mapped.maps);
     pass.read(mapped.motion);
     return {"SURFELS"};
 }
@@ -92,9 +125,12 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
             .counts = vpls.counts,
             .surfels = surfels != nullptr ? std::optional(*surfels) : std::nullopt,
             .common = common,
-            .depth = pass.update(graph.texture("vpl maps", atlas_desc({}), Lifetime::persistent),
+            .depth = pass.update(graph.texture("vpl maps", atlas_desc({}, 1), Lifetime::persistent),
                                  Usage::layer_target),
             .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
+            .drawn_keys = pass.update(graph.value<std::vector<std::uint64_t>>("keys of vpl maps")),
+            .new_maps = pass.write(growing_buffer<std::uint32_t>(graph, "new vpl maps"),
+                                   {Usage::copy, BINDING_NEW_MAPS}),
             .program = &map_program(gpu, defined)};
         graph.note(node.depth, depth_note(common.atlas, [](const VplAtlas& atlas, std::uint32_t) {
                        return perspective_terms(atlas.near);

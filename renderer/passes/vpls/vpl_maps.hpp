@@ -7,15 +7,16 @@
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
+#include "renderer/passes/surfels/surfel_maps.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
 #include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
 
-/// Surfels that have depth maps. They keep their maps where nothing has moved.
+/// Surfels that have depth maps. Those that stay keep their maps where nothing has moved.
 struct MappedSurfels {
     BufferHandle<gpu::Surfel> surfels;
-    ValueHandle<std::uint64_t> set;  ///< Surfels::set
+    ValueHandle<SurfelMaps> maps;
     ValueHandle<SceneMotion> motion;
 };
 
@@ -23,17 +24,18 @@ struct MappedSurfels {
 struct MappedVpls {
     ValueHandle<VplCounts> counts;
     std::variant<BufferHandle<gpu::TracedVpl>, MappedSurfels> records;
-    std::optional<ValueHandle<std::vector<Focus>>> foci;  ///< of surfels
+    std::optional<ValueHandle<Focus>> focus;  ///< of the maps of surfels: SurfelFoci::of_maps
 };
 
 /// Adds node `vpl-maps` (raster; fragments trace rays): a depth map of the hemisphere above each VPL, in the
 /// hemi-octahedral mapping (Cigolle et al., "A Survey of Efficient Representations for Independent Unit
-/// Vectors", 2014), or, of a VPL that is far from VplAtlas::focus, a perspective one of the focus. Each texel
-/// traces a ray through the BVH. In contrast to rasterised meshes, large triangles are therefore exact in a
-/// curved mapping whatever their tessellation, and a map costs as many rays as it has texels, however large
-/// the scene is. One draw covers all maps. With surfels, only texels whose rays pass through changed boxes
-/// are traced again. Depends on the VPLs, the BVH and the constants; with surfels also on motion and on its
-/// own last result. Returns a 2D array of depth32f, reversed: 1 near the VPL, 0 where there is no surface
+/// Vectors", 2014), or, of a surfel that is far from VplAtlas::focus, a perspective one of the focus. Each
+/// texel traces a ray through the BVH. In contrast to rasterised meshes, large triangles are therefore exact
+/// in a curved mapping whatever their tessellation, and a map costs as many rays as it has texels, however
+/// large the scene is. One draw covers all maps. With surfels, only new maps are traced (SurfelMaps::keys),
+/// and of the others those texels whose rays pass through changed boxes; slots that no surfel has any more
+/// are cleared. Depends on the VPLs, the BVH and the constants; with surfels also on motion and on its own
+/// last result. Returns a 2D array of depth32f, reversed: 1 near the VPL, 0 where there is no surface
 /// (shaders/vpls/vpl_atlas.glsl).
 [[nodiscard]] TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                          const MappedVpls& vpls, const VplCommon& common);

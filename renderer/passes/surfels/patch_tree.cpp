@@ -1,0 +1,230 @@
+#include "renderer/passes/surfels/patch_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+
+namespace candela {
+namespace {
+
+/// Random numbers of a patch.
+enum Use : std::uint64_t { use_cut, use_fragment, use_x, use_y, use_half };
+
+/// How much the direction of surfaces counts beside their position, in choosing how to cut: patches are cut
+/// by direction while they are about as bent as they are wide.
+constexpr double weight_of_bend = 4.0;
+/// How much more the extent of surfaces along their normal counts than that across it.
+constexpr double weight_of_thickness = 16.0;
+/// Variance of the normal below which a patch counts as flat.
+constexpr double least_bend = 0.02;
+
+using Corners = std::array<glm::dvec3, 3>;
+
+Corners corners_of(const gpu::TraceTriangle& triangle, const Fragment& fragment) {
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = position_of(triangle, fragment.corners[i]);
+    return corners;
+}
+
+/// m².
+double area_of(const Corners& corners) {
+    return 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+
+/// Sums over an area.
+struct Moments {
+    double area = 0.0;
+    glm::dvec3 position{0.0}, position2{0.0}, normal{0.0}, normal2{0.0};
+
+    void add(const Corners& corners, double more, const glm::dvec3& front) {
+        const glm::dvec3 sum = corners[0] + corners[1] + corners[2];
+        area += more;
+        position += more / 3.0 * sum;
+        // The mean of x² over a triangle is (Σ xᵢ² + (Σ xᵢ)²) / 12.
+        position2 +=
+            more / 12.0 *
+            (corners[0] * corners[0] + corners[1] * corners[1] + corners[2] * corners[2] + sum * sum);
+        normal += more * front;
+        normal2 += more * front * front;
+    }
+};
+
+glm::dvec3 variance(const glm::dvec3& sum, const glm::dvec3& sum2, double area) {
+    const glm::dvec3 mean = sum / area;
+    return glm::max(sum2 / area - mean * mean, 0.0);
+}
+
+double sum_of(const glm::dvec3& v) {
+    return v.x + v.y + v.z;
+}
+
+/// Index of the largest number. Of those within 1 % of each other, the first: rounding does not decide.
+int largest(const glm::dvec3& v) {
+    int index = 0;
+    for (int i = 1; i < 3; ++i) {
+        if (v[i] > 1.01 * v[index]) index = i;
+    }
+    return index;
+}
+
+/// The size and shape of a patch, and how it is cut.
+void describe(Patch& patch, const Moments& moments) {
+    const glm::dvec3 spread = variance(moments.position, moments.position2, moments.area);
+    const glm::dvec3 bend = variance(moments.normal, moments.normal2, moments.area);
+    const glm::dvec3 normal = moments.normal / moments.area;
+    const double spread2 = sum_of(spread);
+    const glm::dvec3 along_normal = spread * normal * normal;
+    patch.area = moments.area;
+    patch.centre = glm::vec3(moments.position / moments.area);
+    patch.spread2 = static_cast<float>(spread2);
+    patch.bend = static_cast<float>(sum_of(bend) + (spread2 > 0.0 ? sum_of(along_normal) / spread2 : 0.0));
+    // Surfaces one behind the other are separated first.
+    const glm::dvec3 length = spread + weight_of_thickness * along_normal;
+    const int longest = largest(length), most_bent = largest(bend);
+    patch.cuts_normals =
+        bend[most_bent] > least_bend && weight_of_bend * bend[most_bent] * spread2 > length[longest];
+    patch.axis = patch.cuts_normals ? most_bent : longest;
+    patch.middle = static_cast<float>(
+        ((patch.cuts_normals ? moments.normal : moments.position) / moments.area)[patch.axis]);
+    // Opposite faces of a box and those between have normals of 1, -1 and 0: not at 0, where rounding would
+    // decide. By position, within 0.2 standard deviations of the middle.
+    const double off = patch.cuts_normals ? 0.5 : 0.4 * random_of(patch.id, use_cut) - 0.2;
+    patch.at =
+        patch.middle + static_cast<float>(off * std::sqrt((patch.cuts_normals ? bend : spread)[patch.axis]));
+}
+
+/// A random point of a fragment, evenly by area.
+SurfacePoint point_in(const Fragment& fragment, std::uint64_t id) {
+    glm::vec2 at(random_of(id, use_x), random_of(id, use_y));
+    if (at.x + at.y > 1.0F) at = 1.0F - at;
+    const auto& corners = fragment.corners;
+    return {fragment.triangle,
+            corners[0] + at.x * (corners[1] - corners[0]) + at.y * (corners[2] - corners[0]), fragment.back};
+}
+
+/// The two sides of a cut.
+using Halves = std::array<std::vector<Fragment>, 2>;
+
+/// Cuts a fragment whose corners have these signed distances from the cut, of both signs.
+void cut_fragment(const Fragment& fragment, const std::array<float, 3>& distances, Halves& halves) {
+    // The corner that is alone on its side.
+    std::size_t alone = 0;
+    while ((distances[alone] < 0.0F) == (distances[(alone + 1) % 3] < 0.0F) ||
+           (distances[alone] < 0.0F) == (distances[(alone + 2) % 3] < 0.0F)) {
+        ++alone;
+    }
+    const std::size_t next = (alone + 1) % 3, last = (alone + 2) % 3;
+    const auto meet = [&](std::size_t to) {
+        const float share = distances[alone] / (distances[alone] - distances[to]);
+        return glm::mix(fragment.corners[alone], fragment.corners[to], share);
+    };
+    const glm::vec2 to_next = meet(next), to_last = meet(last);
+    const std::size_t side = distances[alone] < 0.0F ? 0 : 1;
+    const auto add = [&](std::size_t half, glm::vec2 a, glm::vec2 b, glm::vec2 c) {
+        halves[half].push_back({fragment.triangle, fragment.back, {a, b, c}});
+    };
+    add(side, fragment.corners[alone], to_next, to_last);
+    add(1 - side, to_next, fragment.corners[next], fragment.corners[last]);
+    add(1 - side, to_next, fragment.corners[last], to_last);
+}
+
+/// Fragments that are much smaller than the patch are not cut: they go to one side as a whole.
+void divide_by_position(const gpu::TraceTriangle& triangle, const Fragment& fragment, const Patch& patch,
+                        float at, Halves& halves) {
+    std::array<float, 3> distances{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        distances[i] = position_of(triangle, fragment.corners[i])[patch.axis] - at;
+    }
+    const auto [least, most] = std::minmax({distances[0], distances[1], distances[2]});
+    const bool is_small = (most - least) * (most - least) < 0.04F * patch.spread2;
+    if (least < 0.0F && most > 0.0F && !is_small) {
+        cut_fragment(fragment, distances, halves);
+        return;
+    }
+    halves[distances[0] + distances[1] + distances[2] < 0.0F ? 0 : 1].push_back(fragment);
+}
+
+Halves divide(std::span<const gpu::TraceTriangle> triangles, const std::vector<Fragment>& fragments,
+              const Patch& patch, float at) {
+    Halves halves;
+    for (const Fragment& fragment : fragments) {
+        const gpu::TraceTriangle& triangle = triangles[fragment.triangle];
+        if (patch.cuts_normals) {
+            const float along = normal_of(triangle, fragment.back)[patch.axis];
+            halves[along < at ? 0 : 1].push_back(fragment);
+        } else {
+            divide_by_position(triangle, fragment, patch, at, halves);
+        }
+    }
+    return halves;
+}
+
+}  // namespace
+
+std::uint64_t combine_ids(std::uint64_t id, std::uint64_t other) {
+    std::uint64_t x = (id ^ other) + 0x9e37'79b9'7f4a'7c15U;
+    x = (x ^ (x >> 30U)) * 0xbf58'476d'1ce4'e5b9U;
+    x = (x ^ (x >> 27U)) * 0x94d0'49bb'1331'11ebU;
+    return x ^ (x >> 31U);
+}
+
+double random_of(std::uint64_t id, std::uint64_t use) {
+    return static_cast<double>(combine_ids(id, use) >> 11U) * 0x1p-53;
+}
+
+glm::vec3 normal_of(const gpu::TraceTriangle& triangle, bool back) {
+    const glm::vec3 front = glm::normalize(glm::cross(triangle.edge_ab, triangle.edge_ac));
+    return back ? -front : front;
+}
+
+std::optional<std::uint32_t> PatchTree::add(std::vector<Fragment> fragments, std::uint64_t id) {
+    Patch patch{.id = id};
+    Moments moments;
+    std::vector<double> area_up_to;
+    area_up_to.reserve(fragments.size());
+    for (const Fragment& fragment : fragments) {
+        const gpu::TraceTriangle& triangle = triangles_[fragment.triangle];
+        const Corners corners = corners_of(triangle, fragment);
+        for (const glm::dvec3& corner : corners) patch.box.grow(glm::vec3(corner));
+        const double area = area_of(corners);
+        if (area > 0.0) moments.add(corners, area, normal_of(triangle, fragment.back));
+        area_up_to.push_back(moments.area);
+    }
+    if (!(moments.area > 0.0)) return std::nullopt;
+    describe(patch, moments);
+    const auto chosen = std::ranges::upper_bound(area_up_to, random_of(id, use_fragment) * moments.area);
+    patch.point = point_in(fragments[static_cast<std::size_t>(chosen - area_up_to.begin())], id);
+    patches_.push_back(patch);
+    fragments_.push_back(std::move(fragments));
+    return static_cast<std::uint32_t>(patches_.size() - 1);
+}
+
+std::optional<std::uint32_t> PatchTree::add_root(std::vector<Fragment> fragments, std::uint64_t id) {
+    return add(std::move(fragments), id);
+}
+
+bool PatchTree::cut(std::uint32_t patch) {
+    if (patches_[patch].first != 0 || patches_[patch].is_whole) return !patches_[patch].is_whole;
+    patches_[patch].is_whole = !cut_at(patch, patches_[patch].at) && !cut_at(patch, patches_[patch].middle);
+    return !patches_[patch].is_whole;
+}
+
+bool PatchTree::cut_at(std::uint32_t patch, float at) {
+    const std::uint64_t id = patches_[patch].id;
+    Halves halves = divide(triangles_, fragments_[patch], patches_[patch], at);
+    if (halves[0].empty() || halves[1].empty()) return false;
+    const auto first = add(std::move(halves[0]), combine_ids(id, use_half));
+    if (!first) return false;
+    if (!add(std::move(halves[1]), combine_ids(id, use_half + 1))) {
+        patches_.pop_back();
+        fragments_.pop_back();
+        return false;
+    }
+    patches_[patch].first = *first;
+    fragments_[patch] = {};
+    return true;
+}
+
+}  // namespace candela

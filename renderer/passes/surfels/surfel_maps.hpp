@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/gpu/gpu_types.hpp"
+#include "renderer/passes/surfels/surfel_focus.hpp"
+
+namespace candela {
+
+/// Where the depth maps of surfels are: VplAtlas. n surfels have maps, in slots 0 to n - 1. A surfel that
+/// stays keeps its slot, unless there are no longer so many.
+struct SurfelMaps {
+    std::vector<std::uint32_t> slots;  ///< by surfel
+    std::vector<std::uint64_t> keys;   ///< by slot: maps of the same key are equal, as long as nothing moves
+    bool operator==(const SurfelMaps&) const = default;
+};
+
+/// Keeps the slots of the keys that `last` has as well, and gives each other one the lowest slot that is
+/// left. `keys`: by surfel, each once. `last`: null if there is none.
+[[nodiscard]] SurfelMaps assign_slots(std::span<const std::uint64_t> keys, const SurfelMaps* last);
+
+/// The same for surfels with these ids; sets gpu::Surfel::map. The map of a surfel that is farther than two
+/// radii from the centre of `focus` is a picture of the focus, and another one for each focus.
+[[nodiscard]] SurfelMaps place_maps(std::span<gpu::Surfel> surfels, std::span<const std::uint64_t> ids,
+                                    const Focus& focus, const SurfelMaps* last);
+
+}  // namespace candela

@@ -1,0 +1,236 @@
+#include "renderer/passes/surfels/surfel_visibility.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/gpu/compute_steps.hpp"
+#include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/passes/scene/traced_content.hpp"
+
+namespace candela {
+namespace {
+
+/// What rays between surfels depend on besides these and the scene.
+struct VisibilityKey {
+    float ray_offset = 0.0F;  // metres
+    bool operator==(const VisibilityKey&) const = default;
+};
+
+struct VisibilityPrograms {
+    const gl::Program& kept;
+    const gl::Program& factors;
+    const gl::Program& cover;
+    const gl::Program& rows;
+};
+
+/// Resources of the node.
+struct VisibilityNode {
+    Tracing tracing;
+    ValueHandle<SceneMotion> motion;
+    SurfelVisibility out;
+    BufferHandle<std::uint32_t> cover;   // COVER_PARTS numbers of hits per surfel
+    BufferHandle<std::uint32_t> kept;    // KeptSurfels::last
+    BufferHandle<std::uint32_t> listed;  // NewSurfels
+    BufferHandle<std::uint32_t> last_form_factors;
+    BufferHandle<std::uint32_t> last_cover;
+    TracedContent<VisibilityKey> known;
+    ValueHandle<std::vector<std::uint64_t>> known_ids;  // Surfels::ids
+    VisibilityPrograms programs;
+};
+
+/// Where the form factors of surfels that do not stay are.
+struct NewSurfels {
+    std::vector<std::uint32_t> rows;
+    std::vector<std::uint32_t> pairs;  // of columns
+};
+
+/// What is to be traced.
+struct Outdated {
+    std::optional<std::vector<Box>> changed;  // see changed_boxes
+    NewSurfels added;
+    bool in_place = true;          // KeptSurfels
+    std::uint32_t last_count = 0;  // of surfels
+};
+
+/// Last round of scaling. Even, so that its results are in the first half of the rows.
+constexpr std::uint32_t last_round = 4;
+
+std::uint64_t factor_words(std::uint32_t surfels) {
+    return std::uint64_t{surfels} * surfel_columns(surfels).count / 2;
+}
+
+/// Whether which pairs of surfels have a factor depends on their indices.
+bool has_stride(std::uint32_t surfels) {
+    return surfel_columns(surfels).stride > 1;
+}
+
+std::vector<ObjectId> objects_of(const Execution& run, const VisibilityNode& node) {
+    return {run.object(node.out.form_factors), run.object(node.cover)};
+}
+
+void reserve_results(Execution& run, const VisibilityNode& node, std::uint32_t count) {
+    run.reserve(node.out.form_factors, factor_words(count));
+    run.reserve(node.out.rows, 2 * std::uint64_t{count});
+    run.reserve(node.cover, std::uint64_t{count} * COVER_PARTS);
+}
+
+NewSurfels new_surfels(const KeptSurfels& kept) {
+    const std::uint32_t stride = surfel_columns(static_cast<std::uint32_t>(kept.last.size())).stride;
+    NewSurfels added;
+    for (std::uint32_t i = 0; i < kept.last.size(); ++i) {
+        if (kept.last[i] != NO_SURFEL) continue;
+        added.rows.push_back(i);
+        const std::uint32_t pair = i / stride / 2;
+        if (added.pairs.empty() || added.pairs.back() != pair) added.pairs.push_back(pair);
+    }
+    return added;
+}
+
+void upload_kept(const Gpu& gpu, Execution& run, const VisibilityNode& node, const KeptSurfels& kept,
+                 const NewSurfels& added) {
+    upload<std::uint32_t>(gpu, run, node.kept, kept.last);
+    std::vector<std::uint32_t> listed = added.rows;
+    listed.insert(listed.end(), added.pairs.begin(), added.pairs.end());
+    upload<std::uint32_t>(gpu, run, node.listed, listed);
+}
+
+void copy_results(const Gpu& gpu, Execution& run, const VisibilityNode& node, std::uint32_t count) {
+    copy_content(gpu, run, node.out.form_factors, node.last_form_factors, factor_words(count));
+    copy_content(gpu, run, node.cover, node.last_cover, std::uint64_t{count} * COVER_PARTS);
+}
+
+/// Makes room for the results, and keeps the last ones where the shaders find them.
+Outdated prepare_results(const Gpu& gpu, Execution& run, const VisibilityNode& node) {
+    const std::vector<std::uint64_t>& ids = run.value(node.out.surfels.ids);
+    const auto* const known = run.previous(node.known_ids);
+    const std::vector<std::uint64_t> last_ids = known != nullptr ? *known : std::vector<std::uint64_t>{};
+    const KeptSurfels kept = kept_surfels(last_ids, ids);
+    const auto count = static_cast<std::uint32_t>(ids.size());
+    Outdated outdated{.changed = {},
+                      .added = new_surfels(kept),
+                      .in_place = kept.in_place,
+                      .last_count = static_cast<std::uint32_t>(last_ids.size())};
+    const bool can_keep = kept.in_place || !(has_stride(count) || has_stride(outdated.last_count));
+    if (can_keep && !kept.in_place) copy_results(gpu, run, node, outdated.last_count);
+    const std::vector<ObjectId> held = objects_of(run, node);
+    reserve_results(run, node, count);
+    const VisibilityKey key{run.value(node.tracing.metrics).ray_offset()};
+    outdated.changed = node.known.outdated(run, run.value(node.motion), key, held, objects_of(run, node));
+    if (!can_keep) outdated.changed.reset();
+    if (outdated.changed) upload_kept(gpu, run, node, kept, outdated.added);
+    run.set(node.known_ids, ids);
+    return outdated;
+}
+
+/// If nothing has moved, only rows and columns of new surfels: there are few of them, but each invocation
+/// takes time even if it traces nothing.
+void find_form_factors(ComputeSteps& steps, const gl::Program& program, std::uint32_t count,
+                       const Outdated& outdated, const gl::Uniforms& uniforms) {
+    const auto run = [&](std::uint32_t rows, std::uint32_t pairs, bool list_rows, bool list_pairs) {
+        const auto first_pair = static_cast<std::uint32_t>(outdated.added.rows.size());
+        steps.run(program, {groups(rows, SURFEL_GROUP), pairs},
+                  uniforms + gl::Uniforms{{"listed_rows", list_rows ? rows : 0U},
+                                          {"listed_pairs", list_pairs ? pairs : 0U},
+                                          {"first_pair", first_pair}});
+    };
+    const std::uint32_t pairs = surfel_columns(count).count / 2;
+    if (!outdated.changed || !outdated.changed->empty()) {
+        run(count, pairs, false, false);
+    } else if (!outdated.added.rows.empty()) {
+        run(static_cast<std::uint32_t>(outdated.added.rows.size()), pairs, true, false);
+        run(count, static_cast<std::uint32_t>(outdated.added.pairs.size()), false, true);
+    }
+}
+
+void find_visibility(const Gpu& gpu, const Execution& run, const VisibilityNode& node,
+                     const Outdated& outdated) {
+    constexpr std::uint32_t most_a_line = 32768;  // work groups
+    const VisibilityPrograms& programs = node.programs;
+    const std::uint32_t count = run.value(node.out.surfels.counts).all_surfels();
+    const float ray_offset = run.value(node.tracing.metrics).ray_offset();
+    const gl::Uniforms common = count_uniforms(count);
+    const gl::Uniforms traced = common + changed_box_uniforms(outdated.changed, 4.0F * ray_offset) +
+                                gl::Uniforms{{"ray_offset", ray_offset}};
+    const std::uint32_t surfel_groups = groups(count, SURFEL_GROUP);
+    ComputeSteps steps(gpu);
+    if (outdated.changed && !outdated.in_place) {
+        const std::uint32_t words_a_row =
+            std::max<std::uint32_t>(surfel_columns(count).count / 2, COVER_PARTS);
+        steps.run(programs.kept, {surfel_groups, words_a_row},
+                  common + gl::Uniforms{{"last_surfel_count", outdated.last_count}});
+    }
+    find_form_factors(steps, programs.factors, count, outdated, traced);
+    steps.run(programs.cover, {std::min(count, most_a_line), groups(count, most_a_line)}, traced);
+    for (std::uint32_t round = 0; round <= last_round; ++round) {
+        steps.run(programs.rows, {surfel_groups}, common + gl::Uniforms{{"round", round}});
+    }
+}
+
+}  // namespace
+
+SurfelColumns surfel_columns(std::uint32_t surfels) {
+    const std::uint32_t stride = std::max((surfels + MOST_COLUMNS - 1) / MOST_COLUMNS, 1U);
+    const std::uint32_t count = (surfels + stride - 1) / stride;
+    return {.count = count + count % 2, .stride = stride};
+}
+
+gl::Uniforms count_uniforms(std::uint32_t surfels) {
+    const SurfelColumns columns = surfel_columns(surfels);
+    return {{"surfel_count", surfels}, {"columns", columns.count}, {"column_stride", columns.stride}};
+}
+
+KeptSurfels kept_surfels(std::span<const std::uint64_t> last_ids, std::span<const std::uint64_t> ids) {
+    std::unordered_map<std::uint64_t, std::uint32_t> last_indices;
+    for (std::uint32_t i = 0; i < last_ids.size(); ++i) last_indices.emplace(last_ids[i], i);
+    KeptSurfels kept{.last = {}, .in_place = last_ids.size() == ids.size()};
+    kept.last.reserve(ids.size());
+    for (std::uint32_t i = 0; i < ids.size(); ++i) {
+        const auto found = last_indices.find(ids[i]);
+        kept.last.push_back(found == last_indices.end() ? NO_SURFEL : found->second);
+        if (kept.last[i] != NO_SURFEL && kept.last[i] != i) kept.in_place = false;
+    }
+    return kept;
+}
+
+SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
+                                       const Surfels& surfels, ValueHandle<SceneMotion> motion) {
+    return graph.add("surfel-visibility", [&](Pass& pass) {
+        pass.read(surfels.counts);
+        pass.read(surfels.ids);
+        pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
+        pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
+        pass.read(motion);
+        read_tracing(pass, tracing);
+        const auto words = [&](std::string_view name) { return growing_buffer<std::uint32_t>(graph, name); };
+        const SurfelVisibility out{
+            .surfels = surfels,
+            .form_factors = pass.update(words("form factors"), {Usage::storage, BINDING_FORM_FACTORS}),
+            .rows = pass.write(growing_buffer<glm::vec2>(graph, "surfel rows"),
+                               {Usage::storage, BINDING_SURFEL_ROWS})};
+        const VisibilityNode node{
+            .tracing = tracing,
+            .motion = motion,
+            .out = out,
+            .cover = pass.update(words("surfel cover"), {Usage::storage, BINDING_COVER}),
+            .kept = pass.write(words("kept surfels"), {Usage::copy, BINDING_KEPT_SURFELS}),
+            .listed = pass.write(words("new surfels"), {Usage::copy, BINDING_LISTED_SURFELS}),
+            .last_form_factors =
+                pass.write(words("last form factors"), {Usage::copy, BINDING_LAST_FORM_FACTORS}),
+            .last_cover = pass.write(words("last surfel cover"), {Usage::copy, BINDING_LAST_COVER}),
+            .known = TracedContent<VisibilityKey>(graph, pass, "known visibility"),
+            .known_ids = pass.update(graph.value<std::vector<std::uint64_t>>("ids of known visibility")),
+            .programs = {.kept = gpu.program({"surfels/surfel_kept.comp"}),
+                         .factors = gpu.program({"surfels/surfel_form_factors.comp"}),
+                         .cover = gpu.program({"surfels/surfel_cover.comp"}),
+                         .rows = gpu.program({"surfels/surfel_rows.comp"})}};
+        pass.run([=, &gpu](Execution& run) {
+            const Outdated outdated = prepare_results(gpu, run, node);
+            if (run.value(surfels.counts).all_surfels() > 0) find_visibility(gpu, run, node, outdated);
+        });
+        return out;
+    });
+}
+
+}  // namespace candela
