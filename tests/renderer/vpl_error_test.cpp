@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderer/passes/indirect/vpl_error.hpp"
+#include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;

@@ -10,7 +10,7 @@ namespace candela {
 namespace {
 
 /// Random numbers of a patch.
-enum Use : std::uint64_t { use_cut, use_fragment, use_x, use_y, use_half };
+enum PatchUse : std::uint64_t { use_cut, use_fragment, use_x, use_y, use_half };
 
 /// How much the direction of surfaces counts beside their position, in choosing how to cut: patches are cut
 /// by direction while they are about as bent as they are wide.

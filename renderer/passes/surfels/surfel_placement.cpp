@@ -14,7 +14,7 @@ namespace candela {
 namespace {
 
 /// Random numbers of an id, after those of a patch.
-enum Use : std::uint64_t { use_weight = 8, use_item, use_order, use_scale };
+enum CellUse : std::uint64_t { use_weight = 8, use_item, use_order, use_scale };
 
 /// Trees are planted anew once they have so many patches for each surfel. A set needs about two for each of
 /// its points.
@@ -90,7 +90,7 @@ std::vector<SurfelPlacement::Root> SurfelPlacement::roots_of(bool emitting) {
 double SurfelPlacement::weight_of(const Cell& cell, std::span<const std::vector<Focus>> foci) const {
     constexpr double weight_of_bend = 4.0;
     const Patch& patch = tree_[cell.patch];
-    const double density = static_cast<double>(density_in(patch.box, foci_of(cell.item, foci)));
+    const auto density = static_cast<double>(density_in(patch.box, foci_of(cell.item, foci)));
     return patch.area * cell.scale * density * (1.0 + weight_of_bend * static_cast<double>(patch.bend));
 }
 
