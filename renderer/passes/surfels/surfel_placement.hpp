@@ -51,10 +51,10 @@ struct SurfelCounts {
 
 /// Places surfels on the triangles that reflect light, and likewise on those that emit it, on both sides
 /// where the material is double-sided. The surfaces of an item are the root of a tree of patches. A cell is a
-/// patch: the trees are cut where area times density is greatest (density_at), twice as much of it where
-/// surfaces bend, until there are as many cells as are wanted. The parts of the cell are its sample points,
-/// and the point nearest to its centre is its surfel. If there are more than a quarter as many items as
-/// surfels wanted, some items, chosen at random, also stand for others.
+/// patch: the trees are cut where area times density (density_at) is greatest, weighted by how much surfaces
+/// bend (Patch::bend), until there are as many cells as are wanted. The parts of the cell are its sample
+/// points, and the point nearest to its centre is its surfel. If there are more than 16 items, and more than
+/// a quarter as many as surfels wanted, some, chosen at random, also stand for others.
 ///
 /// A patch has the same cell wherever the focus is. The set depends on the arguments of the constructor and
 /// of `place` only: the trees are kept between calls just to save time.
