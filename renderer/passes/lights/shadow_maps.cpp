@@ -4,7 +4,6 @@
 #include <array>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -148,23 +147,25 @@ bool reserve(Execution& run, TextureHandle texture, std::uint32_t resolution, st
     return kept;
 }
 
-/// The views of the plan whose shadow maps are missing or outdated.
-std::vector<ShadowPlan::View> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out,
-                                        const ShadowSettings& settings) {
+/// The numbers of the plan's views whose shadow maps are missing or outdated.
+std::vector<std::size_t> due_views(Execution& run, bool surfaces_changed, const ShadowMaps& out,
+                                   const ShadowSettings& settings) {
     const ShadowPlan& plan = run.value(out.plan);
     const bool keeps_cubes = reserve(run, out.cubes, settings.cube_resolution, plan.cubes * cube_faces);
     const bool keeps_maps = reserve(run, out.maps, settings.map_resolution, plan.maps);
     const DrawnShadows* const last = run.previous(out.drawn);
-    if (last == nullptr || surfaces_changed) return plan.views;
     std::map<std::pair<bool, std::uint32_t>, const ShadowPlan::View*> shown;
-    for (const ShadowPlan::View& view : last->views) {
-        if (view.cube ? keeps_cubes : keeps_maps) shown[{view.cube, view.layer}] = &view;
+    if (last != nullptr && !surfaces_changed) {
+        for (const ShadowPlan::View& view : last->views) {
+            if (view.cube ? keeps_cubes : keeps_maps) shown[{view.cube, view.layer}] = &view;
+        }
     }
-    std::vector<ShadowPlan::View> due;
-    std::ranges::copy_if(plan.views, std::back_inserter(due), [&](const ShadowPlan::View& view) {
-        const auto found = shown.find({view.cube, view.layer});
-        return found == shown.end() || *found->second != view;
-    });
+    std::vector<std::size_t> due;
+    due.reserve(plan.views.size());
+    for (std::size_t i = 0; i < plan.views.size(); ++i) {
+        const auto found = shown.find({plan.views[i].cube, plan.views[i].layer});
+        if (found == shown.end() || *found->second != plan.views[i]) due.push_back(i);
+    }
     return due;
 }
 
@@ -187,9 +188,10 @@ struct DrawRange {
     std::size_t count;
 };
 
-/// Uploads the draws of all views and makes them those that are drawn next. Returns their ranges, by view.
-std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const ShadowNode& node,
-                                    const std::vector<ShadowPlan::View>& views) {
+/// Uploads the draws of all views, also of those whose maps are kept, so that the buffer depends on no
+/// earlier frame. Makes them those that are drawn next, and returns their ranges, by view.
+std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const ShadowNode& node) {
+    const std::vector<ShadowPlan::View>& views = run.value(node.out.plan).views;
     const std::vector<ShadowCaster> casters = shadow_casters(
         run.value(node.scene.layout), run.value(node.scene.placement), run.value(node.metrics).ray_offset());
     std::vector<gpu::DrawCommand> draws;
@@ -205,17 +207,18 @@ std::vector<DrawRange> upload_draws(const Gpu& gpu, Execution& run, const Shadow
     return ranges;
 }
 
-void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vector<ShadowPlan::View>& due) {
+void draw_views(Gpu& gpu, Execution& run, const ShadowNode& node, const std::vector<std::size_t>& due) {
     const auto& out = node.out;
-    run.set(out.drawn, {run.value(out.plan).views, static_cast<std::uint32_t>(due.size())});
+    const std::vector<ShadowPlan::View>& views = run.value(out.plan).views;
+    run.set(out.drawn, {views, static_cast<std::uint32_t>(due.size())});
 
     // Rays end nearer to the light.
     const float least_distance = 0.5F * run.value(node.metrics).ray_offset();
     bind_meshes(gpu, run, node.scene);
-    const std::vector<DrawRange> draws = upload_draws(gpu, run, node, due);
+    const std::vector<DrawRange> draws = upload_draws(gpu, run, node);
     LayerTarget target(gpu);
-    for (std::size_t i = 0; i < due.size(); ++i) {
-        const ShadowPlan::View& view = due[i];
+    for (const std::size_t i : due) {
+        const ShadowPlan::View& view = views[i];
         const std::uint32_t resolution = resolution_of(view, node.settings);
         target.set_layer(run.object(view.cube ? out.cubes : out.maps), view.layer, resolution);
         target.clear();

@@ -45,7 +45,7 @@ struct ShadowMaps {
     TextureHandle cubes;                ///< 2D array, depth32f, reversed; six layers for each light
     TextureHandle maps;                 ///< 2D array, depth32f, reversed
     ValueHandle<DrawnShadows> drawn;
-    BufferHandle<gpu::DrawCommand> draws;  ///< of the views drawn in the last run of the node
+    BufferHandle<gpu::DrawCommand> draws;  ///< of all views
 };
 
 /// Assigns shadow maps to the lights that cast shadows, by decreasing flux, as long as the budget lasts.
