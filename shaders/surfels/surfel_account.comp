@@ -8,7 +8,7 @@ layout(local_size_x = SURFEL_GROUP) in;
 // Scale, and 1 - covered share.
 layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { CellLight cells[]; };
-layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 bounced[]; };  // radiosity, scale
+layout(std430, binding = BINDING_BOUNCE) readonly restrict buffer Bounce { vec4 bounced[]; };  // see surfel_bounce.comp
 layout(std430, binding = BINDING_FLUX_ACCOUNT) restrict buffer Flux { FluxAccount flux[]; };
 
 uniform uint bounce;  // number of the last bounce that was gathered; 1: none yet
@@ -23,7 +23,8 @@ shared vec3 escaped[SURFEL_GROUP];
 shared vec3 truncated[SURFEL_GROUP];
 shared bool is_spent[SURFEL_GROUP];
 
-// Flux that a cell reflects after the last bounce, which no surfel gathers any more.
+// Flux that a cell reflects after the last bounce, which no surfel gathers any more. Less than 0 if too much of it was
+// foreseen.
 vec3 left_over(uint id, CellLight cell) {
     if (bounce < 2u) return cell.direct - cell.emitted;
     return cell.area * bounced[((bounce + 1u) % 2u) * surfel_count + id].rgb;
@@ -42,7 +43,7 @@ void main() {
         absorbed[lane] += cell.arriving + cell.emitted - cell.direct + (1.0 - cell.albedo) * indirect;
         escaped[lane] += rows[id].y * (cell.direct + cell.albedo * indirect - left);
         truncated[lane] += left;
-        if (any(greaterThan(left, LITTLE * (cell.direct + cell.albedo * indirect)))) is_spent[lane] = false;
+        if (any(greaterThan(abs(left), LITTLE * (cell.direct + cell.albedo * indirect)))) is_spent[lane] = false;
     }
     barrier();
     if (lane > 0u) return;

@@ -12,7 +12,8 @@ layout(std430, binding = BINDING_FORM_FACTORS) readonly restrict buffer FormFact
 // Scale, and 1 - covered share.
 layout(std430, binding = BINDING_SURFEL_ROWS) readonly restrict buffer Rows { vec2 rows[]; };
 layout(std430, binding = BINDING_CELL_LIGHT) restrict buffer Cells { CellLight cells[]; };
-// Two buffers in turn, for the previous bounce and this one: rgb is radiosity, a the surfel's scale.
+// Two parts in turn, for the previous bounce and this one: rgb is radiosity, a the surfel's scale. A third one for the
+// irradiance of this bounce.
 layout(std430, binding = BINDING_BOUNCE) restrict buffer Bounce { vec4 bounced[]; };
 layout(std430, binding = BINDING_FLUX_ACCOUNT) readonly restrict buffer Flux { FluxAccount flux[]; };
 
@@ -63,5 +64,6 @@ void main() {
     float scale = rows[id].x;
     vec3 irradiance = scale * sum;
     bounced[((bounce + 1u) % 2u) * surfel_count + id] = vec4(cells[id].albedo * irradiance, scale);
+    bounced[2u * surfel_count + id] = vec4(irradiance, 0.0);
     cells[id].indirect += irradiance;
 }

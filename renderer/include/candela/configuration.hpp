@@ -43,13 +43,17 @@ enum class VplPlacement : std::uint8_t {
 /// Largest VplSettings::count with VplPlacement::surfels. The form factors between them then take 256 MiB.
 inline constexpr std::uint32_t most_surfels = 65536;
 
+/// Largest VplSettings::bounces. Surfels then gather all bounces.
+inline constexpr std::uint32_t all_bounces = 64;
+
 /// Number and placement of VPLs.
 struct VplSettings {
     VplPlacement placement = VplPlacement::surfels;
     std::uint32_t count = 512;  ///< with paths: most VPLs, up to 2^20; with surfels: about so many
     /// Most bounces. 1: light → surface → visible surface; 0: no indirect light. Surfels stop when
-    /// a bounce adds less than 0.02 % to the light of each.
-    std::uint32_t bounces = 64;
+    /// a bounce adds less than 0.02 % to the light of each, and at `all_bounces` extrapolate to those to
+    /// come.
+    std::uint32_t bounces = all_bounces;
     std::uint32_t seed = 0;  ///< of the pseudo-random placement
     bool operator==(const VplSettings&) const = default;
 };

@@ -59,8 +59,10 @@ void for_each_setting(Config& c, const Visitor& visit) {
         c.indirect);
     row("vpls.count", "--vpls", c.vpls.count, {0, 1 << 20},
         "number of VPLs: about so many surfels, or at most so many on paths", c.indirect);
-    row("vpls.bounces", "--bounces", c.vpls.bounces, {0, 64},
-        "most reflections of light; 0: direct light only; 1: light, surface, visible surface", c.indirect);
+    row("vpls.bounces", "--bounces", c.vpls.bounces, {0, all_bounces},
+        "most reflections of light; 0: direct light only; 1: light, surface, visible surface; 64: all of "
+        "them, with surfels",
+        c.indirect);
     row("vpls.seed", "--seed", c.vpls.seed, {0, most_seeds}, "of the random places of VPLs", c.indirect);
     row("vpls.interleave", "--interleave", c.interleave, {},
         "with n, a pixel evaluates one in n² VPLs; the rest of their light comes from neighbours on the "

@@ -35,12 +35,14 @@ SurfelNumbers numbers_of(const Execution& run, const Surfels& surfels) {
 struct BouncePrograms {
     const gl::Program& first;
     const gl::Program& further;
+    const gl::Program& extrapolate;
     const gl::Program& account;
     const gl::Program& writer;
 };
 
 /// Gathers up to bounce `bounces`. Every few bounces, the account finds out how much light is left; once it
-/// is little, the remaining dispatches return at once.
+/// is little, the remaining dispatches return at once. If all bounces are wanted, each time before that the
+/// light of those to come is added as far as the last two tell.
 void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::uint32_t count,
                     std::uint32_t bounces) {
     constexpr std::uint32_t bounces_an_account = 4;
@@ -52,6 +54,7 @@ void gather_bounces(ComputeSteps& steps, const BouncePrograms& programs, std::ui
         steps.run(bounce == 2 ? programs.first : programs.further, {groups(count, SURFEL_GROUP)},
                   uniforms(bounce));
         if (bounce % bounces_an_account == 0 || bounce == bounces) {
+            if (bounces == all_bounces) steps.run(programs.extrapolate, {}, uniforms(bounce));
             steps.run(programs.account, {}, uniforms(bounce));
         }
     }
@@ -174,6 +177,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         const BouncePrograms programs{
             .first = gpu.program({"surfels/surfel_bounce.comp"}, {"FIRST"}),
             .further = gpu.program({"surfels/surfel_bounce.comp"}),
+            .extrapolate = gpu.program({"surfels/surfel_extrapolate.comp"}),
             .account = gpu.program({"surfels/surfel_account.comp"}),
             .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant(sources))};
         [[maybe_unused]] const auto lit_cells =
@@ -190,7 +194,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             counts.sky_patches = sky ? run.value(sky->count) : 0;
             run.set(out.counts, counts);
             const auto [count, points] = numbers_of(run, surfels);
-            run.reserve(bounced, 2 * count);
+            run.reserve(bounced, 3 * count);
             run.reserve(lit.surfels, count);
             run.reserve(lit.points, points);
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
