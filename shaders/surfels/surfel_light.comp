@@ -33,7 +33,25 @@ bool is_hidden(Light light, vec3 origin, vec3 direction) {
     return any_hit(origin, direction, 0.0, distance_to(light, origin) - ray_offset);
 }
 
+// Where a cell point receives the light of a source `height` above its plane: sunk behind its surface, so that the source
+// is at least as high as the point's part of the surface is wide. See theory.md, "Lights close to a surface".
+vec3 sunk_position(CellPoint point, float height) {
+    return point.position - max(sqrt(point.area) - height, 0.0) * point.normal;
+}
+
+vec3 irradiance_from_place(Light light, CellPoint point) {
+    vec3 to_light = light.position - point.position;
+    float height = dot(point.normal, to_light);
+    // A light on the surface lights it like one just in front of it.
+    if (height < -ray_offset) return vec3(0.0);
+    Incident incident = incident_light(light, sunk_position(point, max(height, 0.0)));
+    if (incident.irradiance == vec3(0.0)) return vec3(0.0);
+    if (is_hidden(light, point.position + ray_offset * point.normal, normalize(to_light))) return vec3(0.0);
+    return max(dot(point.normal, incident.direction), 0.0) * incident.irradiance;
+}
+
 vec3 irradiance_from(Light light, CellPoint point) {
+    if (light.kind != LIGHT_DIRECTIONAL) return irradiance_from_place(light, point);
     Incident incident = incident_light(light, point.position);
     float cos_surface = dot(point.normal, incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
