@@ -141,6 +141,12 @@ struct Surfel {
     uint seed DEFAULT(0u);  // of its random directions
 };
 
+// What is traced for a surfel in a frame, of its form factors to others and its depth map. 0: nothing.
+#define SURFEL_CHANGED 1u      // rays that pass the boxes in which the scene has changed
+#define SURFEL_WHOLE 2u        // all rays
+#define SURFEL_COLUMN 4u       // also those of the others to it
+#define SURFEL_NO_FACTORS 8u   // nothing: its form factors become 0
+#define SURFEL_NO_MAP 16u      // nothing: its depth map lets no light through
 #define SURFEL_MAP_OF_FOCUS 0x80000000u  // the depth map is a picture of VplConstants::focus_*, not of the hemisphere
 
 // A surfel with the light that its cell reflects, as a VPL.

@@ -38,7 +38,7 @@ class TimedFrame {
 };
 
 FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index, double cpu_ms) {
-    FrameReport report{.index = index, .cpu_ms = cpu_ms, .gpu_ms = 0.0, .passes = {}};
+    FrameReport report{.index = index, .cpu_ms = cpu_ms, .gpu_ms = 0.0, .waiting_surfels = 0, .passes = {}};
     for (const PassRecord& pass : passes) {
         report.passes.push_back({.name = std::string(pass.name),
                                  .ran = pass.ran,
@@ -108,8 +108,16 @@ void warn_of_few_vpls(Log& log, const VplReport& vpls) {
     }
 }
 
+/// Whether both have the same graph and differ only in how many surfels may be traced in a frame.
+bool differ_in_limit(Configuration a, const Configuration& b) {
+    const bool both_have = a.vpls.updates > 0 && b.vpls.updates > 0;
+    a.vpls.updates = b.vpls.updates;
+    return both_have && a == b;
+}
+
 /// Whether both give the same picture before tone mapping while nothing moves.
 bool same_radiance(Configuration a, const Configuration& b) {
+    a.vpls.updates = b.vpls.updates;
     a.tone_map = b.tone_map;
     a.frame_budget_ms = b.frame_budget_ms;
     return a == b;
@@ -127,6 +135,10 @@ Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& optio
 std::vector<std::string> Renderer::State::configure(const Configuration& configuration) {
     std::vector<std::string> errors = validate(configuration);
     if (!errors.empty() || configuration == configuration_) return errors;
+    if (differ_in_limit(configuration, configuration_)) {
+        configuration_ = configuration;
+        return {};
+    }
     return try_to(configuration, extensions_);
 }
 
@@ -231,6 +243,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     }
     set_refinement_clock();
     if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);
+    set_update_clock();
     if (frame_.requests) runtime_.set(*frame_.requests, std::move(without_jitter));
 
     const auto start = std::chrono::steady_clock::now();
@@ -241,10 +254,17 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     }
     gpu_.log().tell_counts();
     completed_ = true;
-    refine_ = refines();
+    waits_ = waiting() > 0;
+    refine_ = !waits_ && refines();
     pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality()});
+    pending_.back().report.waiting_surfels = waiting();
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) runtime_.verify(world);
+}
+
+/// Surfels whose visibility is traced in later frames.
+std::uint32_t Renderer::State::waiting() const {
+    return frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
 }
 
 /// Whether another frame is to be added to the mean of a view.
@@ -337,6 +357,14 @@ void Renderer::State::set_refinement_clock() {
     if (frame_.refinement_clock) runtime_.set(*frame_.refinement_clock, refinement_clock_);
 }
 
+/// Asks for more of what waits.
+void Renderer::State::set_update_clock() {
+    if (!frame_.update_clock) return;
+    update_clock_.limit = configuration_.vpls.updates;
+    if (std::exchange(waits_, false)) ++update_clock_.round;
+    runtime_.set(*frame_.update_clock, update_clock_);
+}
+
 void Renderer::State::invalidate() {
     runtime_.invalidate();
     ++epoch_;
@@ -415,6 +443,7 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
     };
     const VplCounts& counts = runtime_.value(vpls.counts);
     VplReport report{.requested = configuration_.vpls.count,
+                     .waiting = waiting(),
                      .interleave = view.interleave,
                      .filled_pixels = count_filled(view),
                      .flux = {},

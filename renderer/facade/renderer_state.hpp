@@ -37,7 +37,9 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] GraphDescription description() const;
     [[nodiscard]] std::string describe(GraphFormat format) const;
     [[nodiscard]] Quality quality() const { return {shape_.quality.scale, frame_.views.front().interleave}; }
-    [[nodiscard]] bool settled() const { return completed_ && !refine_ && shape_.quality == Quality{}; }
+    [[nodiscard]] bool settled() const {
+        return completed_ && !waits_ && !refine_ && shape_.quality == Quality{};
+    }
     [[nodiscard]] const std::vector<PassRecord>& last_passes() const { return last_passes_; }
     [[nodiscard]] Gpu& gpu() { return gpu_; }
 
@@ -62,6 +64,8 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] Quality quality_now(const World& world, std::vector<ViewRequest> requests);
     void learn_cost(const PendingFrame& frame);
     void set_refinement_clock();
+    void set_update_clock();
+    [[nodiscard]] std::uint32_t waiting() const;
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] bool refines() const;
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
@@ -85,6 +89,8 @@ class CANDELA_PRIVATE Renderer::State {
     FrameHandles frame_;
     std::uint64_t epoch_ = 0;  // incremented by `invalidate`: cached scene data is void
     RefinementClock refinement_clock_;
+    UpdateClock update_clock_;
+    bool waits_ = false;      // whether surfels wait for later frames
     bool refine_ = false;     // whether the next frame adds another sample to the mean
     bool completed_ = false;  // whether the last frame did not throw, nor was followed by `invalidate`
     std::vector<PassRecord> last_passes_;

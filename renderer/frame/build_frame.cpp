@@ -104,6 +104,7 @@ struct SurfelInputs {
     ValueHandle<SceneMotion> motion;
     SurfelFoci foci;
     SurfelSources sources;
+    std::optional<ValueHandle<UpdateClock>> update_clock;  ///< none: all is traced at once
 };
 
 SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
@@ -113,7 +114,11 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
     SurfelInputs inputs{
         .motion = add_scene_motion(graph, lit.scene, *frame.epoch),
         .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests, wanted.settings.count),
-        .sources = {.lights = lit.lights, .emitters = wanted.emitters, .sky = {}}};
+        .sources = {.lights = lit.lights, .emitters = wanted.emitters, .sky = {}},
+        .update_clock = {}};
+    if (wanted.settings.updates > 0) {
+        frame.update_clock = inputs.update_clock = graph.import_value<UpdateClock>("update clock");
+    }
     if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     return inputs;
 }
@@ -122,18 +127,26 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
 struct VplSet {
     Vpls vpls;
     MappedVpls mapped;
+    std::optional<ValueHandle<std::uint32_t>> waiting;  ///< SurfelUpdates::waiting
 };
 
 VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                       std::optional<ValueHandle<Refinement>> refinement, const SurfelInputs& inputs) {
     const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, refinement,
                                         inputs.foci, wanted.settings);
+    std::optional<SurfelUpdates> updates;
+    if (inputs.update_clock && wanted.settings.updates > 0) {
+        updates = add_surfel_updates(graph, surfels, lit.tracing, inputs.motion, inputs.foci, refinement,
+                                     *inputs.update_clock);
+    }
+    const auto tasks = updates ? std::optional(updates->tasks) : std::nullopt;
     const SurfelVisibility visibility =
-        add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion);
+        add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion, tasks);
     return {.vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, inputs.sources,
                                      wanted.settings.bounces, wanted.shown),
-            .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion},
-                       inputs.foci.of_maps}};
+            .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion, tasks},
+                       inputs.foci.of_maps},
+            .waiting = updates ? std::optional(updates->waiting) : std::nullopt};
 }
 
 VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
@@ -141,7 +154,7 @@ VplSet add_path_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const
     const ValueHandle<PathPlan> plan =
         add_vpl_paths(graph, lit.tracing.metrics, lit.lights.table, refinement, wanted.settings);
     const Vpls vpls = add_vpl_trace(graph, gpu, lit.tracing, plan, lit.lights.buffer, wanted.bound);
-    return {vpls, {vpls.counts, std::get<TracedVpls>(vpls.records).vpls, std::nullopt}};
+    return {vpls, {vpls.counts, std::get<TracedVpls>(vpls.records).vpls, std::nullopt}, std::nullopt};
 }
 
 /// `inputs`: none for VPLs on paths.
@@ -156,6 +169,7 @@ VplSet add_vpl_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const 
 VplLight add_other_set(FrameGraph& graph, Gpu& gpu, WantedVpls wanted, const LitScene& lit,
                        const std::optional<SurfelInputs>& inputs, VplVisibilitySettings visibility) {
     wanted.settings.seed += 0x80000000U;  // far from those of refinement
+    wanted.settings.updates = 0;
     graph.append_to_names(" (other set)");
     const VplSet set = add_vpl_set(graph, gpu, wanted, lit, std::nullopt, inputs);
     const bool occluded = visibility.method != VplVisibility::none;
@@ -181,6 +195,7 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
     }
     const VplSet set = add_vpl_set(graph, gpu, wanted, lit, refinement, inputs);
     frame.vpls = set.vpls;
+    frame.waiting = set.waiting;
     VplLight light{.vpls = set.vpls,
                    .common = add_vpl_constants(graph, gpu, frame.metrics, set.vpls.counts, set.mapped.focus,
                                                configuration.visibility)};

@@ -15,6 +15,7 @@
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/surfaces/host_surfaces.hpp"
+#include "renderer/passes/surfels/surfel_updates.hpp"
 #include "renderer/passes/view/refinement.hpp"
 #include "renderer/passes/view/view.hpp"
 #include "renderer/passes/vpls/vpls.hpp"
@@ -44,7 +45,9 @@ struct FrameHandles {
     std::optional<ValueHandle<std::uint64_t>> epoch;
     /// Imported: of all views, with the size of the target and without jitter; none without surfels.
     std::optional<ValueHandle<std::vector<ViewRequest>>> requests;
-    std::optional<Vpls> vpls;                                      ///< none without indirect light
+    std::optional<Vpls> vpls;                              ///< none without indirect light
+    std::optional<ValueHandle<UpdateClock>> update_clock;  ///< imported; none without VplSettings::updates
+    std::optional<ValueHandle<std::uint32_t>> waiting;     ///< SurfelUpdates::waiting, likewise
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::vector<ViewHandles> views;                                ///< at least one
 };

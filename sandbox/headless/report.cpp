@@ -26,7 +26,11 @@ Json to_json(const FrameReport& frame) {
         passes.push_back(
             {{"name", pass.name}, {"ran", pass.ran}, {"cpu_ms", pass.cpu_ms}, {"gpu_ms", pass.gpu_ms}});
     }
-    return {{"index", frame.index}, {"cpu_ms", frame.cpu_ms}, {"gpu_ms", frame.gpu_ms}, {"passes", passes}};
+    return {{"index", frame.index},
+            {"cpu_ms", frame.cpu_ms},
+            {"gpu_ms", frame.gpu_ms},
+            {"waiting_surfels", frame.waiting_surfels},
+            {"passes", passes}};
 }
 
 Json to_json(const VplReport& vpls) {
@@ -36,6 +40,7 @@ Json to_json(const VplReport& vpls) {
     return {{"requested", vpls.requested},
             {"alive", vpls.alive},
             {"paths", vpls.paths},
+            {"waiting", vpls.waiting},
             {"interleave", vpls.interleave},
             {"filled_pixels", vpls.filled_pixels},
             {"estimated_error", vpls.estimated_error ? Json(*vpls.estimated_error) : Json(nullptr)},

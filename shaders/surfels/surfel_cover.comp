@@ -1,12 +1,12 @@
 // Finds which share of a surfel's hemisphere is covered by reflecting surfaces, with COVER_PARTS · COVER_RAYS
-// cosine-weighted rays. The form factors of the surfel's row should add up to it. A surfel that stays keeps what its rays
-// have found, unless they pass a changed box. One work group per surfel, COVER_RAYS rays an invocation, which bounds its
+// cosine-weighted rays. The form factors of the surfel's row should add up to it. A surfel keeps what its rays have
+// found, unless it is to be traced. One work group per surfel, COVER_RAYS rays an invocation, which bounds its
 // loops.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "sampling.glsl"
 #include "surfels/surfel.glsl"
-#include "surfels/surfel_kept.glsl"
+#include "surfels/surfel_tasks.glsl"
 
 layout(local_size_x = COVER_PARTS) in;
 
@@ -25,8 +25,9 @@ vec3 ray_direction(Surfel surfel, uint i) {
     return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, surfel.seed));
 }
 
-bool rays_may_have_changed(Surfel surfel) {
-    if (everything_changed || changed_box_count == 0u) return everything_changed;
+bool is_outdated(uint id, Surfel surfel) {
+    if (everything_changed || has_task(id, SURFEL_WHOLE | SURFEL_NO_FACTORS)) return true;
+    if (changed_box_count == 0u || !has_task(id, SURFEL_CHANGED)) return false;
     for (uint i = 0u; i < COVER_RAYS; ++i) {
         if (may_have_changed(surfel.position, ray_direction(surfel, i), 1.0 / 0.0)) return true;
     }
@@ -37,9 +38,10 @@ void main() {
     uint id = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
     if (id >= surfel_count) return;
     Surfel surfel = surfels[id];
-    if (!rays_may_have_changed(surfel) && kept[id] != NO_SURFEL) return;
+    if (!is_outdated(id, surfel)) return;
     uint hits = 0u;
-    for (uint i = 0u; i < COVER_RAYS; ++i) {
+    uint rays = has_task(id, SURFEL_NO_FACTORS) ? 0u : COVER_RAYS;
+    for (uint i = 0u; i < rays; ++i) {
         vec3 direction = ray_direction(surfel, i);
         Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
         if (reflects(hit, direction)) ++hits;

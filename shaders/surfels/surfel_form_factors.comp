@@ -1,11 +1,11 @@
 // Form factors: the share of a surfel's cosine-weighted hemisphere that the cell in each column fills, 0 where a ray
-// finds the other surfel hidden. Pairs of surfels that stay keep theirs, unless the ray passes a changed box. One
+// finds the other surfel hidden. Pairs keep theirs, unless they are to be traced. One
 // invocation per row and two columns; work groups: x along rows, y along pairs of columns, of all or of those that are
 // listed.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "surfels/surfel.glsl"
-#include "surfels/surfel_kept.glsl"
+#include "surfels/surfel_tasks.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
@@ -43,10 +43,11 @@ bool has_surfel(uint row, uint column) { return column < columns && surfel_of(ro
 
 // Whether the factor that is there still holds.
 bool pair_stays(uint row, uint column) {
-    if (everything_changed || kept[row] == NO_SURFEL) return false;
+    if (everything_changed || has_task(row, SURFEL_WHOLE | SURFEL_NO_FACTORS)) return false;
     if (!has_surfel(row, column)) return true;
     uint other = surfel_of(row, column);
-    if (kept[other] == NO_SURFEL) return false;
+    if (has_task(other, SURFEL_COLUMN | SURFEL_NO_FACTORS)) return false;
+    if (!has_task(row, SURFEL_CHANGED)) return true;
     vec3 from = surfels[row].position;
     return !may_have_changed(from, surfels[other].position - from, 1.0);
 }
@@ -54,6 +55,7 @@ bool pair_stays(uint row, uint column) {
 float visible_form_factor(uint row, uint column) {
     uint other = surfel_of(row, column);
     if (!has_surfel(row, column) || other == row) return 0.0;
+    if (has_task(row, SURFEL_NO_FACTORS) || has_task(other, SURFEL_NO_FACTORS)) return 0.0;
     Surfel from = surfels[row];
     Surfel to = surfels[other];
     float factor = form_factor(from, to);

@@ -13,15 +13,18 @@ struct MappedVpl {
 #ifdef SURFELS
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
-layout(std430, binding = BINDING_NEW_MAPS) readonly restrict buffer NewMaps { uint new_maps[]; };
+// By surfel: SURFEL_CHANGED and the like.
+layout(std430, binding = BINDING_MAP_TASKS) readonly restrict buffer MapTasks { uint map_tasks[]; };
+
+uniform bool has_tasks;  // else all is drawn
 
 bool is_freed(uint index) { return index >= vpl_constants.first_emitter; }
 
 // All but those on deformed triangles without area, and freed slots.
 bool has_map(uint index) { return !is_freed(index) && surfels[index].normal != vec3(0.0); }
 
-// Whether all of the slot has to be drawn, as it was of another surfel. Unknown if everything has changed.
-bool is_new(uint index) { return is_freed(index) || new_maps[index] != 0u; }
+// What is to be drawn in the slot. If everything may have changed, all is drawn but where nothing is to be.
+uint map_task(uint index) { return is_freed(index) || !has_tasks ? SURFEL_WHOLE : map_tasks[index]; }
 
 MappedVpl mapped_vpl(uint index) {
     if (is_freed(index)) return MappedVpl(vec3(0.0), vec3(0.0), index);
@@ -34,7 +37,7 @@ layout(std430, binding = BINDING_TRACED_VPLS) readonly restrict buffer TracedVpl
 
 bool has_map(uint index) { return traced_vpls[index].state == VPL_PLACED; }
 
-bool is_new(uint index) { return true; }
+uint map_task(uint index) { return SURFEL_WHOLE; }
 
 MappedVpl mapped_vpl(uint index) { return MappedVpl(traced_vpls[index].position, traced_vpls[index].normal, index); }
 

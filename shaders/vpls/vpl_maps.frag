@@ -1,5 +1,5 @@
-// Depth map of a VPL: traces a ray through the centre of the texel. Slots without a map are cleared. One fragment per
-// texel.
+// Depth map of a VPL: traces a ray through the centre of the texel. Slots without a map are cleared; a surfel
+// whose map waits lets no light through. One fragment per texel.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "vpls/mapped_vpl.glsl"
@@ -12,13 +12,18 @@ void main() {
     if (gl_HelperInvocation) return;
     gl_FragDepth = 0.0;
     if (!has_map(vpl_index)) return;
+    uint task = map_task(vpl_index);
+    if ((task & SURFEL_NO_MAP) != 0u) {
+        gl_FragDepth = 1.0;
+        return;
+    }
     MappedVpl vpl = mapped_vpl(vpl_index);
     vec3 origin = vpl_map_origin(vpl.position, vpl.normal);
     vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl.map).corner)) / float(vpl_constants.map_resolution);
     MapFrame frame = vpl_map_frame(vpl.position, vpl.normal, vpl.map);
     vec3 local = normalize(vpl_map_point(frame, at * 2.0 - 1.0));
     vec3 direction = local * frame.map_from_world;
-    if (!everything_changed && !is_new(vpl_index) && !may_have_changed(origin, direction, 1.0 / 0.0)) discard;
+    if (!everything_changed && (task & SURFEL_WHOLE) == 0u && !may_have_changed(origin, direction, 1.0 / 0.0)) discard;
     Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
     gl_FragDepth = hit.triangle == NO_TRIANGLE ? 0.0 : vpl_map_depth(frame, hit.t * local);
 }

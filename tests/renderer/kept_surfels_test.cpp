@@ -184,13 +184,13 @@ Ids some_ids(std::size_t count, std::mt19937& engine) {
     return ids;
 }
 
-/// The slots that surfels have by their keys.
-void check_slots(const SurfelMaps& maps, const Ids& keys) {
+/// The slots that surfels have by their cells.
+void check_slots(const SurfelMaps& maps, const Ids& cells) {
     const std::set<std::uint32_t> used(maps.slots.begin(), maps.slots.end());
-    CHECK(used.size() == keys.size());
-    CHECK((used.empty() || *used.rbegin() < keys.size()));
-    REQUIRE(maps.keys.size() == keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) CHECK(maps.keys[maps.slots[i]] == keys[i]);
+    CHECK(used.size() == cells.size());
+    CHECK((used.empty() || *used.rbegin() < cells.size()));
+    REQUIRE(maps.cells.size() == cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) CHECK(maps.cells[maps.slots[i]] == cells[i]);
 }
 
 class KeptSurfelTests : public RenderFixture {
@@ -218,9 +218,9 @@ TEST_SUITE("surfels: kept") {
             const Ids ids = some_ids(count, engine);
             const SurfelMaps maps = assign_slots(ids, &last);
             check_slots(maps, ids);
-            for (std::uint32_t slot = 0; slot < last.keys.size(); ++slot) {
-                const auto stays = std::ranges::find(ids, last.keys[slot]);
-                if (stays != ids.end() && slot < count) CHECK(maps.keys[slot] == last.keys[slot]);
+            for (std::uint32_t slot = 0; slot < last.cells.size(); ++slot) {
+                const auto stays = std::ranges::find(ids, last.cells[slot]);
+                if (stays != ids.end() && slot < count) CHECK(maps.cells[slot] == last.cells[slot]);
             }
             last = maps;
         }
@@ -231,13 +231,13 @@ TEST_SUITE("surfels: kept") {
         std::vector<gpu::Surfel> surfels(2);
         surfels[1].position.x = 100.0F;
         const Ids ids{1, 2};
-        const SurfelMaps first = place_maps(surfels, ids, {glm::vec3(0.0F), 8.0F}, nullptr);
+        const SurfelMaps first = place_maps(surfels, ids, ids, {glm::vec3(0.0F), 8.0F}, nullptr);
         CHECK((surfels[0].map & SURFEL_MAP_OF_FOCUS) == 0);
         CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) != 0);
-        const SurfelMaps second = place_maps(surfels, ids, {glm::vec3(1.0F), 8.0F}, &first);
+        const SurfelMaps second = place_maps(surfels, ids, ids, {glm::vec3(1.0F), 8.0F}, &first);
         CHECK(first.keys[0] == second.keys[0]);
         CHECK(first.keys[1] != second.keys[1]);
-        static_cast<void>(place_maps(surfels, ids, {}, &second));
+        static_cast<void>(place_maps(surfels, ids, ids, {}, &second));
         CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) == 0);
     }
 

@@ -303,6 +303,15 @@ Configuration linear_configuration(ShadingPath path) {
     return configuration;
 }
 
+namespace {
+
+Configuration all_at_once(Configuration configuration) {
+    configuration.vpls.updates = 0;
+    return configuration;
+}
+
+}  // namespace
+
 void RenderFixture::configure(const Configuration& configuration) {
     REQUIRE(renderer.configure(configuration) == std::vector<std::string>{});
 }
@@ -313,9 +322,20 @@ Picture RenderFixture::render(const World& world, Entity camera, glm::uvec2 size
     return target.read();
 }
 
+Picture RenderFixture::settled_picture(const Scene& scene, glm::uvec2 size) {
+    constexpr int most_frames = 1000;
+    const RenderTarget target(device, size);
+    for (int frame = 0; frame < most_frames; ++frame) {
+        renderer.render(scene.world, scene.camera, target.target());
+        if (renderer.settled()) return target.read();
+    }
+    FAIL("does not settle");
+    return {};
+}
+
 Picture RenderFixture::fresh_picture(const Scene& scene, glm::uvec2 size) {
     TestedRenderer fresh(context->get_proc());
-    REQUIRE(fresh.configure(renderer.configuration()).empty());
+    REQUIRE(fresh.configure(all_at_once(renderer.configuration())).empty());
     const RenderTarget target(device, size);
     fresh.render(scene.world, scene.camera, target.target());
     return target.read();
@@ -325,7 +345,7 @@ Picture RenderFixture::from_scratch(const Scene& scene, glm::uvec2 size) {
     if (!other_) {
         other_ = std::make_unique<Renderer>(context->get_proc(), RendererOptions{.debug_output = true});
     }
-    REQUIRE(other_->configure(renderer.configuration()).empty());
+    REQUIRE(other_->configure(all_at_once(renderer.configuration())).empty());
     other_->invalidate();
     const RenderTarget target(device, size);
     other_->render(scene.world, scene.camera, target.target());

@@ -125,7 +125,10 @@ class RenderFixture : public GlFixture {
     [[nodiscard]] Picture render(const Scene& scene, glm::uvec2 size) {
         return render(scene.world, scene.camera, size);
     }
-    /// The picture of the scene by a new renderer with the same configuration.
+    /// Renders the scene until nothing waits any more.
+    [[nodiscard]] Picture settled_picture(const Scene& scene, glm::uvec2 size);
+    /// The picture of the scene by a new renderer with the same configuration, but with everything traced at
+    /// once: without VplSettings::updates.
     [[nodiscard]] Picture fresh_picture(const Scene& scene, glm::uvec2 size);
     /// The same by a renderer that is kept and invalidated, so that it need not compile its shaders again.
     [[nodiscard]] Picture from_scratch(const Scene& scene, glm::uvec2 size);

@@ -25,16 +25,22 @@ Configuration small_configuration(VplPlacement placement, VplVisibility method) 
 
 class Sequence : public RenderFixture {
  protected:
-    void check_sequence(unsigned sequence, VplPlacement placement, VplVisibility method) {
+    /// `updates`: VplSettings::updates; then several edits may follow each other before a picture is checked.
+    void check_sequence(unsigned sequence, VplPlacement placement, VplVisibility method,
+                        std::uint32_t updates = 0) {
         CAPTURE(sequence);
-        RandomEdits edits(cornell_box(), small_configuration(placement, method), test_seed(sequence));
+        Configuration configuration = small_configuration(placement, method);
+        configuration.vpls.updates = updates;
+        RandomEdits edits(cornell_box(), configuration, test_seed(sequence));
         edits.emission = sequence == 4;
         std::string history;
         for (int step = 0; step < steps; ++step) {
             history += edits.next();
             CAPTURE(history);
             const Picture shown = show(edits);
-            const bool same = shown == from_scratch(edits.scene, edits.size);
+            if (updates > 0 && step % 4 != 3) continue;
+            const Picture settled = updates > 0 ? settled_picture(edits.scene, edits.size) : shown;
+            const bool same = settled == from_scratch(edits.scene, edits.size);
             REQUIRE(same);
         }
         edits.clear_meshes();
@@ -58,6 +64,12 @@ TEST_SUITE("sequences") {
 
     TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: surfels, rays") {
         check_sequence(2, VplPlacement::surfels, VplVisibility::rays);
+    }
+
+    TEST_CASE_FIXTURE(Sequence,
+                      "after random edits a frame equals that of a new renderer once nothing waits") {
+        check_sequence(5, VplPlacement::surfels, VplVisibility::maps, 3);
+        check_sequence(6, VplPlacement::surfels, VplVisibility::rays, 3);
     }
 
     TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: paths, rays") {

@@ -131,7 +131,8 @@ class CANDELA_API Renderer {
     [[nodiscard]] Quality quality() const;
 
     /// Whether rendering the same views of the same world again would give the same pictures: refinement is
-    /// complete or off, and the frame budget does not reduce the quality.
+    /// complete or off, no surfels wait to be traced (VplSettings::updates), and the frame budget does not
+    /// reduce the quality.
     [[nodiscard]] bool settled() const;
 
     /// All passes of the last frame, with whether each ran. Empty between a change of the configuration and

@@ -28,6 +28,7 @@ struct FrameReport {
     std::uint64_t index = 0;
     double cpu_ms = 0.0;
     double gpu_ms = 0.0;
+    std::uint32_t waiting_surfels = 0;  ///< VplReport::waiting after the frame
     std::vector<PassReport> passes;
 };
 
@@ -48,10 +49,12 @@ struct EnergyAccount {
 
 /// Counts of the VPLs and of the work done for them.
 struct VplReport {
-    std::uint32_t requested = 0;   ///< VplSettings::count; those on emitting surfaces come in addition
-    std::uint32_t alive = 0;       ///< VPLs with a flux above zero
-    std::uint32_t paths = 0;       ///< light paths; 0 with surfels
-    std::uint32_t rays = 0;        ///< path segments, including those that hit nothing; 0 with surfels
+    std::uint32_t requested = 0;  ///< VplSettings::count; those on emitting surfaces come in addition
+    std::uint32_t alive = 0;      ///< VPLs with a flux above zero
+    std::uint32_t paths = 0;      ///< light paths; 0 with surfels
+    std::uint32_t rays = 0;       ///< path segments, including those that hit nothing; 0 with surfels
+    /// Surfels whose shadows are out of date, and are traced in the next frames: VplSettings::updates
+    std::uint32_t waiting = 0;
     std::uint32_t interleave = 1;  ///< n: a pixel evaluates one in n² VPLs
     /// Pixels that evaluated additional VPLs, because too few neighbours lie on the same surface.
     std::uint32_t filled_pixels = 0;

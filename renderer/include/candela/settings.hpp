@@ -64,6 +64,11 @@ void for_each_setting(Config& c, const Visitor& visit) {
         "them, with surfels",
         c.indirect);
     row("vpls.seed", "--seed", c.vpls.seed, {0, most_seeds}, "of the random places of VPLs", c.indirect);
+    row("vpls.updates", "--vpl-updates", c.vpls.updates, {0, 1 << 20},
+        "most surfels whose shadows are traced in a frame; others follow in the next ones, so that a frame "
+        "in "
+        "which much moves does not take longer; 0: all at once",
+        c.indirect && c.vpls.placement == VplPlacement::surfels);
     row("vpls.interleave", "--interleave", c.interleave, {},
         "with n, a pixel evaluates one in n² VPLs; the rest of their light comes from neighbours on the "
         "same surface",

@@ -43,6 +43,18 @@ class TracedContent {
         return changed;
     }
 
+    /// Whether the content is there, for a pass that traces by the tasks of a number (SurfelTasks) and has
+    /// done all before them. Its keys have to be others than those of passes that call `outdated`.
+    [[nodiscard]] bool holds(Execution& run, std::uint64_t number, Key key, const std::vector<ObjectId>& held,
+                             std::vector<ObjectId> objects) const {
+        Record now{std::move(key), std::move(objects), number};
+        const Record* const last = run.previous(record_);
+        const bool is_there = last != nullptr && last->key == now.key && last->objects == held &&
+                              (last->step == number || last->step + 1 == number);
+        run.set(record_, std::move(now));
+        return is_there;
+    }
+
     /// The pass overwrites the content with something else.
     void forget(Execution& run) const { run.set(record_, {}); }
 
@@ -50,7 +62,7 @@ class TracedContent {
     struct Record {
         Key key{};
         std::vector<ObjectId> objects;
-        std::uint64_t step = 0;  // of the scene's motion
+        std::uint64_t step = 0;  // of the scene's motion, or number of the tasks
         bool operator==(const Record&) const = default;
     };
     ValueHandle<Record> record_;

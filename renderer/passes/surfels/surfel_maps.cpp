@@ -24,40 +24,40 @@ std::uint64_t key_of_focus(std::uint64_t id, const Focus& focus) {
 
 }  // namespace
 
-SurfelMaps assign_slots(std::span<const std::uint64_t> keys, const SurfelMaps* last) {
-    SurfelMaps maps{.slots = std::vector<std::uint32_t>(keys.size(), no_slot),
-                    .keys = std::vector<std::uint64_t>(keys.size())};
+SurfelMaps assign_slots(std::span<const std::uint64_t> cells, const SurfelMaps* last) {
+    SurfelMaps maps{.slots = std::vector<std::uint32_t>(cells.size(), no_slot),
+                    .keys = {},
+                    .cells = std::vector<std::uint64_t>(cells.size())};
     std::unordered_map<std::uint64_t, std::uint32_t> last_slots;
     if (last != nullptr) {
-        for (std::uint32_t slot = 0; slot < last->keys.size(); ++slot) last_slots[last->keys[slot]] = slot;
+        for (std::uint32_t slot = 0; slot < last->cells.size(); ++slot) last_slots[last->cells[slot]] = slot;
     }
-    std::vector<bool> taken(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        const auto found = last_slots.find(keys[i]);
-        if (found == last_slots.end() || found->second >= keys.size()) continue;
+    std::vector<bool> taken(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto found = last_slots.find(cells[i]);
+        if (found == last_slots.end() || found->second >= cells.size()) continue;
         maps.slots[i] = found->second;
         taken[found->second] = true;
     }
     std::uint32_t next = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
         if (maps.slots[i] == no_slot) {
             while (taken[next]) ++next;
             maps.slots[i] = next++;
         }
-        maps.keys[maps.slots[i]] = keys[i];
+        maps.cells[maps.slots[i]] = cells[i];
     }
     return maps;
 }
 
-SurfelMaps place_maps(std::span<gpu::Surfel> surfels, std::span<const std::uint64_t> ids, const Focus& focus,
-                      const SurfelMaps* last) {
-    std::vector<std::uint64_t> keys(surfels.size());
+SurfelMaps place_maps(std::span<gpu::Surfel> surfels, std::span<const std::uint64_t> cells,
+                      std::span<const std::uint64_t> ids, const Focus& focus, const SurfelMaps* last) {
+    SurfelMaps maps = assign_slots(cells.first(surfels.size()), last);
+    maps.keys.resize(surfels.size());
     for (std::size_t i = 0; i < surfels.size(); ++i) {
-        keys[i] = is_far(focus, surfels[i].position) ? key_of_focus(ids[i], focus) : ids[i];
-    }
-    SurfelMaps maps = assign_slots(keys, last);
-    for (std::size_t i = 0; i < surfels.size(); ++i) {
-        surfels[i].map = maps.slots[i] | (keys[i] == ids[i] ? 0U : SURFEL_MAP_OF_FOCUS);
+        const bool far = is_far(focus, surfels[i].position);
+        maps.keys[maps.slots[i]] = far ? key_of_focus(ids[i], focus) : ids[i];
+        surfels[i].map = maps.slots[i] | (far ? SURFEL_MAP_OF_FOCUS : 0U);
     }
     return maps;
 }

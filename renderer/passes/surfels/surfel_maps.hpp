@@ -14,16 +14,19 @@ namespace candela {
 struct SurfelMaps {
     std::vector<std::uint32_t> slots;  ///< by surfel
     std::vector<std::uint64_t> keys;   ///< by slot: maps of the same key are equal, as long as nothing moves
+    std::vector<std::uint64_t> cells;  ///< by slot: of which surfel it is: Surfels::cells
     bool operator==(const SurfelMaps&) const = default;
 };
 
-/// Keeps the slots of the keys that `last` has as well, and gives each other one the lowest slot that is
-/// left. `keys`: by surfel, each once. `last`: null if there is none.
-[[nodiscard]] SurfelMaps assign_slots(std::span<const std::uint64_t> keys, const SurfelMaps* last);
+/// Keeps the slots of the cells that `last` has as well, and gives each other one the lowest slot that is
+/// left. `cells`: by surfel, each once. `last`: null if there is none. Leaves `keys` empty.
+[[nodiscard]] SurfelMaps assign_slots(std::span<const std::uint64_t> cells, const SurfelMaps* last);
 
-/// The same for surfels with these ids; sets gpu::Surfel::map. The map of a surfel that is farther than two
-/// radii from the centre of `focus` is a picture of the focus, and another one for each focus.
-[[nodiscard]] SurfelMaps place_maps(std::span<gpu::Surfel> surfels, std::span<const std::uint64_t> ids,
-                                    const Focus& focus, const SurfelMaps* last);
+/// The same for surfels with these cells and ids (Surfels); sets gpu::Surfel::map and SurfelMaps::keys. The
+/// map of a surfel that is farther than two radii from the centre of `focus` is a picture of the focus, and
+/// another one for each focus.
+[[nodiscard]] SurfelMaps place_maps(std::span<gpu::Surfel> surfels, std::span<const std::uint64_t> cells,
+                                    std::span<const std::uint64_t> ids, const Focus& focus,
+                                    const SurfelMaps* last);
 
 }  // namespace candela

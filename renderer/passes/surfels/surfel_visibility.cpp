@@ -15,6 +15,7 @@ namespace {
 /// What rays between surfels depend on besides these and the scene.
 struct VisibilityKey {
     float ray_offset = 0.0F;  // metres
+    bool planned = false;     // VisibilityNode::planned
     bool operator==(const VisibilityKey&) const = default;
 };
 
@@ -32,24 +33,27 @@ struct VisibilityNode {
     SurfelVisibility out;
     BufferHandle<std::uint32_t> cover;   // COVER_PARTS numbers of hits per surfel
     BufferHandle<std::uint32_t> kept;    // KeptSurfels::last
-    BufferHandle<std::uint32_t> listed;  // NewSurfels
+    BufferHandle<std::uint32_t> tasks;   // SurfelTasks::of
+    BufferHandle<std::uint32_t> listed;  // ListedSurfels
     BufferHandle<std::uint32_t> last_form_factors;
     BufferHandle<std::uint32_t> last_cover;
     TracedContent<VisibilityKey> known;
-    ValueHandle<std::vector<std::uint64_t>> known_ids;  // Surfels::ids
+    ValueHandle<std::vector<std::uint64_t>> known_ids;  // Surfels::ids, or with planned tasks Surfels::cells
+    std::optional<ValueHandle<SurfelTasks>> planned;
     VisibilityPrograms programs;
 };
 
-/// Where the form factors of surfels that do not stay are.
-struct NewSurfels {
+/// Where the form factors are that may have changed.
+struct ListedSurfels {
     std::vector<std::uint32_t> rows;
     std::vector<std::uint32_t> pairs;  // of columns
 };
 
 /// What is to be traced.
 struct Outdated {
-    std::optional<std::vector<Box>> changed;  // see changed_boxes
-    NewSurfels added;
+    std::optional<std::vector<Box>> changed;  // see changed_boxes; none: nothing is known
+    ListedSurfels listed;
+    bool has_tasks = false;        // they are known
     bool in_place = true;          // KeptSurfels
     std::uint32_t last_count = 0;  // of surfels
 };
@@ -59,11 +63,6 @@ constexpr std::uint32_t last_round = 4;
 
 std::uint64_t factor_words(std::uint32_t surfels) {
     return std::uint64_t{surfels} * surfel_columns(surfels).count / 2;
-}
-
-/// Whether which pairs of surfels have a factor depends on their indices.
-bool has_stride(std::uint32_t surfels) {
-    return surfel_columns(surfels).stride > 1;
 }
 
 std::vector<ObjectId> objects_of(const Execution& run, const VisibilityNode& node) {
@@ -76,23 +75,35 @@ void reserve_results(Execution& run, const VisibilityNode& node, std::uint32_t c
     run.reserve(node.cover, std::uint64_t{count} * COVER_PARTS);
 }
 
-NewSurfels new_surfels(const KeptSurfels& kept) {
-    const std::uint32_t stride = surfel_columns(static_cast<std::uint32_t>(kept.last.size())).stride;
-    NewSurfels added;
-    for (std::uint32_t i = 0; i < kept.last.size(); ++i) {
-        if (kept.last[i] != NO_SURFEL) continue;
-        added.rows.push_back(i);
-        const std::uint32_t pair = i / stride / 2;
-        if (added.pairs.empty() || added.pairs.back() != pair) added.pairs.push_back(pair);
+/// All that has changed.
+std::vector<std::uint32_t> tasks_of(const KeptSurfels& kept) {
+    std::vector<std::uint32_t> tasks;
+    tasks.reserve(kept.last.size());
+    for (const std::uint32_t last : kept.last) {
+        tasks.push_back(last == NO_SURFEL ? SURFEL_WHOLE | SURFEL_COLUMN : SURFEL_CHANGED);
     }
-    return added;
+    return tasks;
 }
 
-void upload_kept(const Gpu& gpu, Execution& run, const VisibilityNode& node, const KeptSurfels& kept,
-                 const NewSurfels& added) {
+ListedSurfels listed_surfels(const std::vector<std::uint32_t>& tasks, bool has_moved) {
+    const std::uint32_t stride = surfel_columns(static_cast<std::uint32_t>(tasks.size())).stride;
+    const std::uint32_t of_rows = SURFEL_WHOLE | SURFEL_NO_FACTORS | (has_moved ? SURFEL_CHANGED : 0U);
+    ListedSurfels listed;
+    for (std::uint32_t i = 0; i < tasks.size(); ++i) {
+        if ((tasks[i] & of_rows) != 0) listed.rows.push_back(i);
+        const std::uint32_t pair = i / stride / 2;
+        const bool has_column = (tasks[i] & (SURFEL_COLUMN | SURFEL_NO_FACTORS)) != 0;
+        if (has_column && (listed.pairs.empty() || listed.pairs.back() != pair)) listed.pairs.push_back(pair);
+    }
+    return listed;
+}
+
+void upload_tasks(const Gpu& gpu, Execution& run, const VisibilityNode& node, const KeptSurfels& kept,
+                  const std::vector<std::uint32_t>& tasks, const ListedSurfels& surfels) {
     upload<std::uint32_t>(gpu, run, node.kept, kept.last);
-    std::vector<std::uint32_t> listed = added.rows;
-    listed.insert(listed.end(), added.pairs.begin(), added.pairs.end());
+    upload<std::uint32_t>(gpu, run, node.tasks, tasks);
+    std::vector<std::uint32_t> listed = surfels.rows;
+    listed.insert(listed.end(), surfels.pairs.begin(), surfels.pairs.end());
     upload<std::uint32_t>(gpu, run, node.listed, listed);
 }
 
@@ -101,47 +112,58 @@ void copy_results(const Gpu& gpu, Execution& run, const VisibilityNode& node, st
     copy_content(gpu, run, node.cover, node.last_cover, std::uint64_t{count} * COVER_PARTS);
 }
 
+/// Around what has changed since the results were traced that are in the objects `held`.
+std::optional<std::vector<Box>> changes(Execution& run, const VisibilityNode& node,
+                                        const std::vector<ObjectId>& held) {
+    const VisibilityKey key{run.value(node.tracing.metrics).ray_offset(), node.planned.has_value()};
+    const std::vector<ObjectId> objects = objects_of(run, node);
+    if (!node.planned) return node.known.outdated(run, run.value(node.motion), key, held, objects);
+    const SurfelTasks& tasks = run.value(*node.planned);
+    return node.known.holds(run, tasks.number, key, held, objects) ? std::optional(tasks.changed)
+                                                                   : std::nullopt;
+}
+
 /// Makes room for the results, and keeps the last ones where the shaders find them.
 Outdated prepare_results(const Gpu& gpu, Execution& run, const VisibilityNode& node) {
-    const std::vector<std::uint64_t>& ids = run.value(node.out.surfels.ids);
+    const Surfels& surfels = node.out.surfels;
+    const std::vector<std::uint64_t>& ids = run.value(node.planned ? surfels.cells : surfels.ids);
     const auto* const known = run.previous(node.known_ids);
-    const std::vector<std::uint64_t> last_ids = known != nullptr ? *known : std::vector<std::uint64_t>{};
-    const KeptSurfels kept = kept_surfels(last_ids, ids);
+    const KeptSurfels kept = kept_surfels(known != nullptr ? *known : std::vector<std::uint64_t>{}, ids);
     const auto count = static_cast<std::uint32_t>(ids.size());
-    Outdated outdated{.changed = {},
-                      .added = new_surfels(kept),
-                      .in_place = kept.in_place,
-                      .last_count = static_cast<std::uint32_t>(last_ids.size())};
-    const bool can_keep = kept.in_place || !(has_stride(count) || has_stride(outdated.last_count));
-    if (can_keep && !kept.in_place) copy_results(gpu, run, node, outdated.last_count);
+    Outdated outdated{.changed = {}, .listed = {}, .in_place = kept.in_place, .last_count = kept.last_count};
+    if (kept.keeps_factors() && !kept.in_place) copy_results(gpu, run, node, kept.last_count);
     const std::vector<ObjectId> held = objects_of(run, node);
     reserve_results(run, node, count);
-    const VisibilityKey key{run.value(node.tracing.metrics).ray_offset()};
-    outdated.changed = node.known.outdated(run, run.value(node.motion), key, held, objects_of(run, node));
-    if (!can_keep) outdated.changed.reset();
-    if (outdated.changed) upload_kept(gpu, run, node, kept, outdated.added);
+    outdated.changed = changes(run, node, held);
+    if (!kept.keeps_factors()) outdated.changed.reset();
+    const std::vector<std::uint32_t> tasks = node.planned ? run.value(*node.planned).of : tasks_of(kept);
+    outdated.listed = listed_surfels(tasks, outdated.changed && !outdated.changed->empty());
+    outdated.has_tasks = outdated.changed || node.planned;
+    if (outdated.has_tasks) upload_tasks(gpu, run, node, kept, tasks, outdated.listed);
     run.set(node.known_ids, ids);
     return outdated;
 }
 
-/// If nothing has moved, only rows and columns of new surfels: there are few of them, but each invocation
-/// takes time even if it traces nothing.
+/// If few rows may have changed, only these and the columns of new surfels: each invocation takes time even
+/// if it traces nothing.
 void find_form_factors(ComputeSteps& steps, const gl::Program& program, std::uint32_t count,
                        const Outdated& outdated, const gl::Uniforms& uniforms) {
     const auto run = [&](std::uint32_t rows, std::uint32_t pairs, bool list_rows, bool list_pairs) {
-        const auto first_pair = static_cast<std::uint32_t>(outdated.added.rows.size());
+        const auto first_pair = static_cast<std::uint32_t>(outdated.listed.rows.size());
         steps.run(program, {groups(rows, SURFEL_GROUP), pairs},
                   uniforms + gl::Uniforms{{"listed_rows", list_rows ? rows : 0U},
                                           {"listed_pairs", list_pairs ? pairs : 0U},
                                           {"first_pair", first_pair}});
     };
     const std::uint32_t pairs = surfel_columns(count).count / 2;
-    if (!outdated.changed || !outdated.changed->empty()) {
+    const auto rows = static_cast<std::uint32_t>(outdated.listed.rows.size());
+    const auto listed_pairs = static_cast<std::uint32_t>(outdated.listed.pairs.size());
+    if (!outdated.changed || rows == count) {
         run(count, pairs, false, false);
-    } else if (!outdated.added.rows.empty()) {
-        run(static_cast<std::uint32_t>(outdated.added.rows.size()), pairs, true, false);
-        run(count, static_cast<std::uint32_t>(outdated.added.pairs.size()), false, true);
+        return;
     }
+    if (rows > 0) run(rows, pairs, true, false);
+    if (listed_pairs > 0) run(count, listed_pairs, false, true);
 }
 
 void find_visibility(const Gpu& gpu, const Execution& run, const VisibilityNode& node,
@@ -152,7 +174,7 @@ void find_visibility(const Gpu& gpu, const Execution& run, const VisibilityNode&
     const float ray_offset = run.value(node.tracing.metrics).ray_offset();
     const gl::Uniforms common = count_uniforms(count);
     const gl::Uniforms traced = common + changed_box_uniforms(outdated.changed, 4.0F * ray_offset) +
-                                gl::Uniforms{{"ray_offset", ray_offset}};
+                                gl::Uniforms{{"ray_offset", ray_offset}, {"has_tasks", outdated.has_tasks}};
     const std::uint32_t surfel_groups = groups(count, SURFEL_GROUP);
     ComputeSteps steps(gpu);
     if (outdated.changed && !outdated.in_place) {
@@ -176,6 +198,13 @@ SurfelColumns surfel_columns(std::uint32_t surfels) {
     return {.count = count + count % 2, .stride = stride};
 }
 
+bool KeptSurfels::keeps_factors() const {
+    const auto has_stride = [](std::size_t surfels) {
+        return surfel_columns(static_cast<std::uint32_t>(surfels)).stride > 1;
+    };
+    return in_place || !(has_stride(last.size()) || has_stride(last_count));
+}
+
 gl::Uniforms count_uniforms(std::uint32_t surfels) {
     const SurfelColumns columns = surfel_columns(surfels);
     return {{"surfel_count", surfels}, {"columns", columns.count}, {"column_stride", columns.stride}};
@@ -184,7 +213,9 @@ gl::Uniforms count_uniforms(std::uint32_t surfels) {
 KeptSurfels kept_surfels(std::span<const std::uint64_t> last_ids, std::span<const std::uint64_t> ids) {
     std::unordered_map<std::uint64_t, std::uint32_t> last_indices;
     for (std::uint32_t i = 0; i < last_ids.size(); ++i) last_indices.emplace(last_ids[i], i);
-    KeptSurfels kept{.last = {}, .in_place = last_ids.size() == ids.size()};
+    KeptSurfels kept{.last = {},
+                     .in_place = last_ids.size() == ids.size(),
+                     .last_count = static_cast<std::uint32_t>(last_ids.size())};
     kept.last.reserve(ids.size());
     for (std::uint32_t i = 0; i < ids.size(); ++i) {
         const auto found = last_indices.find(ids[i]);
@@ -195,10 +226,15 @@ KeptSurfels kept_surfels(std::span<const std::uint64_t> last_ids, std::span<cons
 }
 
 SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                       const Surfels& surfels, ValueHandle<SceneMotion> motion) {
+                                       const Surfels& surfels, ValueHandle<SceneMotion> motion,
+                                       std::optional<ValueHandle<SurfelTasks>> tasks) {
     return graph.add("surfel-visibility", [&](Pass& pass) {
         pass.read(surfels.counts);
-        pass.read(surfels.ids);
+        pass.read(tasks ? surfels.cells : surfels.ids);
+        if (tasks) {
+            pass.keeps_state();
+            pass.read(*tasks);
+        }
         pass.read(surfels.surfels, {Usage::storage, BINDING_SURFELS});
         pass.read(surfels.points, {Usage::storage, BINDING_CELL_POINTS});
         pass.read(motion);
@@ -215,12 +251,14 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             .out = out,
             .cover = pass.update(words("surfel cover"), {Usage::storage, BINDING_COVER}),
             .kept = pass.write(words("kept surfels"), {Usage::copy, BINDING_KEPT_SURFELS}),
-            .listed = pass.write(words("new surfels"), {Usage::copy, BINDING_LISTED_SURFELS}),
+            .tasks = pass.write(words("surfel tasks"), {Usage::copy, BINDING_SURFEL_TASKS}),
+            .listed = pass.write(words("listed surfels"), {Usage::copy, BINDING_LISTED_SURFELS}),
             .last_form_factors =
                 pass.write(words("last form factors"), {Usage::copy, BINDING_LAST_FORM_FACTORS}),
             .last_cover = pass.write(words("last surfel cover"), {Usage::copy, BINDING_LAST_COVER}),
             .known = TracedContent<VisibilityKey>(graph, pass, "known visibility"),
             .known_ids = pass.update(graph.value<std::vector<std::uint64_t>>("ids of known visibility")),
+            .planned = tasks,
             .programs = {.kept = gpu.program({"surfels/surfel_kept.comp"}),
                          .factors = gpu.program({"surfels/surfel_form_factors.comp"}),
                          .cover = gpu.program({"surfels/surfel_cover.comp"}),

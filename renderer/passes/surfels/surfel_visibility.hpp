@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
+#include "renderer/passes/surfels/surfel_updates.hpp"
 #include "renderer/passes/surfels/surfels.hpp"
 
 namespace candela {
@@ -38,6 +40,11 @@ struct SurfelColumns {
 struct KeptSurfels {
     std::vector<std::uint32_t> last;  ///< by surfel: its index before, or NO_SURFEL
     bool in_place = true;             ///< there are as many as before, and those that stay keep their indices
+    std::uint32_t last_count = 0;     ///< of surfels before
+
+    /// Whether their form factors can be kept. With more than MOST_COLUMNS surfels, it depends on the indices
+    /// which pairs have one.
+    [[nodiscard]] bool keeps_factors() const;
 };
 [[nodiscard]] KeptSurfels kept_surfels(std::span<const std::uint64_t> last_ids,
                                        std::span<const std::uint64_t> ids);
@@ -47,9 +54,11 @@ struct KeptSurfels {
 /// are then scaled, so that those of a surfel add up to the share of its hemisphere in which rays hit
 /// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/surfels/surfel_rows.comp). Between surfels that
 /// stay (Surfels::ids), and above each of them, only rays that pass through the changed boxes are traced
-/// again; with more than MOST_COLUMNS surfels only if all that stay keep their indices. Depends on surfels,
-/// BVH and motion, and on its own last result.
+/// again; with more than MOST_COLUMNS surfels only if all that stay keep their indices. With `tasks`
+/// (add_surfel_updates), only rays of the surfels whose turn it is. Depends on surfels, BVH, motion and
+/// tasks, and on its own last result.
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
-                                                     const Surfels& surfels, ValueHandle<SceneMotion> motion);
+                                                     const Surfels& surfels, ValueHandle<SceneMotion> motion,
+                                                     std::optional<ValueHandle<SurfelTasks>> tasks = {});
 
 }  // namespace candela

@@ -278,6 +278,15 @@ DividedCells divide_cells(const SurfelSet& set, const TracedScene& scene, float 
     return now;
 }
 
+std::vector<SurfelPlace> places_of(const SurfelSet& set) {
+    std::vector<SurfelPlace> places;
+    places.reserve(set.surfels.size());
+    for (const gpu::Surfel& surfel : set.surfels) {
+        places.push_back({surfel.position, surfel.normal, surfel.area, surfel.map});
+    }
+    return places;
+}
+
 ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
                                       std::optional<ValueHandle<Refinement>> refinement,
                                       ValueHandle<std::vector<Focus>> foci, const VplSettings& settings) {
@@ -347,6 +356,8 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             .counts = pass.write(graph.value<VplCounts>("surfel counts")),
             .point_count = pass.write(graph.value<std::uint32_t>("cell point count")),
             .ids = pass.write(graph.value<std::vector<std::uint64_t>>("surfel ids")),
+            .cells = pass.write(graph.value<std::vector<std::uint64_t>>("surfel cells")),
+            .places = pass.write(graph.value<std::vector<SurfelPlace>>("surfel places")),
             .maps = pass.update(graph.value<SurfelMaps>("surfel maps")),
             .surfels = pass.write(growing_buffer<gpu::Surfel>(graph, "surfels"), Usage::copy),
             .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
@@ -360,17 +371,21 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             DividedCells cells =
                 divide_cells(whole, traced, ray_offset, run.previous(divided_cells), changed);
             SurfelSet set = divided(whole, cells.cells);
+            std::vector<std::uint64_t> cell_ids = set.ids;
+            make_unique(cell_ids);
             set.ids = content_hashes(set, set.ids);
             make_unique(set.ids);
             const VplCounts counts = counts_of(set);
             run.set(divided_cells, std::move(cells));
-            run.set(out.maps, place_maps(std::span(set.surfels).first(counts.surfels), set.ids,
+            run.set(out.maps, place_maps(std::span(set.surfels).first(counts.surfels), cell_ids, set.ids,
                                          run.value(focus), run.previous(out.maps)));
             upload<gpu::Surfel>(gpu, run, out.surfels, set.surfels);
             upload<gpu::CellPoint>(gpu, run, out.points, set.points);
             run.set(out.counts, counts);
             run.set(out.point_count, static_cast<std::uint32_t>(set.points.size()));
             run.set(out.ids, std::move(set.ids));
+            run.set(out.cells, std::move(cell_ids));
+            run.set(out.places, places_of(set));
         });
         return out;
     });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,15 @@ namespace candela {
 /// which have no inverse, it is the upper left 3 × 3 part of `world`.
 [[nodiscard]] glm::mat3 shape_of(const glm::mat4& world);
 
+/// Where a surfel is.
+struct SurfelPlace {
+    glm::vec3 position;     ///< metres
+    glm::vec3 normal;       ///< unit, or 0: gpu::Surfel
+    float area = 0.0F;      ///< m², of its cell
+    std::uint32_t map = 0;  ///< gpu::Surfel::map
+    bool operator==(const SurfelPlace&) const = default;
+};
+
 /// The surfels in world space.
 struct Surfels {
     ValueHandle<VplCounts> counts;
@@ -32,6 +42,10 @@ struct Surfels {
     /// By surfel, each once. Surfels of the same id in two frames are at the same place and have the same
     /// cell, whatever their indices are.
     ValueHandle<std::vector<std::uint64_t>> ids;
+    /// By surfel, each once. Surfels of the same number in two frames are of the same part of the same cell
+    /// of an item, also while it moves.
+    ValueHandle<std::vector<std::uint64_t>> cells;
+    ValueHandle<std::vector<SurfelPlace>> places;
     ValueHandle<SurfelMaps> maps;       ///< of those that do not emit light
     BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;

@@ -30,6 +30,7 @@ struct MapKey {
     std::uint32_t resolution = 0;
     std::uint32_t side = 0;
     float near = 0.0F;
+    bool planned = false;  // MappedSurfels::tasks
     bool operator==(const MapKey&) const = default;
 };
 
@@ -42,30 +43,36 @@ struct MapNode {
     TextureHandle depth;
     TracedContent<MapKey> drawn;
     ValueHandle<std::vector<std::uint64_t>> drawn_keys;  // SurfelMaps::keys
-    BufferHandle<std::uint32_t> new_maps;                // by surfel: not 0 if its whole map must be drawn
+    BufferHandle<std::uint32_t> tasks;                   // SurfelTasks::of
     const gl::Program* program;
 };
 
-/// By surfel: 1 if its slot has had another map than its own, else 0.
-std::vector<std::uint32_t> new_maps(const SurfelMaps& maps, const std::vector<std::uint64_t>& drawn) {
-    std::vector<std::uint32_t> is_new(maps.slots.size());
-    for (std::size_t i = 0; i < is_new.size(); ++i) {
+/// All that has changed: whole maps, where the slot has had another than that of the surfel.
+std::vector<std::uint32_t> tasks_of(const SurfelMaps& maps, const std::vector<std::uint64_t>& drawn) {
+    std::vector<std::uint32_t> tasks(maps.slots.size());
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
         const std::uint32_t slot = maps.slots[i];
-        is_new[i] = slot >= drawn.size() || drawn[slot] != maps.keys[slot] ? 1 : 0;
+        const bool is_new = slot >= drawn.size() || drawn[slot] != maps.keys[slot];
+        tasks[i] = is_new ? SURFEL_WHOLE : SURFEL_CHANGED;
     }
-    return is_new;
+    return tasks;
 }
 
-/// Draws the slots from 0 to `slots`: of maps that are not new, the texels whose rays pass through the boxes
-/// in `changed`; all texels without a value: see changed_boxes.
-void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, std::uint32_t slots,
-               const std::optional<std::vector<Box>>& changed) {
+/// What is drawn in the slots of the maps.
+struct MapDraw {
+    std::uint32_t slots = 0;                  // from 0
+    std::optional<std::vector<Box>> changed;  // see changed_boxes; none: all that is not there
+    bool has_tasks = false;                   // MapNode::tasks tells which maps are drawn
+};
+
+void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const MapDraw& draw) {
     LayerTarget target(gpu);
     target.set_layers(run.object(node.depth), run.value(node.common.atlas).side);
-    if (!changed) target.clear();
-    gpu.draw_points(*node.program, slots,
-                    changed_box_uniforms(changed, 4.0F * run.value(node.tracing.metrics).ray_offset()),
-                    {.depth_test = gl::DepthTest::always});
+    if (!draw.changed) target.clear();
+    gl::Uniforms uniforms =
+        changed_box_uniforms(draw.changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
+    if (node.surfels) uniforms = uniforms + gl::Uniforms{{"has_tasks", draw.has_tasks}};
+    gpu.draw_points(*node.program, draw.slots, uniforms, {.depth_test = gl::DepthTest::always});
 }
 
 void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const MappedSurfels& surfels) {
@@ -73,11 +80,21 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
     const auto* const last = run.previous(node.drawn_keys);
     const std::vector<std::uint64_t> drawn = last != nullptr ? *last : std::vector<std::uint64_t>{};
     const SurfelMaps& maps = run.value(surfels.maps);
-    const auto changed = node.drawn.outdated(
-        run, run.value(surfels.motion), {atlas.resolution, atlas.side, atlas.near}, {run.object(node.depth)});
-    if (changed) upload<std::uint32_t>(gpu, run, node.new_maps, new_maps(maps, drawn));
-    draw_maps(gpu, run, node, static_cast<std::uint32_t>(std::max(maps.keys.size(), drawn.size())), changed);
+    const MapKey key{atlas.resolution, atlas.side, atlas.near, surfels.tasks.has_value()};
+    const std::vector<ObjectId> textures{run.object(node.depth)};
     run.set(node.drawn_keys, maps.keys);
+    MapDraw draw{.slots = static_cast<std::uint32_t>(std::max(maps.keys.size(), drawn.size())), .changed = {}};
+    if (surfels.tasks) {
+        const SurfelTasks& tasks = run.value(*surfels.tasks);
+        if (node.drawn.holds(run, tasks.number, key, textures, textures)) draw.changed = tasks.changed;
+        upload<std::uint32_t>(gpu, run, node.tasks, tasks.of);
+        draw.has_tasks = true;
+    } else {
+        draw.changed = node.drawn.outdated(run, run.value(surfels.motion), key, textures);
+        draw.has_tasks = draw.changed.has_value();
+        if (draw.has_tasks) upload<std::uint32_t>(gpu, run, node.tasks, tasks_of(maps, drawn));
+    }
+    draw_maps(gpu, run, node, draw);
 }
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
@@ -89,7 +106,7 @@ void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     }
     node.drawn.forget(run);
     run.set(node.drawn_keys, {});
-    draw_maps(gpu, run, node, run.value(node.counts).mapped(), std::nullopt);
+    draw_maps(gpu, run, node, {.slots = run.value(node.counts).mapped(), .changed = {}});
 }
 
 const gl::Program& map_program(Gpu& gpu, const std::vector<std::string>& defined) {
@@ -107,6 +124,10 @@ std::vector<std::string> read_mapped(Pass& pass, const MappedVpls& vpls) {
     pass.read(mapped.surfels, {Usage::storage, BINDING_SURFELS});
     pass.read(mapped.maps);
     pass.read(mapped.motion);
+    if (mapped.tasks) {
+        pass.keeps_state();
+        pass.read(*mapped.tasks);
+    }
     return {"SURFELS"};
 }
 
@@ -129,8 +150,8 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
                                  Usage::layer_target),
             .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
             .drawn_keys = pass.update(graph.value<std::vector<std::uint64_t>>("keys of vpl maps")),
-            .new_maps = pass.write(growing_buffer<std::uint32_t>(graph, "new vpl maps"),
-                                   {Usage::copy, BINDING_NEW_MAPS}),
+            .tasks = pass.write(growing_buffer<std::uint32_t>(graph, "tasks of vpl maps"),
+                                {Usage::copy, BINDING_MAP_TASKS}),
             .program = &map_program(gpu, defined)};
         graph.note(node.depth, depth_note(common.atlas, [](const VplAtlas& atlas, std::uint32_t) {
                        return perspective_terms(atlas.near);

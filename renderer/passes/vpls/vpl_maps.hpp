@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include <candela/graph/frame_graph.hpp>
@@ -8,6 +9,7 @@
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_motion.hpp"
 #include "renderer/passes/surfels/surfel_maps.hpp"
+#include "renderer/passes/surfels/surfel_updates.hpp"
 #include "renderer/passes/vpls/vpl_constants.hpp"
 #include "renderer/passes/vpls/vpl_counts.hpp"
 
@@ -18,6 +20,7 @@ struct MappedSurfels {
     BufferHandle<gpu::Surfel> surfels;
     ValueHandle<SurfelMaps> maps;
     ValueHandle<SceneMotion> motion;
+    std::optional<ValueHandle<SurfelTasks>> tasks;  ///< none: all that has changed is traced
 };
 
 /// VPLs that have depth maps: VplCounts::mapped.
@@ -34,8 +37,9 @@ struct MappedVpls {
 /// in a curved mapping whatever their tessellation, and a map costs as many rays as it has texels, however
 /// large the scene is. One draw covers all maps. With surfels, only new maps are traced (SurfelMaps::keys),
 /// and of the others those texels whose rays pass through changed boxes; slots that no surfel has any more
-/// are cleared. Depends on the VPLs, the BVH and the constants; with surfels also on motion and on its own
-/// last result. Returns a 2D array of depth32f, reversed: 1 near the VPL, 0 where there is no surface
+/// are cleared. With tasks (add_surfel_updates), only maps of the surfels whose turn it is are traced.
+/// Depends on the VPLs, the BVH and the constants; with surfels also on motion, tasks and its own last
+/// result. Returns a 2D array of depth32f, reversed: 1 near the VPL, 0 where there is no surface
 /// (shaders/vpls/vpl_atlas.glsl).
 [[nodiscard]] TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                          const MappedVpls& vpls, const VplCommon& common);

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/passes/surfels/surfel_focus.hpp"
+#include "renderer/passes/surfels/surfels.hpp"
+
+namespace candela {
+
+/// Set by the renderer before each frame.
+struct UpdateClock {
+    std::uint32_t limit = 0;  ///< VplSettings::updates: at least 1
+    std::uint64_t round = 0;  ///< a new value asks for more of what waits
+    bool operator==(const UpdateClock&) const = default;
+};
+
+/// What has to be traced in a frame, of the surfels' form factors and depth maps.
+struct SurfelTasks {
+    std::vector<std::uint32_t> of;  ///< by surfel: SURFEL_* (shaders/types.glsl), 0 if nothing
+    std::vector<Box> changed;       ///< see changed_boxes: for surfels with SURFEL_CHANGED
+    std::uint64_t number = 0;       ///< counts the frames in which anything is traced
+    bool operator==(const SurfelTasks&) const = default;
+};
+
+/// What is known of a surfel, which depth map and form factors are there, and what has changed since they
+/// were traced.
+struct TracedSurfel {
+    std::uint64_t cell = 0;     ///< Surfels::cells
+    std::uint64_t id = 0;       ///< Surfels::ids when it was traced
+    std::uint64_t map_key = 0;  ///< SurfelMaps::keys then
+    std::uint32_t map = 0;      ///< gpu::Surfel::map then
+    bool has_factors = false;   ///< else they are 0
+    bool has_map = false;       ///< else its depth map lets no light through
+    bool waits = false;         ///< it has waited since an earlier frame
+    float urgency = 0.0F;       ///< sum over the frames in which it waited: see add_surfel_updates
+    bool operator==(const TracedSurfel&) const = default;
+};
+
+struct SurfelUpdates {
+    ValueHandle<SurfelTasks> tasks;
+    ValueHandle<std::uint32_t> waiting;  ///< surfels that wait for a later frame
+};
+
+/// Adds node `surfel-updates` (CPU), which bounds the time of a frame in which things move: it decides for
+/// which surfels rays are traced, at most UpdateClock::limit. The others keep the depth maps and form factors
+/// that they have, also while their items move; those that have none yet send no light. A surfel's urgency
+/// is its share of the light, for which its area times the density of surfels there (density_at) stands,
+/// times the part of what it sees that has changed, summed over the frames in which it waits. The most urgent
+/// ones come first; so that all get their turn, also while things move all the time. When nothing waits, all
+/// is as if it had been traced at once. Another set of surfels is traced at once, as nothing moves then.
+/// Depends on surfels, motion, foci, refinement and clock, and on its own last result.
+[[nodiscard]] SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels,
+                                               const Tracing& tracing, ValueHandle<SceneMotion> motion,
+                                               const SurfelFoci& foci,
+                                               std::optional<ValueHandle<Refinement>> refinement,
+                                               ValueHandle<UpdateClock> clock);
+
+}  // namespace candela
