@@ -254,17 +254,13 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     }
     gpu_.log().tell_counts();
     completed_ = true;
-    waits_ = waiting() > 0;
+    waiting_ = frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
+    waits_ = waiting_ > 0 || (frame_.focus_state && runtime_.value(*frame_.focus_state).held);
     refine_ = !waits_ && refines();
     pending_.push_back({to_report(last_passes_, index, milliseconds_since(start)), quality()});
-    pending_.back().report.waiting_surfels = waiting();
+    pending_.back().report.waiting_surfels = waiting_;
     match_times(backend_.timer().collect());
     if (runtime_.verifies()) runtime_.verify(world);
-}
-
-/// Surfels whose visibility is traced in later frames.
-std::uint32_t Renderer::State::waiting() const {
-    return frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
 }
 
 /// Whether another frame is to be added to the mean of a view.
@@ -361,6 +357,7 @@ void Renderer::State::set_refinement_clock() {
 void Renderer::State::set_update_clock() {
     if (!frame_.update_clock) return;
     update_clock_.limit = configuration_.vpls.updates;
+    update_clock_.waits = waiting_ > 0;
     if (std::exchange(waits_, false)) ++update_clock_.round;
     runtime_.set(*frame_.update_clock, update_clock_);
 }
@@ -443,7 +440,7 @@ VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view
     };
     const VplCounts& counts = runtime_.value(vpls.counts);
     VplReport report{.requested = configuration_.vpls.count,
-                     .waiting = waiting(),
+                     .waiting = waiting_,
                      .interleave = view.interleave,
                      .filled_pixels = count_filled(view),
                      .flux = {},

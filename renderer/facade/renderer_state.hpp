@@ -65,7 +65,6 @@ class CANDELA_PRIVATE Renderer::State {
     void learn_cost(const PendingFrame& frame);
     void set_refinement_clock();
     void set_update_clock();
-    [[nodiscard]] std::uint32_t waiting() const;
     void match_times(const std::vector<gl::FrameTime>& times);
     [[nodiscard]] bool refines() const;
     [[nodiscard]] VplReport report_vpls(const Vpls& vpls, const ViewHandles& view) const;
@@ -90,9 +89,10 @@ class CANDELA_PRIVATE Renderer::State {
     std::uint64_t epoch_ = 0;  // incremented by `invalidate`: cached scene data is void
     RefinementClock refinement_clock_;
     UpdateClock update_clock_;
-    bool waits_ = false;      // whether surfels wait for later frames
-    bool refine_ = false;     // whether the next frame adds another sample to the mean
-    bool completed_ = false;  // whether the last frame did not throw, nor was followed by `invalidate`
+    std::uint32_t waiting_ = 0;  // surfels that wait for later frames
+    bool waits_ = false;         // whether any do, or others may have to be placed
+    bool refine_ = false;        // whether the next frame adds another sample to the mean
+    bool completed_ = false;     // whether the last frame did not throw, nor was followed by `invalidate`
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
     std::deque<PendingFrame> pending_;

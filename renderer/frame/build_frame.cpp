@@ -111,14 +111,13 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
                                std::optional<ValueHandle<Refinement>> refinement, FrameHandles& frame) {
     frame.epoch = graph.import_value<std::uint64_t>("scene epoch");
     frame.requests = graph.import_value<std::vector<ViewRequest>>("view requests");
-    SurfelInputs inputs{
-        .motion = add_scene_motion(graph, lit.scene, *frame.epoch),
-        .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests, wanted.settings.count),
-        .sources = {.lights = lit.lights, .emitters = wanted.emitters, .sky = {}},
-        .update_clock = {}};
-    if (wanted.settings.updates > 0) {
-        frame.update_clock = inputs.update_clock = graph.import_value<UpdateClock>("update clock");
-    }
+    if (wanted.settings.updates > 0) frame.update_clock = graph.import_value<UpdateClock>("update clock");
+    SurfelInputs inputs{.motion = add_scene_motion(graph, lit.scene, *frame.epoch),
+                        .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests,
+                                                 wanted.settings.count, frame.update_clock),
+                        .sources = {.lights = lit.lights, .emitters = wanted.emitters, .sky = {}},
+                        .update_clock = frame.update_clock};
+    frame.focus_state = inputs.foci.state;
     if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
     return inputs;
 }

@@ -48,6 +48,7 @@ struct FrameHandles {
     std::optional<Vpls> vpls;                              ///< none without indirect light
     std::optional<ValueHandle<UpdateClock>> update_clock;  ///< imported; none without VplSettings::updates
     std::optional<ValueHandle<std::uint32_t>> waiting;     ///< SurfelUpdates::waiting, likewise
+    std::optional<ValueHandle<FocusState>> focus_state;    ///< SurfelFoci::state, likewise
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
     std::vector<ViewHandles> views;                                ///< at least one
 };

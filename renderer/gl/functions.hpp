@@ -80,7 +80,9 @@
     X(GetTextureParameteriv, GETTEXTUREPARAMETERIV) \
     X(GetTextureLevelParameteriv, GETTEXTURELEVELPARAMETERIV) \
     X(GenerateTextureMipmap, GENERATETEXTUREMIPMAP) \
+    X(ClearNamedBufferData, CLEARNAMEDBUFFERDATA) \
     X(ClearTexImage, CLEARTEXIMAGE) \
+    X(ClearTexSubImage, CLEARTEXSUBIMAGE) \
     X(BindTexture, BINDTEXTURE) \
     X(BindTextureUnit, BINDTEXTUREUNIT) \
     X(ActiveTexture, ACTIVETEXTURE) \

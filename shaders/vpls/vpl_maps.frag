@@ -1,5 +1,5 @@
-// Depth map of a VPL: traces a ray through the centre of the texel. Slots without a map are cleared; a surfel
-// whose map waits lets no light through. One fragment per texel.
+// Depth map of a VPL: traces a ray through the centre of the texel. Slots without a map are cleared. One fragment per
+// texel.
 #include "scene/bvh.glsl"
 #include "scene/changed_boxes.glsl"
 #include "vpls/mapped_vpl.glsl"
@@ -13,10 +13,6 @@ void main() {
     gl_FragDepth = 0.0;
     if (!has_map(vpl_index)) return;
     uint task = map_task(vpl_index);
-    if ((task & SURFEL_NO_MAP) != 0u) {
-        gl_FragDepth = 1.0;
-        return;
-    }
     MappedVpl vpl = mapped_vpl(vpl_index);
     vec3 origin = vpl_map_origin(vpl.position, vpl.normal);
     vec2 at = (gl_FragCoord.xy - vec2(vpl_tile(vpl.map).corner)) / float(vpl_constants.map_resolution);

@@ -11,9 +11,10 @@ flat in uint vpl_id[];
 flat out uint vpl_index;
 
 bool is_outdated(uint index, MappedVpl vpl) {
-    if (everything_changed) return has_map(index);  // the atlas is cleared
     uint task = map_task(index);
-    if ((task & (SURFEL_WHOLE | SURFEL_NO_MAP)) != 0u) return true;
+    if ((task & SURFEL_NO_MAP) != 0u) return false;
+    if (everything_changed) return has_map(index);  // the atlas is cleared
+    if ((task & SURFEL_WHOLE) != 0u) return true;
     if ((task & SURFEL_CHANGED) == 0u) return false;
     bool sees_above = (vpl.map & SURFEL_MAP_OF_FOCUS) == 0u;
     return has_map(index) && (!sees_above || may_have_changed_above(vpl.position, vpl.normal));

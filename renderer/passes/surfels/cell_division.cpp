@@ -96,6 +96,7 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
     surfel.seed += part;
     to.surfels.push_back(surfel);
     to.ids.push_back(combine_ids(set.ids[cell], part));
+    to.patches.push_back(combine_ids(set.patches[cell], part));
     to.surfel_places.push_back(place);
     to.item_of.push_back(set.item_of[cell]);
 }

@@ -113,6 +113,14 @@ std::vector<Focus> foci_of(const std::vector<CameraView>& views, const TracedSce
     return foci;
 }
 
+/// The foci of the last frame, and what they were found for.
+struct FocusRecord {
+    std::vector<Focus> foci;
+    std::vector<CameraView> views;
+    std::uint32_t count = 0;
+    bool operator==(const FocusRecord&) const = default;
+};
+
 }  // namespace
 
 Focus focus_of_maps(std::span<const Focus> foci) {
@@ -133,7 +141,8 @@ float density_at(std::span<const Focus> foci, const glm::vec3& place) {
 }
 
 SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
-                            ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count) {
+                            ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count,
+                            std::optional<ValueHandle<UpdateClock>> clock) {
     return graph.add("surfel-focus", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
@@ -143,18 +152,34 @@ SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tra
         pass.read<Camera>();
         pass.read<Transform>();
         pass.parameter(count);
-        const SurfelFoci out{.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci")),
-                             .of_maps = pass.write(graph.value<Focus>("focus of maps"))};
+        SurfelFoci out{.foci = {}, .of_maps = pass.write(graph.value<Focus>("focus of maps")), .state = {}};
+        std::optional<ValueHandle<FocusRecord>> record;
+        if (clock) {
+            pass.keeps_state();
+            pass.read(*clock);
+            out.state = pass.write(graph.value<FocusState>("state of foci"));
+            record = pass.update(graph.value<FocusRecord>("last foci"));
+        }
+        out.foci = pass.write(graph.value<std::vector<Focus>>("surfel foci"));
         pass.run([=](Execution& run) {
             const TracedScene traced{*run.value(tracing.hierarchy), run.value(scene.layout),
                                      run.value(scene.placement)};
-            std::vector<CameraView> views;
+            FocusRecord now{.foci = {}, .views = {}, .count = count};
             for (const ViewRequest& request : run.value(requests)) {
-                views.push_back(requested_view(run.world(), request));
+                now.views.push_back(requested_view(run.world(), request));
             }
-            const std::vector<Focus> foci = foci_of(views, traced, run.value(tracing.metrics), count);
-            run.set(out.of_maps, focus_of_maps(foci));
-            run.set(out.foci, foci);
+            const FocusRecord* const last = record ? run.previous(*record) : nullptr;
+            const bool same_views = last != nullptr && last->views == now.views && last->count == count;
+            const bool moves = run.changed(scene.placement) || run.changed(scene.layout);
+            const bool holds = same_views && (moves || run.value(*clock).waits);
+            std::vector<Focus> wanted = foci_of(now.views, traced, run.value(tracing.metrics), count);
+            const bool differ = same_views && wanted != last->foci;
+            now.foci = holds ? last->foci : std::move(wanted);
+            run.set(out.of_maps, focus_of_maps(now.foci));
+            run.set(out.foci, now.foci);
+            if (!record) return;
+            run.set(*out.state, {.held = differ && holds, .renewed = differ && !holds});
+            run.set(*record, std::move(now));
         });
         return out;
     });

@@ -31,19 +31,37 @@ struct Focus {
 /// Radius 0: there are no or several foci, and maps see everything.
 [[nodiscard]] Focus focus_of_maps(std::span<const Focus> foci);
 
+/// Whether foci are those of the scene and the views, if they may be held.
+struct FocusState {
+    bool held = false;     ///< they should be others, and will be when nothing moves and no surfel waits
+    bool renewed = false;  ///< they are others than in the last frame, though no view has moved
+    bool operator==(const FocusState&) const = default;
+};
+
 struct SurfelFoci {
     ValueHandle<std::vector<Focus>> foci;
-    ValueHandle<Focus> of_maps;  ///< focus_of_maps
+    ValueHandle<Focus> of_maps;                    ///< focus_of_maps
+    std::optional<ValueHandle<FocusState>> state;  ///< with a clock
+};
+
+/// Set by the renderer before each frame, with VplSettings::updates.
+struct UpdateClock {
+    std::uint32_t limit = 0;  ///< VplSettings::updates: at least 1
+    std::uint64_t round = 0;  ///< a new value asks for more of what waits
+    bool waits = false;       ///< surfels wait to be traced: SurfelUpdates::waiting after the last frame
+    bool operator==(const UpdateClock&) const = default;
 };
 
 /// Adds node `surfel-focus` (CPU): where surfels should be dense, one sphere for each view. It is around the
 /// eye. Its radius is 1.5 times a distance, the greatest of three medians that rays find: of the surfaces in
 /// the picture, of those all around the eye, and, indoors, from what is in the picture to what lights it.
 /// Radius and centre change in steps, so that all surfels stay while a camera moves a little.
-/// There are no spheres if `count` surfels, spread evenly, are dense enough for a view. Depends on `requests`
-/// (imported: all views), Camera, Transform, and the scene's layout and placement.
+/// There are no spheres if `count` surfels, spread evenly, are dense enough for a view. With a clock, the
+/// spheres stay while things move or surfels wait, unless a view moves: with others, there would be other
+/// surfels to trace. Depends on `requests` (imported: all views), Camera, Transform, the scene's layout and
+/// placement, and the clock; with a clock also on its own last result.
 [[nodiscard]] SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tracing& tracing,
-                                          ValueHandle<std::vector<ViewRequest>> requests,
-                                          std::uint32_t count);
+                                          ValueHandle<std::vector<ViewRequest>> requests, std::uint32_t count,
+                                          std::optional<ValueHandle<UpdateClock>> clock = {});
 
 }  // namespace candela

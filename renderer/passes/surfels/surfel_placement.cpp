@@ -194,6 +194,7 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
                            .width2 = std::max(area, 6.0F * patch.spread2)});
     set.surfel_places.push_back(set.point_places[static_cast<std::size_t>(middle - set.points.begin())]);
     set.item_of.push_back(cell.item);
+    set.patches.push_back(patch.id);
     set.ids.push_back(
         combine_ids(patch.id, combine_ids(std::bit_cast<std::uint64_t>(cell.scale), use_scale)));
 }

@@ -17,6 +17,7 @@ struct SurfelSet {
     std::vector<gpu::Surfel> surfels;
     std::vector<gpu::CellPoint> points;  ///< of the cells, in the order of the surfels
     std::vector<std::uint64_t> ids;      ///< by surfel: equal ones are of the same cell of the same item
+    std::vector<std::uint64_t> patches;  ///< the same, however much of the other items it stands for
     std::vector<std::uint32_t> item_of;  ///< by surfel: index into SceneGeometry::items
     std::vector<SurfacePoint> surfel_places;
     std::vector<SurfacePoint> point_places;

@@ -202,7 +202,7 @@ void plan(Execution& run, const UpdateNode& node) {
     Queue now{.surfels = {},
               .key = {ray_offset, node.refinement ? run.value(*node.refinement).surfel_set : 0},
               .step = motion.step};
-    const bool at_once = last != nullptr && last->key != now.key;
+    const bool at_once = last != nullptr && (last->key != now.key || run.value(*node.foci.state).renewed);
     const std::vector<bool> chosen =
         most_urgent(all, at_once ? std::numeric_limits<std::size_t>::max() : run.value(node.clock).limit);
     const SurfelTasks* const tasks_before = run.previous(node.out.tasks);
@@ -241,6 +241,7 @@ SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels, cons
         pass.read(tracing.metrics);
         pass.read(motion);
         pass.read(foci.foci);
+        pass.read(*foci.state);
         if (refinement) pass.read(*refinement);
         pass.read(clock);
         const UpdateNode node{.surfels = surfels,

@@ -11,13 +11,6 @@
 
 namespace candela {
 
-/// Set by the renderer before each frame.
-struct UpdateClock {
-    std::uint32_t limit = 0;  ///< VplSettings::updates: at least 1
-    std::uint64_t round = 0;  ///< a new value asks for more of what waits
-    bool operator==(const UpdateClock&) const = default;
-};
-
 /// What has to be traced in a frame, of the surfels' form factors and depth maps.
 struct SurfelTasks {
     std::vector<std::uint32_t> of;  ///< by surfel: SURFEL_* (shaders/types.glsl), 0 if nothing
@@ -51,7 +44,8 @@ struct SurfelUpdates {
 /// is its share of the light, for which its area times the density of surfels there (density_at) stands,
 /// times the part of what it sees that has changed, summed over the frames in which it waits. The most urgent
 /// ones come first; so that all get their turn, also while things move all the time. When nothing waits, all
-/// is as if it had been traced at once. Another set of surfels is traced at once, as nothing moves then.
+/// is as if it had been traced at once. Another set of surfels is traced at once, and so
+/// are those of other foci, unless things or views move.
 /// Depends on surfels, motion, foci, refinement and clock, and on its own last result.
 [[nodiscard]] SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels,
                                                const Tracing& tracing, ValueHandle<SceneMotion> motion,

@@ -85,14 +85,16 @@ std::vector<std::uint32_t> tasks_of(const KeptSurfels& kept) {
     return tasks;
 }
 
-ListedSurfels listed_surfels(const std::vector<std::uint32_t>& tasks, bool has_moved) {
+/// `cleared`: where nothing is to be traced, form factors are 0 already.
+ListedSurfels listed_surfels(const std::vector<std::uint32_t>& tasks, bool has_moved, bool cleared) {
     const std::uint32_t stride = surfel_columns(static_cast<std::uint32_t>(tasks.size())).stride;
-    const std::uint32_t of_rows = SURFEL_WHOLE | SURFEL_NO_FACTORS | (has_moved ? SURFEL_CHANGED : 0U);
+    const std::uint32_t to_clear = cleared ? 0U : SURFEL_NO_FACTORS;
+    const std::uint32_t of_rows = SURFEL_WHOLE | to_clear | (has_moved ? SURFEL_CHANGED : 0U);
     ListedSurfels listed;
     for (std::uint32_t i = 0; i < tasks.size(); ++i) {
         if ((tasks[i] & of_rows) != 0) listed.rows.push_back(i);
         const std::uint32_t pair = i / stride / 2;
-        const bool has_column = (tasks[i] & (SURFEL_COLUMN | SURFEL_NO_FACTORS)) != 0;
+        const bool has_column = (tasks[i] & (SURFEL_COLUMN | to_clear)) != 0;
         if (has_column && (listed.pairs.empty() || listed.pairs.back() != pair)) listed.pairs.push_back(pair);
     }
     return listed;
@@ -110,6 +112,18 @@ void upload_tasks(const Gpu& gpu, Execution& run, const VisibilityNode& node, co
 void copy_results(const Gpu& gpu, Execution& run, const VisibilityNode& node, std::uint32_t count) {
     copy_content(gpu, run, node.out.form_factors, node.last_form_factors, factor_words(count));
     copy_content(gpu, run, node.cover, node.last_cover, std::uint64_t{count} * COVER_PARTS);
+}
+
+/// If all surfels are new ones, all results become 0, and only what is traced now is written.
+void clear_results(const Gpu& gpu, const Execution& run, const VisibilityNode& node, Outdated& outdated) {
+    const std::uint32_t none = 0;
+    // The graph plans the barriers for shaders only.
+    gpu.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    for (const ObjectId object : objects_of(run, node)) {
+        gpu.gl().ClearNamedBufferData(object, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &none);
+    }
+    outdated.changed = std::vector<Box>{};
+    outdated.in_place = true;
 }
 
 /// Around what has changed since the results were traced that are in the objects `held`.
@@ -137,7 +151,12 @@ Outdated prepare_results(const Gpu& gpu, Execution& run, const VisibilityNode& n
     outdated.changed = changes(run, node, held);
     if (!kept.keeps_factors()) outdated.changed.reset();
     const std::vector<std::uint32_t> tasks = node.planned ? run.value(*node.planned).of : tasks_of(kept);
-    outdated.listed = listed_surfels(tasks, outdated.changed && !outdated.changed->empty());
+    const bool nothing_known = node.planned && std::ranges::all_of(tasks, [](std::uint32_t task) {
+                                   return (task & (SURFEL_NO_FACTORS | SURFEL_COLUMN)) != 0;
+                               });
+    if (nothing_known) clear_results(gpu, run, node, outdated);
+    const bool has_moved = outdated.changed && !outdated.changed->empty();
+    outdated.listed = listed_surfels(tasks, has_moved, nothing_known);
     outdated.has_tasks = outdated.changed || node.planned;
     if (outdated.has_tasks) upload_tasks(gpu, run, node, kept, tasks, outdated.listed);
     run.set(node.known_ids, ids);

@@ -371,7 +371,7 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             DividedCells cells =
                 divide_cells(whole, traced, ray_offset, run.previous(divided_cells), changed);
             SurfelSet set = divided(whole, cells.cells);
-            std::vector<std::uint64_t> cell_ids = set.ids;
+            std::vector<std::uint64_t> cell_ids = set.patches;
             make_unique(cell_ids);
             set.ids = content_hashes(set, set.ids);
             make_unique(set.ids);

@@ -44,8 +44,8 @@ struct Surfels {
     ValueHandle<std::vector<std::uint64_t>> ids;
     /// By surfel, each once. Surfels of the same number in two frames are of the same part of the same cell
     /// of an item, also while it moves.
-    ValueHandle<std::vector<std::uint64_t>> cells;
-    ValueHandle<std::vector<SurfelPlace>> places;
+    ValueHandle<std::vector<std::uint64_t>> cells{};
+    ValueHandle<std::vector<SurfelPlace>> places{};
     ValueHandle<SurfelMaps> maps;       ///< of those that do not emit light
     BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;

@@ -60,15 +60,35 @@ std::vector<std::uint32_t> tasks_of(const SurfelMaps& maps, const std::vector<st
 
 /// What is drawn in the slots of the maps.
 struct MapDraw {
-    std::uint32_t slots = 0;                  // from 0
-    std::optional<std::vector<Box>> changed;  // see changed_boxes; none: all that is not there
-    bool has_tasks = false;                   // MapNode::tasks tells which maps are drawn
+    std::uint32_t slots = 0;                              // from 0
+    std::optional<std::vector<Box>> changed;              // see changed_boxes; none: all that is not there
+    bool has_tasks = false;                               // MapNode::tasks tells which maps are drawn
+    const std::vector<std::uint32_t>* cleared = nullptr;  // SurfelTasks::of, if it has SURFEL_NO_MAP
 };
+
+/// Fills the depth maps that let no light through.
+void clear_maps(const Gpu& gpu, const Execution& run, const MapNode& node, const MappedSurfels& surfels,
+                const std::vector<std::uint32_t>& tasks) {
+    constexpr float nearest = 1.0F;
+    const VplAtlas& atlas = run.value(node.common.atlas);
+    const std::vector<std::uint32_t>& slots = run.value(surfels.maps).slots;
+    const auto size = static_cast<GLsizei>(atlas.resolution);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        if ((tasks[i] & SURFEL_NO_MAP) == 0) continue;
+        const std::uint32_t of_layer = slots[i] % (atlas.tiles * atlas.tiles);
+        const auto x = static_cast<GLint>(of_layer % atlas.tiles * atlas.resolution);
+        const auto y = static_cast<GLint>(of_layer / atlas.tiles * atlas.resolution);
+        const auto layer = static_cast<GLint>(slots[i] / (atlas.tiles * atlas.tiles));
+        gpu.gl().ClearTexSubImage(run.object(node.depth), 0, x, y, layer, size, size, 1, GL_DEPTH_COMPONENT,
+                                  GL_FLOAT, &nearest);
+    }
+}
 
 void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const MapDraw& draw) {
     LayerTarget target(gpu);
     target.set_layers(run.object(node.depth), run.value(node.common.atlas).side);
     if (!draw.changed) target.clear();
+    if (draw.cleared != nullptr) clear_maps(gpu, run, node, *node.surfels, *draw.cleared);
     gl::Uniforms uniforms =
         changed_box_uniforms(draw.changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
     if (node.surfels) uniforms = uniforms + gl::Uniforms{{"has_tasks", draw.has_tasks}};
@@ -83,12 +103,14 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
     const MapKey key{atlas.resolution, atlas.side, atlas.near, surfels.tasks.has_value()};
     const std::vector<ObjectId> textures{run.object(node.depth)};
     run.set(node.drawn_keys, maps.keys);
-    MapDraw draw{.slots = static_cast<std::uint32_t>(std::max(maps.keys.size(), drawn.size())), .changed = {}};
+    MapDraw draw{.slots = static_cast<std::uint32_t>(std::max(maps.keys.size(), drawn.size())),
+                 .changed = {}};
     if (surfels.tasks) {
         const SurfelTasks& tasks = run.value(*surfels.tasks);
         if (node.drawn.holds(run, tasks.number, key, textures, textures)) draw.changed = tasks.changed;
         upload<std::uint32_t>(gpu, run, node.tasks, tasks.of);
         draw.has_tasks = true;
+        draw.cleared = &tasks.of;
     } else {
         draw.changed = node.drawn.outdated(run, run.value(surfels.motion), key, textures);
         draw.has_tasks = draw.changed.has_value();
