@@ -1,6 +1,6 @@
-// Flux at the points of the surfels' cells: of the lights, with one shadow ray to each; of surfaces that emit light; of
-// the sky (SKY); and the flux that the points emit themselves, π times radiance times area. One invocation per cell
-// point.
+// Flux at the points of the surfels' cells: of the lights, with a shadow ray to each, or several; of surfaces that emit
+// light; of the sky (SKY); and the flux that the points emit themselves, π times radiance times area. One invocation per
+// cell point.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
 #include "lights/lights.glsl"
@@ -29,6 +29,11 @@ uniform uint sky_patch_count;
 // and points in its loops than software drivers run through.
 const uint MOST_NEAR_EMITTERS = 256u;
 
+// Rays from each cell point to a directional light: what it lights often has edges within a cell. With more than
+// FEW_LIGHTS, one ray each, which bounds what an invocation does.
+const uint SUN_RAYS = 8u;
+const uint FEW_LIGHTS = 16u;
+
 bool is_hidden(Light light, vec3 origin, vec3 direction) {
     return any_hit(origin, direction, 0.0, distance_to(light, origin) - ray_offset);
 }
@@ -50,13 +55,36 @@ vec3 irradiance_from_place(Light light, CellPoint point) {
     return max(dot(point.normal, incident.direction), 0.0) * incident.irradiance;
 }
 
-vec3 irradiance_from(Light light, CellPoint point) {
+// A place in a point's part of its cell: the point itself, or somewhere on the way to another point of the cell, which is
+// in the same plane, so that it is on the surface as well. As far away as in a disc of the part's area.
+vec3 place_in_part(CellPoint point, uint id, uint i) {
+    Surfel own = surfels[point.surfel];
+    CellPoint other = cell_points[own.first_point + (id - own.first_point + i) % own.point_count];
+    vec3 apart = other.position - point.position;
+    float distance2 = dot(apart, apart);
+    bool in_plane = dot(point.normal, other.normal) > 0.999 && abs(dot(point.normal, apart)) < ray_offset;
+    if (!in_plane || distance2 == 0.0) return point.position;
+    float u = fract((float(i) + float(id % 64u) / 64.0) * 0.618034);
+    return point.position + min(sqrt(u * point.area / (PI * distance2)), 0.5) * apart;
+}
+
+// The share of a point's part that a directional light reaches.
+float lit_share(Light light, CellPoint point, uint id, vec3 direction) {
+    uint rays = light_count > FEW_LIGHTS ? 1u : SUN_RAYS;
+    uint hidden = 0u;
+    for (uint i = 0u; i < rays; ++i) {
+        vec3 origin = place_in_part(point, id, i) + ray_offset * point.normal;
+        if (is_hidden(light, origin, direction)) ++hidden;
+    }
+    return 1.0 - float(hidden) / float(rays);
+}
+
+vec3 irradiance_from(Light light, CellPoint point, uint id) {
     if (light.kind != LIGHT_DIRECTIONAL) return irradiance_from_place(light, point);
     Incident incident = incident_light(light, point.position);
     float cos_surface = dot(point.normal, incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return vec3(0.0);
-    if (is_hidden(light, point.position + ray_offset * point.normal, incident.direction)) return vec3(0.0);
-    return cos_surface * incident.irradiance;
+    return cos_surface * lit_share(light, point, id, incident.direction) * incident.irradiance;
 }
 
 // Irradiance from the cell of a surfel that emits light, unoccluded.
@@ -142,7 +170,7 @@ void main() {
     float area = colour.a < material.alpha_cutoff ? 0.0 : point.area;
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, part_first + part_size);
-    for (uint i = part_first; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point);
+    for (uint i = part_first; i < end && area > 0.0; ++i) irradiance += irradiance_from(lights[i], point, id);
     if (part_first == 0u && area > 0.0) irradiance += irradiance_from_sky(id, point);
     vec3 arriving = area * irradiance;
     if (part_first > 0u) {

@@ -27,11 +27,11 @@ struct SurfelSources {
 };
 
 /// Adds two nodes. `surfel-light` (compute): light of the real lights at each point of the surfels' cells,
-/// with one shadow ray per point and light, light that the points emit, and light of the surfels that emit
-/// and of the sky, shared among the points of a cell. `surfel-bounce` (compute):
-/// surfels gather the light that other surfels reflect, bounce by bounce (Jacobi iteration of the radiosity
-/// equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up to
-/// `bounces` or until a bounce adds less than 0.02 % to the light of each; then they are written as VPLs.
+/// with a shadow ray per point and light (several for directional ones), light that the points emit, and
+/// light of the surfels that emit and of the sky, shared among the points of a cell. `surfel-bounce`
+/// (compute): surfels gather the light that other surfels reflect, bounce by bounce (Jacobi iteration of the
+/// radiosity equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up
+/// to `bounces` or until a bounce adds less than 0.02 % to the light of each; then they are written as VPLs.
 /// They depend on surfels, visibility, lights, sky and BVH. Returns LitSurfels.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const SurfelVisibility& visibility, const SurfelSources& sources,
