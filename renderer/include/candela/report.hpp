@@ -37,10 +37,12 @@ struct FrameReport {
 /// the light that reaches surfaces, and the balance holds to within the error caused by the spacing of the
 /// surfels.
 struct EnergyAccount {
-    glm::dvec3 emitted{0.0};    ///< sent out by the real lights
-    glm::dvec3 absorbed{0.0};   ///< by surfaces
-    glm::dvec3 escaped{0.0};    ///< left the scene, or was cut off by a light's range
-    glm::dvec3 truncated{0.0};  ///< reflected at the last bounce and not followed further
+    glm::dvec3 emitted{0.0};   ///< sent out by the real lights
+    glm::dvec3 absorbed{0.0};  ///< by surfaces
+    glm::dvec3 escaped{0.0};   ///< left the scene, or was cut off by a light's range
+    /// Reflected at the last bounce and not followed further. With surfels, below 0 if they have extrapolated
+    /// to a little too much.
+    glm::dvec3 truncated{0.0};
     /// Lost where Russian roulette ended paths, minus what the weights of the other paths added. 0 with
     /// surfels.
     glm::dvec3 roulette{0.0};
