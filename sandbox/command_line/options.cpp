@@ -231,6 +231,13 @@ void declare_scene(CommandLine& line, Options& options) {
               "default: headless 1, or as many as the script has; no end in a window");
     add_count(line, "--samples", options.samples, "average N frames jittered within the pixel; default: 1");
     line.add_value(
+        "--update-budget", "MS",
+        "milliseconds for a frame in which much moves: as many surfels are traced as fit, see --vpl-updates, "
+        "and the others in the next frames; 0: all at once; default: 60 in a window, headless 0",
+        [&options](const std::string& text) {
+            options.update_budget = number_of("--update-budget", text, 0.0, 1e6);
+        });
+    line.add_value(
         "--environment", "R,G,B|FILE.hdr|.exr",
         "the sky: radiance from everywhere, or an equirectangular picture; default: that of the scene",
         [&options](const std::string& text) { options.environment = parse_sky(text); });

@@ -29,6 +29,7 @@ struct Options {
     std::optional<glm::ivec2> size;  ///< pixels; default: 1280x720 in a window, 512x512 headless
     std::optional<int> frames;       ///< default: headless 1 or the script's length, unlimited in a window
     int samples = 1;                 ///< number of averaged frames, jittered within the pixel
+    std::optional<double> update_budget;  ///< milliseconds, see UpdateBudget; default: 60 in a window, else 0
     std::optional<SkyChoice> environment;  ///< default: that of the scene
     std::optional<std::string> camera;     ///< name or index; default: the scene's first
 

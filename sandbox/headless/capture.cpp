@@ -41,6 +41,7 @@ FrameReport sum_up(const std::vector<FrameReport>& frames) {
     for (std::size_t i = 1; i < frames.size(); ++i) {
         sum.cpu_ms += frames[i].cpu_ms;
         sum.gpu_ms += frames[i].gpu_ms;
+        sum.waiting_surfels = frames[i].waiting_surfels;
         for (std::size_t pass = 0; pass < sum.passes.size(); ++pass) {
             sum.passes[pass].ran |= frames[i].passes[pass].ran;
             sum.passes[pass].cpu_ms += frames[i].passes[pass].cpu_ms;

@@ -8,6 +8,7 @@
 
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/output_file.hpp"
+#include "sandbox/headless/update_budget.hpp"
 
 namespace candela::sandbox {
 
@@ -53,10 +54,13 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
 
     RunReport run{
         context.description(), scene.path.string(), animation_of(scene), size, configuration, {}, {}};
+    UpdateBudget budget(options.update_budget.value_or(0.0));
     for (int frame = 0; frame < frames; ++frame) {
+        apply(renderer, budget.limited(configuration));
         if (scene.animation) scene.animation->apply(scene.world, frame);
         CaptureReport captured;
         const Picture picture = capture.render(scene.world, camera, options.samples, captured);
+        budget.learn(captured.frame);
         captured.frame.index = static_cast<std::uint64_t>(frame);
         run.frames.push_back(std::move(captured.frame));
         run.state = std::move(captured.state);
@@ -79,6 +83,7 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
 Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, Entity camera, int samples) {
     Configuration whole = renderer.configuration();
     whole.frame_budget_ms = 0.0F;
+    whole.vpls.updates = 0;
     apply(renderer, whole);
     CaptureReport ignored;
     return capture.render(world, camera, samples, ignored);

@@ -35,8 +35,8 @@ void write_graph(const Options& options, const Renderer& renderer);
 /// Sets a configuration, which must be valid, on a new renderer. Throws std::runtime_error.
 void apply(Renderer& renderer, const Configuration& configuration);
 
-/// Like Capture::render, but at full quality, whatever the frame budget is. The renderer has none from then
-/// on.
+/// Like Capture::render, but at full quality, whatever the frame budget is, and with all surfels traced. The
+/// renderer has no limits from then on.
 [[nodiscard]] Picture whole_picture(Renderer& renderer, Capture& capture, const World& world, Entity camera,
                                     int samples);
 

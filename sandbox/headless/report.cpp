@@ -93,6 +93,7 @@ std::string light_table(const LightReport& lights) {
 std::string vpl_table(const VplReport& vpls) {
     std::string table = fmt::format("VPLs             {} alive of {} requested", vpls.alive, vpls.requested);
     table += vpls.paths > 0 ? fmt::format(", on {} paths\n", vpls.paths) : "\n";
+    if (vpls.waiting > 0) table += fmt::format("  waiting        {} to be traced\n", vpls.waiting);
     if (vpls.interleave > 1) {
         table += fmt::format("  of which       a pixel asks one in {}; {} pixels asked more\n",
                              vpls.interleave * vpls.interleave, vpls.filled_pixels);

@@ -28,7 +28,8 @@ struct Comparison {
 /// What the user has chosen to see, and what the app has to say about it. Panels change it; the session acts
 /// on it.
 struct AppState {
-    Configuration configuration;  ///< wanted; a faulty one is not taken over: see errors
+    double update_budget_ms = 0.0;  ///< see UpdateBudget
+    Configuration configuration;    ///< wanted; a faulty one is not taken over: see errors
     Comparison comparison;
     bool panel = true;
     bool help = false;

@@ -59,10 +59,15 @@ void FrameRenderer::begin(FrameRequest request, std::uint64_t number) {
     request_ = std::move(request);
     number_ = number;
     errors_.clear();
+    if (budget_.budget_ms() != request_->update_budget_ms) budget_ = UpdateBudget(request_->update_budget_ms);
 }
 
+/// Whether the configurations have the same graph: the limits of surfels may differ.
 bool FrameRenderer::needs_compiling() const {
-    return !has_rendered_ || request_->configuration != renderer_->configuration() ||
+    Configuration wanted = budget_.limited(request_->configuration);
+    const Configuration& now = renderer_->configuration();
+    if (wanted.vpls.updates > 0 && now.vpls.updates > 0) wanted.vpls.updates = now.vpls.updates;
+    return !has_rendered_ || wanted != now ||
            (request_->other && (!other_ || *request_->other != other_->configuration()));
 }
 
@@ -84,6 +89,7 @@ RenderedFrame FrameRenderer::render(std::size_t slot_index, bool reload) {
     if (reload_error_) frame.errors.push_back(*reload_error_);
     frame.settled = settled_;
     frame.configuration = renderer_->configuration();
+    if (request_->configuration.vpls.updates == 0) frame.configuration.vpls.updates = 0;
     device_.finish();
     return frame;
 }
@@ -105,11 +111,11 @@ std::optional<std::string> FrameRenderer::replace_renderers() {
 }
 
 RenderedFrame FrameRenderer::render_request(Slot& slot) {
-    Configuration wanted = request_->configuration;
+    Configuration wanted = budget_.limited(request_->configuration);
     if (std::exchange(request_->cut, false)) wanted.frame_budget_ms = 0.0F;
     if (wanted != renderer_->configuration() && errors_.empty()) {
+        if (needs_compiling()) graph_.reset();
         errors_ = renderer_->configure(wanted);
-        graph_.reset();
     }
     RenderedFrame frame;
     if (request_->inspection != inspector_->shown()) {
@@ -126,6 +132,7 @@ RenderedFrame FrameRenderer::render_request(Slot& slot) {
     frame.quality = renderer_->quality();
     frame.report = report();
     frame.times = renderer_->take_frames(true);
+    for (const FrameReport& times : frame.times) budget_.learn(times);
     frame.graph = graph();
     const FrameResults results = renderer_->results();
     if (request_->read_vpls) frame.vpls = read_dots(device_, results);

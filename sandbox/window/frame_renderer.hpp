@@ -12,6 +12,7 @@
 #include <candela/inspection.hpp>
 #include <candela/renderer.hpp>
 #include "sandbox/headless/canvas.hpp"
+#include "sandbox/headless/update_budget.hpp"
 #include "sandbox/window/frame_request.hpp"
 
 namespace candela::sandbox {
@@ -69,6 +70,7 @@ class FrameRenderer {
     std::unique_ptr<Renderer> other_;  ///< while a request has a second configuration
     std::array<Slot, slots> slots_;
     std::optional<FrameRequest> request_;
+    UpdateBudget budget_;
     std::uint64_t number_ = 0;
     std::vector<std::string> errors_;          ///< of the request
     std::optional<std::string> reload_error_;  ///< of the shaders that were read last

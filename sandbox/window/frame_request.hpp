@@ -24,6 +24,7 @@ struct FrameRequest {
     Entity camera;
     glm::uvec2 size{1};  ///< pixels
     Configuration configuration;
+    double update_budget_ms = 0.0;         ///< see UpdateBudget
     std::optional<Configuration> other{};  ///< the same view is rendered with this one, too
     /// Linear radiance that is tone-mapped into RenderedFrame::other, instead of `other`; may be null.
     std::shared_ptr<const Picture> reference{};

@@ -25,6 +25,7 @@ FrameRequest frame_request(SessionState& state, glm::uvec2 size) {
                          .camera = state.document->interaction.viewer(),
                          .size = size,
                          .configuration = app.configuration,
+                         .update_budget_ms = app.update_budget_ms,
                          .read_vpls = app.vpls,
                          .read_radiance = app.reference,
                          .estimate_error = app.estimate_error};

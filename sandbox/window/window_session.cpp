@@ -27,7 +27,9 @@ using Seconds = std::chrono::duration<double>;
 WindowSession::WindowSession(Window& window, const OpenScene& open, const Configuration& configuration,
                              ConfigWatch& watch, const Options& options, const MakeReference& make_reference)
     : window_(window), watch_(watch), options_(options), shader_saves_(options.shaders), gui_(window) {
+    constexpr double default_budget_ms = 60.0;
     state_.app.configuration = configuration;
+    state_.app.update_budget_ms = options.update_budget.value_or(default_budget_ms);
     if (make_reference) state_.reference = ReferenceView(make_reference(Window::wake));
     if (options.ui_log) log_.emplace(*options.ui_log);
     loader_.start(open, "the scene");

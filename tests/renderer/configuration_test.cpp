@@ -34,7 +34,7 @@ Configuration unusual() {
     c.path = ShadingPath::forward;
     c.show = Show::indirect;
     c.indirect = false;
-    c.vpls = {.count = 7, .bounces = 5, .seed = 4'000'000'000U};
+    c.vpls = {.count = 7, .bounces = 5, .seed = 4'000'000'000U, .updates = 9};
     c.interleave = Interleave::four;
     c.frame_budget_ms = std::nullopt;
     c.geometry_bound = std::numeric_limits<float>::infinity();
@@ -105,7 +105,7 @@ TEST_SUITE("configuration") {
         c.visibility.method = VplVisibility::rays;
         c.path = ShadingPath::clustered_forward;
         c.shadows.enabled = false;
-        CHECK(without_effect(c) == Paths{"vpls.map_resolution", "shadows.cube_resolution",
+        CHECK(without_effect(c) == Paths{"vpls.updates", "vpls.map_resolution", "shadows.cube_resolution",
                                          "shadows.map_resolution", "shadows.budget_mib"});
     }
 

@@ -93,6 +93,18 @@ TEST_SUITE("surfel updates") {
         }
     }
 
+    // Meanwhile, others have been traced that saw it elsewhere.
+    TEST_CASE_FIXTURE(SurfelUpdates, "what moves away and comes back is traced again") {
+        configure(configuration_);
+        static_cast<void>(settled_picture(scene_, size));
+        const Transform before = scene_.world.get<Transform>(block_);
+        move_block(0.3F);
+        for (int frame = 0; frame < 3; ++frame) static_cast<void>(render(scene_, size));
+        CHECK_FALSE(renderer.settled());
+        scene_.world.set(block_, before);
+        CHECK(frames_until_settled().back() == from_scratch(scene_, size));
+    }
+
     // With one bounce, the light of a surfel does not depend on others. Those that wait send none, and the
     // others as much as in the end: light only grows, and in no pixel above that of the whole.
     TEST_CASE_FIXTURE(SurfelUpdates, "in the first frames, surfels that were not traced send no light") {

@@ -130,6 +130,22 @@ TEST_SUITE("render thread") {
         while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
         CHECK(frame.report->refined == 2);
     }
+
+    TEST_CASE("within a budget, surfels are traced frame by frame until the picture is settled") {
+        Rendering rendering;
+        FrameRequest request = rendering.request();
+        request.configuration.vpls.count = 64;
+        const RenderedFrame at_once = rendering.render(request);
+        CHECK(at_once.settled);
+        const Texels whole = rendering.read(at_once.picture);
+        request.update_budget_ms = 1e-3;
+        RenderedFrame frame = rendering.render(request);
+        CHECK_FALSE(frame.settled);
+        CHECK(frame.configuration == request.configuration);
+        while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
+        CHECK(frame.report->vpls->waiting == 0);
+        CHECK(rendering.read(frame.picture) == whole);
+    }
 }
 
 }  // namespace candela::sandbox

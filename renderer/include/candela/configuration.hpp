@@ -55,10 +55,10 @@ struct VplSettings {
     /// come.
     std::uint32_t bounces = all_bounces;
     std::uint32_t seed = 0;  ///< of the pseudo-random placement
-    /// Most surfels for which visibility is traced in a frame: what other surfels, and the surfaces in their
-    /// depth maps, see of them. 0: all at once. With a limit, a frame costs no more however much moves, and
-    /// light follows over the next frames (Renderer::settled), first where it matters most. If the first
-    /// frame lasts too long, so does that: surfels that were not traced yet send no light.
+    /// Most surfels for which rays are traced in a frame, to other surfels and in their depth maps. 0: no
+    /// limit. With one, a frame takes no longer however much moves. Light follows over the next frames, first
+    /// where it matters most, and Renderer::settled tells when all has. Likewise in the first frames:
+    /// surfels that were not traced yet send no light.
     std::uint32_t updates = 0;
     bool operator==(const VplSettings&) const = default;
 };

@@ -86,12 +86,12 @@ Candidate candidate(const TracedSurfel* last, const SurfelNow& now, bool keeps_f
     TracedSurfel& known = out.known;
     const bool was_there = last != nullptr;
     known.cell = now.cell;
-    known.has_factors = known.has_factors && keeps_factors;
+    known.in_place = known.in_place && keeps_factors && known.id == now.id;
     known.has_map = is_usable(known, now.map_key, now.map);
     if (!was_there || !keeps_factors) out.instead |= SURFEL_NO_FACTORS;
     if (!known.has_map && (!was_there || last->has_map || last->map != now.map)) out.instead |= SURFEL_NO_MAP;
     known.map = now.map;
-    const bool is_elsewhere = !known.has_factors || known.id != now.id;
+    const bool is_elsewhere = !known.in_place;
     const bool has_other_map = !known.has_map || known.map_key != now.map_key;
     const bool anything_changed = now.changed_share > 0.0F && !now.sees_change;
     if (is_elsewhere) out.task |= SURFEL_COLUMN;
@@ -127,7 +127,7 @@ TracedSurfel after(const Candidate& candidate, bool is_traced) {
     }
     now.id = candidate.id;
     now.map_key = candidate.map_key;
-    now.has_factors = now.has_map = true;
+    now.in_place = now.has_map = true;
     now.waits = false;
     now.urgency = 0.0F;
     return now;

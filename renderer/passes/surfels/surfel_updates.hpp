@@ -26,7 +26,7 @@ struct TracedSurfel {
     std::uint64_t id = 0;       ///< Surfels::ids when it was traced
     std::uint64_t map_key = 0;  ///< SurfelMaps::keys then
     std::uint32_t map = 0;      ///< gpu::Surfel::map then
-    bool has_factors = false;   ///< else they are 0
+    bool in_place = false;      ///< its form factors, and those of others to it, are of where it is
     bool has_map = false;       ///< else its depth map lets no light through
     bool waits = false;         ///< it has waited since an earlier frame
     float urgency = 0.0F;       ///< sum over the frames in which it waited: see add_surfel_updates
