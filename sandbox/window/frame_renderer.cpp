@@ -62,7 +62,7 @@ void FrameRenderer::begin(FrameRequest request, std::uint64_t number) {
     if (budget_.budget_ms() != request_->update_budget_ms) budget_ = UpdateBudget(request_->update_budget_ms);
 }
 
-/// Whether the configurations have the same graph: the limits of surfels may differ.
+/// Limits of surfels may differ: the graph stays.
 bool FrameRenderer::needs_compiling() const {
     Configuration wanted = budget_.limited(request_->configuration);
     const Configuration& now = renderer_->configuration();

@@ -43,7 +43,7 @@ struct SurfelUpdates {
 /// that they have, also while their items move; those that have none yet send no light. A surfel's urgency
 /// is its share of the light, for which its area times the density of surfels there (density_at) stands,
 /// times the part of what it sees that has changed, summed over the frames in which it waits. The most urgent
-/// ones come first; so that all get their turn, also while things move all the time. When nothing waits, all
+/// ones come first, so that all get their turn, also while things move all the time. When nothing waits, all
 /// is as if it had been traced at once. Another set of surfels is traced at once, and so
 /// are those of other foci, unless things or views move.
 /// Depends on surfels, motion, foci, refinement and clock, and on its own last result.
