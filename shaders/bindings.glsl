@@ -41,6 +41,7 @@
 #define BINDING_LISTED_SURFELS BINDING_FLUX
 #define BINDING_SURFEL_TASKS BINDING_LIST_ENTRIES
 #define BINDING_MAP_TASKS BINDING_SHADOWS
+#define BINDING_SURFEL_GROUPS BINDING_SHADOWS
 // Passes that gather VPLs read no light lists.
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_FILL_MASK BINDING_LIST_COUNT
@@ -109,5 +110,9 @@
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
 #define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl
+// Distances of a pixel from a group of surfels, in widths of the group: nearer, the surfels are summed one by one; farther,
+// the group as one; between them, both in part. See theory.md, "Groups of surfels".
+#define GROUP_NEAR 2.5
+#define GROUP_FAR 3.0
 #define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from
 #define MOST_CHANGED_BOXES 8  // in the uniforms of changed_boxes.glsl; more are merged into one box

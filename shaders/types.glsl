@@ -149,7 +149,7 @@ struct Surfel {
 #define SURFEL_NO_MAP 16u      // nothing: its depth map lets no light through
 #define SURFEL_MAP_OF_FOCUS 0x80000000u  // the depth map is a picture of VplConstants::focus_*, not of the hemisphere
 
-// A surfel with the light that its cell reflects, as a VPL.
+// A surfel with the light that its cell reflects, as a VPL. Also a group of surfels, whose points are its surfels.
 struct LitSurfel {
     vec3 position;     // metres, of the surfel; its depth map is seen from ray_offset above it
     uint first_point;  // index of its cell's first LitPoint
@@ -161,6 +161,18 @@ struct LitSurfel {
     float area;        // m², of its cell
     float width2;      // m², squared width of its cell: the area of a square one
     uint map;          // Surfel::map
+    float reach DEFAULT(0.0F);      // SurfelGroup::reach
+    float thickness DEFAULT(0.0F);  // SurfelGroup::thickness
+};
+
+// Surfels that pixels far away see as one VPL: surfel_groups.comp. Its record is a LitSurfel.
+struct SurfelGroup {
+    uint first;    // index of its first surfel
+    uint count;    // of its surfels
+    uint middle;   // index of the surfel whose position, normal and depth map it has
+    float width2;  // m², squared width: the area of a square one
+    float reach;      // metres: its points are at most so far from the middle surfel,
+    float thickness;  // and so far from that one's plane
     uint pad0 DEFAULT(0u);
     uint pad1 DEFAULT(0u);
 };
@@ -236,7 +248,7 @@ struct CellLight {
 
 // Constants that all VPLs share. A uniform block: shaders/vpls/vpl_constants.glsl.
 struct VplConstants {
-    uint count;               // of all kinds
+    uint count;               // of all kinds, groups of surfels instead of surfels where there are any
     uint first_emitter;       // index of the first surfel on a surface that emits light
     uint first_sky_patch;     // index of the first patch of the sky
     float ray_offset;         // metres above a surface, where rays and depth maps start
@@ -246,6 +258,10 @@ struct VplConstants {
     float map_near;           // metres, the octahedral distance at which map depth is 1
     vec3 focus_centre;        // metres; SURFEL_MAP_OF_FOCUS: depth maps of surfels far from this sphere see it alone
     float focus_radius;       // metres; 0: there is no such sphere
+    uint mapped;              // VPLs with depth maps; the records of groups of surfels follow theirs
+    uint pad0 DEFAULT(0u);
+    uint pad1 DEFAULT(0u);
+    uint pad2 DEFAULT(0u);
 };
 
 #ifndef __cplusplus  // C++ has it, with what its members mean, in engine/bvh/wide.hpp

@@ -41,7 +41,7 @@ LitSurfel lit_surfel(Surfel surfel, CellLight cell, vec3 spread, vec3 flux) {
         radius2 = min(mix(radius2, cell.radius2, share) + between, radius2);
     }
     return LitSurfel(surfel.position, surfel.first_point, surfel.normal, surfel.point_count, centre, radius2, flux,
-                     surfel.area, surfel.width2, surfel.map, 0u, 0u);
+                     surfel.area, surfel.width2, surfel.map, 0.0, 0.0);
 }
 
 #ifdef EMITTERS

@@ -18,7 +18,7 @@ layout(std430, binding = BINDING_MAP_TASKS) readonly restrict buffer MapTasks { 
 
 uniform bool has_tasks;  // else all is drawn
 
-bool is_freed(uint index) { return index >= vpl_constants.first_emitter; }
+bool is_freed(uint index) { return index >= vpl_constants.mapped; }
 
 // All but those on deformed triangles without area, and freed slots.
 bool has_map(uint index) { return !is_freed(index) && surfels[index].normal != vec3(0.0); }

@@ -544,8 +544,8 @@ TEST_SUITE("surfels: light") {
     }
 
     TEST_CASE_FIXTURE(SurfelTests, "light from a floor does not leak through a wall that stands on it") {
-        // With few surfels, whose cells extend under the wall. Behind the wall there are only the floor,
-        // which does not light itself, and the back of the wall.
+        // With few surfels, whose cells extend under the wall, and with many, whose groups would. Behind the
+        // wall there are only the floor, which does not light itself, and the back of the wall.
         Scene scene;
         add(scene.world, Transform{}, MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F)))});
         const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
@@ -553,17 +553,20 @@ TEST_SUITE("surfels: light") {
             MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F), true))});
         scene.light = add(scene.world, at({1.0F, 1.0F, 0}), PointLight{.intensity = 10.0F});
         scene.camera = add(scene.world, looking({-1.0F, 1.5F, 0.1F}, {-0.3F, 0.3F, 0}), Camera{});
-        for (const auto method : {VplVisibility::maps, VplVisibility::rays}) {
-            Configuration configuration = surfels(50);
-            configuration.visibility.method = method;
-            configure(configuration);
-            const double behind = mean(render(scene, {32, 24}));
-            Scene before = scene;
-            before.world.set(before.camera, looking({1.0F, 1.5F, 0.1F}, {0.3F, 0.3F, 0}));
-            renderer.invalidate();
-            const double lit = mean(render(before, {32, 24}));
-            CHECK(lit > 0.05);
-            CHECK(behind < 1e-3 * lit);
+        for (const std::uint32_t count : {50U, 1500U}) {
+            for (const auto method : {VplVisibility::maps, VplVisibility::rays}) {
+                CAPTURE(count);
+                Configuration configuration = surfels(count);
+                configuration.visibility.method = method;
+                configure(configuration);
+                const double behind = mean(render(scene, {32, 24}));
+                Scene before = scene;
+                before.world.set(before.camera, looking({1.0F, 1.5F, 0.1F}, {0.3F, 0.3F, 0}));
+                renderer.invalidate();
+                const double lit = mean(render(before, {32, 24}));
+                CHECK(lit > 0.05);
+                CHECK(behind < 1e-3 * lit);
+            }
         }
     }
 

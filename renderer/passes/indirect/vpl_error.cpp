@@ -30,7 +30,7 @@ VplSamples add_samples(FrameGraph& graph, Gpu& gpu, std::string_view name, std::
         pass.run([=, &gpu, &program](Execution& run) {
             ComputeSteps steps(gpu);
             const Groups all{groups(SAMPLE_COLUMNS * SAMPLE_ROWS, SAMPLE_GROUP)};
-            const std::uint32_t count = run.value(light.vpls.counts).total();
+            const std::uint32_t count = run.value(light.vpls.counts).sources();
             for (const gl::Uniforms& part : loop_parts(count, max_vpls_per_invocation(light))) {
                 steps.run(program, all, part);
             }

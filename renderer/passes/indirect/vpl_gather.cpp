@@ -98,7 +98,7 @@ BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, con
         pass.run([=, &gpu, counts = vpls.counts](Execution& run) {
             upload<std::uint32_t>(
                 gpu, run, order,
-                plan ? order_vpls(run.value(*plan)) : order_surfels(run.value(counts).total()));
+                plan ? order_vpls(run.value(*plan)) : order_surfels(run.value(counts).sources()));
         });
         return order;
     });
@@ -121,7 +121,7 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
             .order = order,
             .interleave = interleave};
         pass.run([=, &gpu, &program](Execution& run) {
-            gather(gpu, program, view.size, interleave, run.value(light.vpls.counts).total(),
+            gather(gpu, program, view.size, interleave, run.value(light.vpls.counts).sources(),
                    max_vpls_per_invocation(light));
         });
         return out;

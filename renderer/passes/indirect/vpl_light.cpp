@@ -1,12 +1,36 @@
 #include "renderer/passes/indirect/vpl_light.hpp"
 
+#include <algorithm>
+
+#include "renderer/passes/surfels/surfel_placement.hpp"
+
 namespace candela {
 
-std::uint32_t max_vpls_per_invocation(const VplLight& light) {
+namespace {
+
+/// About how many surfels each of a pixel's sources of light has; 1: it sums VPLs one by one.
+std::uint32_t group_size_of(const VplLight& light) {
+    const auto* const lit = std::get_if<LitSurfels>(&light.vpls.records);
+    return lit != nullptr ? lit->group_size : 1;
+}
+
+std::uint32_t max_single(const VplLight& light) {
     if (light.rays) {
         return light.maps ? 512 : 64;  // few need rays: see emitting_surfels
     }
     return std::holds_alternative<LitSurfels>(light.vpls.records) ? 2048 : 8192;
+}
+
+}  // namespace
+
+std::uint32_t max_vpls_per_invocation(const VplLight& light) {
+    const std::uint32_t size = group_size_of(light);
+    if (size == 1) return max_single(light);
+    // Of all groups, less than a quarter are so near that their surfels are summed one by one, and of all
+    // surfels less than a quarter so near that each of their points is.
+    if (light.rays && !light.maps) return std::max(max_single(light) / (1 + size / 4), 1U);
+    const std::uint32_t iterations = 1 + size + size * points_a_surfel / 4;
+    return std::clamp(40'000 / iterations, 1U, max_single(light));
 }
 
 std::vector<std::string> vpl_light_variant(const VplLight& light) {
@@ -15,6 +39,7 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
         words.emplace_back("SURFELS");
         if (lit->emitters) words.emplace_back("EMITTERS");
         if (lit->sky) words.emplace_back("SKY");
+        if (lit->group_size > 1) words.emplace_back("GROUPS");
     }
     if (light.maps) words.emplace_back("VPL_VISIBILITY_MAPS");
     if (light.rays && !light.maps) words.emplace_back("VPL_VISIBILITY_RAYS");

@@ -20,8 +20,9 @@ struct VplLight {
     std::optional<Tracing> rays{};        ///< BVH for shadow rays: of all VPLs, or of those without a map
 };
 
-/// Most VPLs that an invocation may evaluate in one dispatch or draw. Software drivers silently stop all
-/// loops of an invocation after 65,535 iterations in total; a ray may take a thousand of them.
+/// Most VPLs, or groups of surfels, that an invocation may sum in one dispatch or draw. Software drivers
+/// silently stop all loops of an invocation after 65,535 iterations in total; a ray may take a thousand of
+/// them.
 [[nodiscard]] std::uint32_t max_vpls_per_invocation(const VplLight& light);
 
 /// Names to define in shaders that include vpl_light.glsl.

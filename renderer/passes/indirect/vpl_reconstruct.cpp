@@ -110,7 +110,7 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"}, vpl_light_variant(light));
         const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
         pass.run([=, &gpu, &program](Execution& run) {
-            fill(gpu, program, run.value(light.vpls.counts).total(), max_vpls_per_invocation(light));
+            fill(gpu, program, run.value(light.vpls.counts).sources(), max_vpls_per_invocation(light));
         });
         return out;
     });

@@ -99,6 +99,7 @@ void append_part(SurfelSet& to, const SurfelSet& set, std::size_t cell, const Ce
     to.patches.push_back(combine_ids(set.patches[cell], part));
     to.surfel_places.push_back(place);
     to.item_of.push_back(set.item_of[cell]);
+    to.branches.push_back(set.branches[cell]);
 }
 
 }  // namespace

@@ -137,14 +137,33 @@ std::vector<std::string> writer_variant(const SurfelSources& sources) {
     return sources.emitters ? std::vector<std::string>{"EMITTERS"} : std::vector<std::string>{};
 }
 
+/// The step that sums up groups of surfels.
+struct GroupStep {
+    const gl::Program* program = nullptr;  // null: there are no groups
+
+    void run(ComputeSteps& steps, const VplCounts& counts) const {
+        if (program == nullptr || counts.groups == 0) return;
+        steps.run(*program, {groups(counts.groups, SURFEL_GROUP)},
+                  {{"group_count", counts.groups}, {"first_record", counts.surfels}});
+    }
+};
+
+GroupStep read_groups(Gpu& gpu, Pass& pass, const Surfels& surfels) {
+    if (!surfels.groups) return {};
+    pass.read(*surfels.groups, {Usage::storage, BINDING_SURFEL_GROUPS});
+    return {&gpu.program({"surfels/surfel_groups.comp"})};
+}
+
 /// Declares the surfels as VPLs. The light of the sky is emitted light.
-LitSurfels write_lit_surfels(FrameGraph& graph, Pass& pass, const SurfelSources& sources, ShownLight shown) {
+LitSurfels write_lit_surfels(FrameGraph& graph, Pass& pass, const Surfels& surfels,
+                             const SurfelSources& sources, ShownLight shown) {
     LitSurfels lit{.surfels = pass.write(growing_buffer<gpu::LitSurfel>(graph, "lit surfels"),
                                          {Usage::storage, BINDING_LIT_SURFELS}),
                    .emitters = {},
                    .points = pass.write(growing_buffer<gpu::LitPoint>(graph, "lit points"),
                                         {Usage::storage, BINDING_LIT_POINTS}),
-                   .sky = shown.emitted ? sources.sky : std::nullopt};
+                   .sky = shown.emitted ? sources.sky : std::nullopt,
+                   .group_size = surfels.group_size};
     if (sources.emitters) {
         lit.emitters = pass.write(growing_buffer<gpu::LitEmitter>(graph, "lit emitters"),
                                   {Usage::storage, BINDING_LIT_EMITTERS});
@@ -180,11 +199,12 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             .extrapolate = gpu.program({"surfels/surfel_extrapolate.comp"}),
             .account = gpu.program({"surfels/surfel_account.comp"}),
             .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant(sources))};
+        const GroupStep group_step = read_groups(gpu, pass, surfels);
         [[maybe_unused]] const auto lit_cells =
             pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
         const auto bounced =
             pass.write(growing_buffer<glm::vec4>(graph, "bounced light"), {Usage::storage, BINDING_BOUNCE});
-        const LitSurfels lit = write_lit_surfels(graph, pass, sources, shown);
+        const LitSurfels lit = write_lit_surfels(graph, pass, surfels, sources, shown);
         const Vpls out{.counts = pass.write(graph.value<VplCounts>("vpl counts")),
                        .flux = pass.write(growing_buffer<gpu::FluxAccount>(graph, "flux"),
                                           {Usage::storage, BINDING_FLUX_ACCOUNT}),
@@ -195,7 +215,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             run.set(out.counts, counts);
             const auto [count, points] = numbers_of(run, surfels);
             run.reserve(bounced, 3 * count);
-            run.reserve(lit.surfels, count);
+            run.reserve(lit.surfels, count + counts.groups);
             run.reserve(lit.points, points);
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
             if (count == 0) return;
@@ -204,6 +224,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             steps.run(programs.writer, {groups(count, SURFEL_GROUP)},
                       count_uniforms(count) + share_uniforms(shown) +
                           gl::Uniforms{{"emitting_count", counts.emitters}});
+            group_step.run(steps, counts);
         });
         return out;
     });

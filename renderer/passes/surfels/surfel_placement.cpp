@@ -143,7 +143,7 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::cut(std::vector<Cell> cells,
         if (!tree_.cut(cells[i].patch)) continue;
         const std::uint32_t first = tree_[cells[i].patch].first;
         cells[i].patch = first;
-        cells.push_back({first + 1, cells[i].item, cells[i].scale});
+        cells.push_back({first + 1, cells[i].item, cells[i].scale, cells[i].branch});
         queue(i);
         queue(cells.size() - 1);
     }
@@ -161,9 +161,15 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::cells_on(const std::vector<R
         for (const Root& root : roots) cells.push_back({root.patch, root.item});
     }
     // Patches of equal size are not all cut at once: that would leave large areas of cells of twice the size.
-    return cut(std::move(cells), count, [&](const Cell& cell) {
+    const auto weight = [&](const Cell& cell) {
         return weight_of(cell, foci) * std::exp2(random_of(tree_[cell.patch].id, use_weight));
-    });
+    };
+    cells = cut(std::move(cells), std::min(count, most_branches), weight);
+    for (std::uint32_t i = 0; i < cells.size(); ++i) cells[i].branch = i;
+    if (count <= most_branches) return cells;
+    cells = cut(std::move(cells), count, weight);
+    std::ranges::stable_sort(cells, {}, &Cell::branch);
+    return cells;
 }
 
 /// Appends the surfel of a cell.
@@ -195,6 +201,7 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
     set.surfel_places.push_back(set.point_places[static_cast<std::size_t>(middle - set.points.begin())]);
     set.item_of.push_back(cell.item);
     set.patches.push_back(patch.id);
+    set.branches.push_back(cell.branch);
     set.ids.push_back(
         combine_ids(patch.id, combine_ids(std::bit_cast<std::uint64_t>(cell.scale), use_scale)));
 }

@@ -15,6 +15,7 @@
 #include "renderer/passes/scene/traced_content.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 #include "renderer/passes/surfels/cell_division.hpp"
+#include "renderer/passes/surfels/surfel_groups.hpp"
 #include "renderer/passes/surfels/surfel_ids.hpp"
 
 namespace candela {
@@ -287,6 +288,33 @@ std::vector<SurfelPlace> places_of(const SurfelSet& set) {
     return places;
 }
 
+/// Resources of surfels in groups.
+struct GroupNode {
+    ValueHandle<DividedCells> divided;  // the branches
+    BufferHandle<gpu::SurfelGroup> groups;
+};
+
+std::optional<GroupNode> write_groups(FrameGraph& graph, Pass& pass, std::uint32_t group_size) {
+    if (group_size == 1) return std::nullopt;
+    return GroupNode{
+        .divided = pass.update(graph.value<DividedCells>("divided branches")),
+        .groups = pass.write(growing_buffer<gpu::SurfelGroup>(graph, "surfel groups"), Usage::copy)};
+}
+
+/// Puts the surfels of a set in groups. Returns how many.
+std::uint32_t form_groups(const Gpu& gpu, Execution& run, const GroupNode& node, SurfelSet& set,
+                          const TracedScene& scene, float ray_offset,
+                          const std::optional<std::vector<Box>>& changed) {
+    SurfelSet branches = branches_of(set);
+    branches.ids = content_hashes(branches, branches.ids);
+    DividedCells parts = divide_cells(branches, scene, ray_offset, run.previous(node.divided), changed);
+    GroupedSurfels in_groups = grouped(set, branches, parts.cells);
+    upload<gpu::SurfelGroup>(gpu, run, node.groups, in_groups.groups);
+    run.set(node.divided, std::move(parts));
+    set = std::move(in_groups.set);
+    return static_cast<std::uint32_t>(in_groups.groups.size());
+}
+
 ValueHandle<SpreadSurfels> add_spread(FrameGraph& graph, const SceneData& scene,
                                       std::optional<ValueHandle<Refinement>> refinement,
                                       ValueHandle<std::vector<Focus>> foci, const VplSettings& settings) {
@@ -352,6 +380,8 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
         pass.keeps_state();
         const auto divided_cells = pass.update(graph.value<DividedCells>("divided cells"));
         const TracedContent<DivisionKey> known(graph, pass, "known division");
+        const std::uint32_t group_size = surfels_a_group(settings.count);
+        const std::optional<GroupNode> group_node = write_groups(graph, pass, group_size);
         const Surfels out{
             .counts = pass.write(graph.value<VplCounts>("surfel counts")),
             .point_count = pass.write(graph.value<std::uint32_t>("cell point count")),
@@ -360,7 +390,9 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             .places = pass.write(graph.value<std::vector<SurfelPlace>>("surfel places")),
             .maps = pass.update(graph.value<SurfelMaps>("surfel maps")),
             .surfels = pass.write(growing_buffer<gpu::Surfel>(graph, "surfels"), Usage::copy),
-            .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy)};
+            .points = pass.write(growing_buffer<gpu::CellPoint>(graph, "cell points"), Usage::copy),
+            .groups = group_node ? std::optional(group_node->groups) : std::nullopt,
+            .group_size = group_size};
         pass.run([=, &gpu, layout = scene.layout, placement = scene.placement,
                   focus = foci.of_maps](Execution& run) {
             const TracedScene traced{*run.value(tracing.hierarchy), run.value(layout), run.value(placement)};
@@ -371,11 +403,14 @@ Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, c
             DividedCells cells =
                 divide_cells(whole, traced, ray_offset, run.previous(divided_cells), changed);
             SurfelSet set = divided(whole, cells.cells);
+            VplCounts counts = counts_of(set);
+            if (group_node) {
+                counts.groups = form_groups(gpu, run, *group_node, set, traced, ray_offset, changed);
+            }
             std::vector<std::uint64_t> cell_ids = set.patches;
             make_unique(cell_ids);
             set.ids = content_hashes(set, set.ids);
             make_unique(set.ids);
-            const VplCounts counts = counts_of(set);
             run.set(divided_cells, std::move(cells));
             run.set(out.maps, place_maps(std::span(set.surfels).first(counts.surfels), cell_ids, set.ids,
                                          run.value(focus), run.previous(out.maps)));

@@ -49,6 +49,8 @@ struct Surfels {
     ValueHandle<SurfelMaps> maps;       ///< of those that do not emit light
     BufferHandle<gpu::Surfel> surfels;  ///< those that emit light are the last ones
     BufferHandle<gpu::CellPoint> points;
+    std::optional<BufferHandle<gpu::SurfelGroup>> groups{};  ///< VplCounts::groups; none: there are none
+    std::uint32_t group_size = 1;                            ///< surfels_a_group
 };
 
 /// Adds nodes `surfel-spread` (CPU: places surfels on the items, densely in the foci; with refinement, those

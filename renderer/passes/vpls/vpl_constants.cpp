@@ -24,16 +24,17 @@ VplAtlas atlas_of_scene(const VplVisibilitySettings& settings, std::uint32_t map
 }
 
 gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metrics, const VplAtlas& atlas) {
-    return {.count = counts.total(),
-            .first_emitter = counts.mapped(),
-            .first_sky_patch = counts.mapped() + counts.emitters,
+    return {.count = counts.sources(),
+            .first_emitter = counts.mapped_sources(),
+            .first_sky_patch = counts.mapped_sources() + counts.emitters,
             .ray_offset = metrics.ray_offset(),
             .map_resolution = atlas.resolution,
             .map_tiles = atlas.tiles,
             .map_side = static_cast<float>(atlas.side),
             .map_near = atlas.near,
             .focus_centre = atlas.focus.centre,
-            .focus_radius = atlas.focus.radius};
+            .focus_radius = atlas.focus.radius,
+            .mapped = counts.mapped()};
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ struct LitSurfels {
         emitters;                        ///< VplCounts::emitters; none: no surface emits light
     BufferHandle<gpu::LitPoint> points;  ///< of the cells of both
     std::optional<SkyPatches> sky;       ///< none: the world has no sky, or its light is not shown
+    std::uint32_t group_size = 1;  ///< surfels_a_group; if above 1, records of groups follow the surfels'
 };
 
 /// The VPLs of a frame with their light.
