@@ -592,17 +592,20 @@ TEST_SUITE("surfels: light") {
         }
     }
 
-    TEST_CASE_FIXTURE(SurfelTests, "cells are divided where walls stand now, not where they stood") {
+    TEST_CASE_FIXTURE(SurfelTests,
+                      "cells and groups are divided where walls stand now, not where they stood") {
         Scene scene;
         add(scene.world, Transform{}, MeshInstance{square(2.0F, diffuse(glm::vec3(0.8F)))});
         const Entity wall =
             add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.6F), true))});
         scene.light = add(scene.world, at({1.0F, 1.0F, 0.4F}), PointLight{.intensity = 10.0F});
         scene.camera = add(scene.world, looking({-1.5F, 1.5F, 1.0F}, {0, 0.2F, 0}), Camera{});
-        configure(surfels(50));
-        for (int i = 0; i < 8; ++i) {
+        for (int i = 0; i < 12; ++i) {
             CAPTURE(i);
-            const auto part = static_cast<float>(i) / 7.0F;
+            // The last four with groups.
+            if (i == 0) configure(surfels(50));
+            if (i == 8) configure(surfels(1000));
+            const auto part = static_cast<float>(i % 8) / 7.0F;
             const glm::quat turned = glm::angleAxis(part, glm::vec3(0, 1, 0)) *
                                      glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
             scene.world.set(wall, Transform{.translation = {1.2F * part - 0.6F, 0, 0}, .rotation = turned});
