@@ -131,8 +131,10 @@ struct VplSet {
 
 VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, const LitScene& lit,
                       std::optional<ValueHandle<Refinement>> refinement, const SurfelInputs& inputs) {
-    const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, refinement,
-                                        inputs.foci, wanted.settings);
+    const ValueHandle<SpreadSurfels> spread =
+        add_surfel_spread(graph, lit.scene, refinement, inputs.foci.foci, wanted.settings);
+    const Surfels surfels = add_surfels(graph, gpu, lit.scene, lit.tracing, inputs.motion, spread,
+                                        inputs.foci.of_maps, wanted.settings.count);
     std::optional<SurfelUpdates> updates;
     if (inputs.update_clock && wanted.settings.updates > 0) {
         updates = add_surfel_updates(graph, surfels, lit.tracing, inputs.motion, inputs.foci, refinement,

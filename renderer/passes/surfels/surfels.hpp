@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
@@ -14,17 +12,10 @@
 #include "renderer/passes/scene/scene_motion.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "renderer/passes/surfels/surfel_maps.hpp"
-#include "renderer/passes/surfels/surfel_placement.hpp"
-#include "renderer/passes/view/refinement.hpp"
+#include "renderer/passes/surfels/surfel_spread.hpp"
 #include "renderer/passes/vpls/vpl_counts.hpp"
 
 namespace candela {
-
-/// The shape of an item: its local-to-world matrix without rotation and translation. It is the upper
-/// triangular Cholesky factor of the Gram matrix MᵀM, rounded to about four digits, so that it stays the
-/// same, bit for bit, while the item rotates. The first row is negated for mirrored items. For flat items,
-/// which have no inverse, it is the upper left 3 × 3 part of `world`.
-[[nodiscard]] glm::mat3 shape_of(const glm::mat4& world);
 
 /// Where a surfel is.
 struct SurfelPlace {
@@ -53,16 +44,14 @@ struct Surfels {
     std::uint32_t group_size = 1;                            ///< surfels_a_group
 };
 
-/// Adds nodes `surfel-spread` (CPU: places surfels on the items, densely in the foci; with refinement, those
-/// of the current surfel set) and `surfels` (CPU, then upload: their positions in the world, where cells are
-/// divided that surfaces cut: see divide_cell). Surfels belong to the items of the scene and move with them,
-/// and with the triangles of a deformed one; all are placed again when an item is added, removed or changes
-/// its shape. Only cells that are new, that move, or near which something moves, are divided again. The nodes
-/// depend on the scene's layout and placement, on the foci and on the refinement, and on their own last
-/// results: surfels that stay keep the slots of their depth maps. `surfels` also depends on BVH and motion.
+/// Adds node `surfels` (CPU, then upload): moves the surfels to where they are in the world
+/// (placed_in_world), divides cells that surfaces cut (divide_cell), and puts them in groups if there are
+/// many. Only cells that are new, that move, or near which something moves, are divided again. Depends on the
+/// spread surfels, the scene's layout and placement, BVH, motion and focus, and on its own last result:
+/// surfels that stay keep the slots of their depth maps. `wanted`: VplSettings::count.
 [[nodiscard]] Surfels add_surfels(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
                                   const Tracing& tracing, ValueHandle<SceneMotion> motion,
-                                  std::optional<ValueHandle<Refinement>> refinement, const SurfelFoci& foci,
-                                  const VplSettings& settings);
+                                  ValueHandle<SpreadSurfels> spread, ValueHandle<Focus> focus_of_maps,
+                                  std::uint32_t wanted);
 
 }  // namespace candela

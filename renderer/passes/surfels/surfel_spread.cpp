@@ -1,0 +1,250 @@
+#include "renderer/passes/surfels/surfel_spread.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <span>
+#include <utility>
+
+#include <candela/graph/execute.hpp>
+#include "renderer/passes/scene/world_triangles.hpp"
+
+namespace candela {
+namespace {
+
+std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
+    std::vector<glm::mat3> shapes;
+    for (const glm::mat4& world : placement.world) {
+        shapes.push_back(shape_of(world));
+    }
+    return shapes;
+}
+
+/// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
+/// deformation came first.
+SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) {
+    SceneTriangles scene;
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        const std::vector<Vertex>& vertices = drawable.primitive->vertices;
+        const glm::mat4 shape(key.shapes[drawable.item]);
+        const auto count = static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const auto id = static_cast<std::uint32_t>(scene.triangles.size());
+            scene.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
+        }
+        scene.item_of.insert(scene.item_of.end(), count, drawable.item);
+    }
+    for (const auto& material : layout.materials) {
+        scene.double_sided.push_back(material && material->double_sided);
+        scene.emits.push_back(material && emits(*material));
+    }
+    return scene;
+}
+
+/// Transform from an item's shape space to the world: a rotation, a translation, and the rounding error of
+/// the shape matrix.
+glm::mat4 world_from_shape(const glm::mat4& world, const glm::mat3& shape) {
+    return world * glm::mat4(glm::inverse(shape));
+}
+
+/// Boxes around the solid parts of the items, world space.
+std::vector<Box> item_boxes(const SceneLayout& layout, const ScenePlacement& placement) {
+    std::vector<Box> boxes(placement.world.size());
+    for (const SceneLayout::Drawable& drawable : layout.solids()) {
+        boxes[drawable.item].grow(
+            place_box(bounds_of(drawable, placement.deformed), placement.world[drawable.item]));
+    }
+    return boxes;
+}
+
+bool is_inside(const Focus& focus, const Box& box) {
+    const glm::vec3 farthest =
+        glm::max(glm::abs(box.lower - focus.centre), glm::abs(box.upper - focus.centre));
+    return glm::length(farthest) <= focus.radius;
+}
+
+/// A focus in the shape space of an item. It is rounded, more so if the item is far from it, so that it stays
+/// the same, bit for bit, while the item moves a little.
+Focus rounded(const Focus& focus, const Box& item, const glm::mat4& shape_from_world) {
+    const float distance = glm::distance(focus.centre, glm::clamp(focus.centre, item.lower, item.upper));
+    const float step = 0.25F * std::exp2(std::floor(std::log2(std::max(focus.radius, distance))));
+    const glm::vec3 centre(shape_from_world * glm::vec4(focus.centre, 1.0F));
+    return {step * glm::round(centre / step), focus.radius};
+}
+
+/// The foci in the shape spaces of the items; none for an item inside one of them, and for flat items, which
+/// have no inverse.
+std::vector<std::vector<Focus>> foci_by_item(const SceneLayout& layout, const ScenePlacement& placement,
+                                             const std::vector<glm::mat3>& shapes,
+                                             const std::vector<Focus>& foci) {
+    std::vector<std::vector<Focus>> local(shapes.size());
+    if (foci.empty()) return local;
+    const std::vector<Box> boxes = item_boxes(layout, placement);
+    for (std::size_t i = 0; i < local.size(); ++i) {
+        const auto contains = [&](const Focus& focus) { return is_inside(focus, boxes[i]); };
+        const bool is_empty = !(boxes[i].lower.x <= boxes[i].upper.x);
+        if (is_empty || glm::determinant(shapes[i]) == 0.0F || std::ranges::any_of(foci, contains)) continue;
+        const glm::mat4 shape_from_world = glm::inverse(world_from_shape(placement.world[i], shapes[i]));
+        for (const Focus& focus : foci) local[i].push_back(rounded(focus, boxes[i], shape_from_world));
+    }
+    return local;
+}
+
+SpreadSurfels spread(const SpreadSurfels* last, const SceneLayout& layout, const ScenePlacement& placement,
+                     const std::vector<Focus>& foci, const SurfelCounts& counts, std::uint32_t seed) {
+    SpreadSurfels now;
+    now.placement_key = {layout.geometry, shapes_of(placement), seed};
+    now.key = {counts, foci_by_item(layout, placement, now.placement_key.shapes, foci)};
+    const bool same_items = last != nullptr && last->placement_key == now.placement_key;
+    if (same_items && last->key == now.key) return *last;
+    now.placement = same_items
+                        ? last->placement
+                        : std::make_shared<SurfelPlacement>(triangles_of(layout, now.placement_key), seed);
+    now.set = std::make_shared<const SurfelSet>(now.placement->place(counts, now.key.foci));
+    return now;
+}
+
+/// Moves surfels and points with the triangles that they were placed on, of items that are deformed.
+class Deformer {
+ public:
+    Deformer(const SceneLayout& layout, const ScenePlacement& placement)
+        : layout_(layout), placement_(placement) {
+        for (const SceneLayout::Drawable& drawable : layout.solids()) {
+            first_triangles_.push_back(triangle_count_);
+            triangle_count_ += static_cast<std::uint32_t>(drawable.primitive->indices.size() / 3);
+        }
+    }
+
+    /// Where a point of a triangle is now.
+    struct Moved {
+        glm::vec3 position;
+        glm::vec3 normal;  ///< unit; 0 if the triangle has no area
+        float stretch;     ///< area of the triangle / that in the mesh
+    };
+    [[nodiscard]] Moved moved(const SurfacePoint& point) const {
+        const auto next = std::ranges::upper_bound(first_triangles_, point.triangle);
+        const auto index = static_cast<std::size_t>(next - first_triangles_.begin()) - 1;
+        const SceneLayout::Drawable& drawable = layout_.drawables[index];
+        const std::uint32_t i = point.triangle - first_triangles_[index];
+        const auto triangle_of = [&](std::span<const Vertex> vertices) {
+            return place_triangle(layout_, drawable, vertices, i, placement_.world[drawable.item]);
+        };
+        const Triangle in_mesh = triangle_of(drawable.primitive->vertices);
+        const Triangle t = triangle_of(vertices_of(drawable, placement_.deformed));
+        const glm::vec3 cross = glm::cross(t.b - t.a, t.c - t.a);
+        const float size = glm::length(cross);
+        const glm::vec3 front = size > 0.0F ? cross / size : glm::vec3(0.0F);
+        return {.position = t.a + point.weights.x * (t.b - t.a) + point.weights.y * (t.c - t.a),
+                .normal = point.back ? -front : front,
+                .stretch = size / glm::length(glm::cross(in_mesh.b - in_mesh.a, in_mesh.c - in_mesh.a))};
+    }
+
+    void apply(SurfelSet& set, std::size_t i) const {
+        gpu::Surfel& surfel = set.surfels[i];
+        const Moved centre = moved(set.surfel_places[i]);
+        surfel.position = centre.position;
+        surfel.normal = centre.normal;
+        const float area_before = surfel.area;
+        surfel.area = 0.0F;
+        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+            const Moved at = moved(set.point_places[p]);
+            set.points[p].position = at.position;
+            set.points[p].normal = at.normal;
+            set.points[p].area *= at.stretch;
+            surfel.area += set.points[p].area;
+        }
+        surfel.width2 *= surfel.area / area_before;
+    }
+
+ private:
+    const SceneLayout& layout_;
+    const ScenePlacement& placement_;
+    std::vector<std::uint32_t> first_triangles_;  // ids, by drawable: see triangles_of
+    std::uint32_t triangle_count_ = 0;
+};
+
+}  // namespace
+
+glm::mat3 shape_of(const glm::mat4& world) {
+    const glm::dmat3 m(world);
+    const glm::dmat3 gram = glm::transpose(m) * m;
+    glm::dmat3 u(0.0);  // column-major: u[column][row]
+    u[0][0] = std::sqrt(gram[0][0]);
+    u[1][0] = gram[1][0] / u[0][0];
+    u[2][0] = gram[2][0] / u[0][0];
+    u[1][1] = std::sqrt(std::max(gram[1][1] - u[1][0] * u[1][0], 0.0));
+    u[2][1] = (gram[2][1] - u[1][0] * u[2][0]) / u[1][1];
+    u[2][2] = std::sqrt(std::max(gram[2][2] - u[2][0] * u[2][0] - u[2][1] * u[2][1], 0.0));
+    if (glm::determinant(m) < 0.0) {
+        u[0][0] = -u[0][0];
+        u[1][0] = -u[1][0];
+        u[2][0] = -u[2][0];
+    }
+    const double largest = std::max({std::abs(u[0][0]), u[1][1], u[2][2]});
+    const double step = std::exp2(std::floor(std::log2(largest) + 0.3) - 14.0);
+    const glm::dmat3 rounded(step * glm::round(u[0] / step), step * glm::round(u[1] / step),
+                             step * glm::round(u[2] / step));
+    // A flat item has no inverse; its matrix is used unchanged.
+    const bool is_flat = !(std::abs(glm::determinant(rounded)) > 1e-12 * largest * largest * largest);
+    return is_flat ? glm::mat3(world) : glm::mat3(rounded);
+}
+
+SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
+                          const ScenePlacement& placement) {
+    std::vector<glm::mat4> matrices;
+    std::vector<glm::mat3> normal_matrices;
+    for (std::size_t i = 0; i < placement.world.size(); ++i) {
+        matrices.push_back(world_from_shape(placement.world[i], spread.placement_key.shapes[i]));
+        normal_matrices.push_back(glm::transpose(glm::inverse(glm::mat3(matrices.back()))));
+    }
+    const Deformer deformer(layout, placement);
+    SurfelSet set = *spread.set;
+    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        if (placement.deformed.contains(set.item_of[i])) {
+            deformer.apply(set, i);
+            continue;
+        }
+        gpu::Surfel& surfel = set.surfels[i];
+        const glm::mat4& matrix = matrices[set.item_of[i]];
+        const glm::mat3& normal_matrix = normal_matrices[set.item_of[i]];
+        surfel.position = glm::vec3(matrix * glm::vec4(surfel.position, 1.0F));
+        surfel.normal = glm::normalize(normal_matrix * surfel.normal);
+        for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+            gpu::CellPoint& point = set.points[p];
+            point.position = glm::vec3(matrix * glm::vec4(point.position, 1.0F));
+            point.normal = glm::normalize(normal_matrix * point.normal);
+        }
+    }
+    for (std::size_t i = 0; i < set.surfels.size(); ++i) {
+        set.surfels[i].seed = static_cast<std::uint32_t>(set.ids[i]);
+    }
+    return set;
+}
+
+ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
+                                             std::optional<ValueHandle<Refinement>> refinement,
+                                             ValueHandle<std::vector<Focus>> foci,
+                                             const VplSettings& settings) {
+    return graph.add("surfel-spread", [&](Pass& pass) {
+        pass.read(scene.layout);
+        pass.read(scene.placement);
+        pass.read(foci);
+        if (refinement) pass.read(*refinement);
+        const SurfelCounts counts{.reflecting = settings.bounces > 0 ? settings.count : 0,
+                                  .emitting = emitting_surfels(settings.count)};
+        pass.parameter(counts);
+        pass.parameter(settings.seed);
+        pass.keeps_state();
+        const auto out = pass.update(graph.value<SpreadSurfels>("spread surfels"));
+        pass.run([=, layout = scene.layout, placement = scene.placement](Execution& run) {
+            const std::uint32_t set = refinement ? run.value(*refinement).surfel_set : 0;
+            run.set(out, spread(run.previous(out), run.value(layout), run.value(placement), run.value(foci),
+                                counts, settings.seed + set));
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <candela/configuration.hpp>
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/passes/scene/scene_upload.hpp"
+#include "renderer/passes/surfels/surfel_focus.hpp"
+#include "renderer/passes/surfels/surfel_placement.hpp"
+#include "renderer/passes/view/refinement.hpp"
+
+namespace candela {
+
+/// The shape of an item: its local-to-world matrix without rotation and translation. It is the upper
+/// triangular Cholesky factor of the Gram matrix MᵀM, rounded to about four digits, so that it stays the
+/// same, bit for bit, while the item rotates. The first row is negated for mirrored items. For flat items,
+/// which have no inverse, it is the upper left 3 × 3 part of `world`.
+[[nodiscard]] glm::mat3 shape_of(const glm::mat4& world);
+
+/// What the trees that surfels are placed with depend on. Each item is in its own space, transformed only by
+/// its shape matrix: see shape_of.
+struct PlacementKey {
+    SceneGeometry geometry;
+    std::vector<glm::mat3> shapes;
+    std::uint32_t seed = 0;
+    bool operator==(const PlacementKey&) const = default;
+};
+
+/// What the set of surfels depends on besides.
+struct SetKey {
+    SurfelCounts counts;
+    std::vector<std::vector<Focus>> foci;  // by item, in its shape space
+    bool operator==(const SetKey&) const = default;
+};
+
+/// The last placement of the surfels, in the items' shape spaces.
+struct SpreadSurfels {
+    PlacementKey placement_key;
+    SetKey key;
+    std::shared_ptr<SurfelPlacement> placement;
+    std::shared_ptr<const SurfelSet> set;
+    bool operator==(const SpreadSurfels&) const = default;
+};
+
+/// The surfels in world space, of items where they are now, and moved with the triangles of deformed ones.
+[[nodiscard]] SurfelSet placed_in_world(const SpreadSurfels& spread, const SceneLayout& layout,
+                                        const ScenePlacement& placement);
+
+/// Adds node `surfel-spread` (CPU): places surfels on the items, densely in the foci; with refinement, those
+/// of the current surfel set. Surfels belong to the items of the scene and move with them: all are placed
+/// again when an item is added, removed or changes its shape. Depends on the scene's layout and placement, on
+/// foci and refinement; its own last result saves time.
+[[nodiscard]] ValueHandle<SpreadSurfels> add_surfel_spread(FrameGraph& graph, const SceneData& scene,
+                                                           std::optional<ValueHandle<Refinement>> refinement,
+                                                           ValueHandle<std::vector<Focus>> foci,
+                                                           const VplSettings& settings);
+
+}  // namespace candela
