@@ -167,7 +167,8 @@ vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
 #endif
 
 // Adds π times the irradiance from the VPL of that index, or with GROUPS from a group of surfels: the kinds follow one
-// another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the frame of its map made, once.
+// another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the
+// frame of its map made, once.
 void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
 #ifdef GROUPS
