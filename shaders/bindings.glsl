@@ -42,6 +42,7 @@
 #define BINDING_SURFEL_TASKS BINDING_LIST_ENTRIES
 #define BINDING_MAP_TASKS BINDING_SHADOWS
 #define BINDING_SURFEL_GROUPS BINDING_SHADOWS
+#define BINDING_CHANGED_BOXES BINDING_LIT_EMITTERS
 // Passes that gather VPLs read no light lists.
 #define BINDING_VPL_ORDER BINDING_LIST_FIRST
 #define BINDING_FILL_MASK BINDING_LIST_COUNT
@@ -115,4 +116,3 @@
 #define GROUP_NEAR 2.5
 #define GROUP_FAR 3.0
 #define MOST_COLUMNS 2048   // largest number of surfels that one surfel gathers from
-#define MOST_CHANGED_BOXES 8  // in the uniforms of changed_boxes.glsl; more are merged into one box

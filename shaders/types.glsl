@@ -276,6 +276,14 @@ struct WideNode {
 };
 #endif
 
+// A box of the tree of those in which the scene has changed: renderer/passes/scene/changed_boxes.hpp.
+struct ChangedBox {
+    vec3 lower;  // metres
+    uint next;   // box to go on with if nothing in this one is of interest
+    vec3 upper;
+    uint pad0 DEFAULT(0u);
+};
+
 struct TraceTriangle {
     vec3 a;
     uint material;

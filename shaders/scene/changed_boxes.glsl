@@ -1,18 +1,26 @@
 // The boxes in which the scene has changed. Passes keep their earlier results for rays that miss all of them.
 #include "bindings.glsl"
 #include "scene/bvh.glsl"
+#include "types.glsl"
+
+// A tree in depth-first order: renderer/passes/scene/changed_boxes.hpp.
+layout(std430, binding = BINDING_CHANGED_BOXES) readonly restrict buffer ChangedBoxes { ChangedBox changed_boxes[]; };
 
 uniform bool everything_changed;
-uniform uint changed_box_count;
-uniform vec4 changed_boxes[2 * MOST_CHANGED_BOXES];  // lower and upper corners, metres
+uniform uint changed_box_count;  // boxes of the tree
+
+bool is_leaf(uint box) { return changed_boxes[box].next == box + 1u; }
 
 // Whether a ray may hit something else than before, up to t_max.
 bool may_have_changed(vec3 origin, vec3 direction, float t_max) {
     if (everything_changed) return true;
     vec3 inverse_direction = safe_inverse(direction);
-    for (uint i = 0u; i < changed_box_count; ++i) {
-        float enter = enter_box(changed_boxes[2u * i].xyz, changed_boxes[2u * i + 1u].xyz, origin, inverse_direction, 0.0, t_max);
-        if (!isinf(enter)) return true;
+    uint i = 0u;
+    while (i < changed_box_count) {
+        ChangedBox box = changed_boxes[i];
+        bool enters = !isinf(enter_box(box.lower, box.upper, origin, inverse_direction, 0.0, t_max));
+        if (enters && is_leaf(i)) return true;
+        i = enters ? i + 1u : box.next;
     }
     return false;
 }
@@ -20,11 +28,13 @@ bool may_have_changed(vec3 origin, vec3 direction, float t_max) {
 // Whether anything may have changed above the plane through `position`.
 bool may_have_changed_above(vec3 position, vec3 normal) {
     if (everything_changed) return true;
-    for (uint i = 0u; i < changed_box_count; ++i) {
-        vec3 lower = changed_boxes[2u * i].xyz;
-        vec3 upper = changed_boxes[2u * i + 1u].xyz;
-        vec3 highest = mix(lower, upper, greaterThan(normal, vec3(0.0)));
-        if (dot(normal, highest - position) > 0.0) return true;
+    uint i = 0u;
+    while (i < changed_box_count) {
+        ChangedBox box = changed_boxes[i];
+        vec3 highest = mix(box.lower, box.upper, greaterThan(normal, vec3(0.0)));
+        bool is_above = dot(normal, highest - position) > 0.0;
+        if (is_above && is_leaf(i)) return true;
+        i = is_above ? i + 1u : box.next;
     }
     return false;
 }

@@ -12,6 +12,7 @@
 
 #include <candela/graph/compile.hpp>
 #include <candela/graph/execute.hpp>
+#include "engine/bvh/box.hpp"
 #include "renderer/gl/graph_backend.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/passes/surfels/surfel_maps.hpp"
@@ -184,6 +185,22 @@ Ids some_ids(std::size_t count, std::mt19937& engine) {
     return ids;
 }
 
+/// Whether a segment from `a` to `b` meets the box: slab test in double precision.
+bool meets(const Box& box, const glm::dvec3& a, const glm::dvec3& b) {
+    double enter = 0.0, leave = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double lower = box.lower[axis] - a[axis], upper = box.upper[axis] - a[axis];
+        const double along = b[axis] - a[axis];
+        if (along == 0.0) {
+            if (lower > 0.0 || upper < 0.0) return false;
+            continue;
+        }
+        enter = std::max(enter, std::min(lower / along, upper / along));
+        leave = std::min(leave, std::max(lower / along, upper / along));
+    }
+    return enter <= leave;
+}
+
 /// The slots that surfels have by their cells.
 void check_slots(const SurfelMaps& maps, const Ids& cells) {
     const std::set<std::uint32_t> used(maps.slots.begin(), maps.slots.end());
@@ -316,6 +333,51 @@ TEST_SUITE("surfels: kept") {
         }
         ids = shuffled(std::move(ids), engine_);
         CHECK(visibility.find(box_.world, ids) == anew.find_anew(box_.world, ids));
+    }
+
+    TEST_CASE_FIXTURE(KeptSurfelTests, "of many things that move, each has a box of its own") {
+        constexpr float half = 0.05F;
+        std::vector<Entity> sheets;
+        std::vector<Box>
+            boxes;  // at least 0.05 larger, where metres are far more than rays start above surfaces
+        for (int i = 0; i < 16; ++i) {
+            const auto bit = [&](int b) { return (i >> b & 1) != 0 ? 0.75F : -0.75F; };
+            const glm::vec3 place(bit(0), bit(1), bit(2) + ((i >> 3 & 1) != 0 ? 0.15F : -0.15F));
+            sheets.push_back(
+                add(box_.world, at(place), MeshInstance{square(half, diffuse(glm::vec3(0.5F)))}));
+            boxes.push_back({place - 0.1F, place + 0.1F});
+        }
+        Box all;
+        for (const Box& box : boxes) all.grow(box);
+        Visibility visibility(context->get_proc()), anew(context->get_proc());
+        const Ids ids = some_ids(in_the_box, engine_);
+        static_cast<void>(visibility.find(box_.world, ids));
+        for (const Entity sheet : sheets) {
+            box_.world.edit<Transform>(sheet, [](Transform& t) { t.translation += glm::vec3(0.01F); });
+        }
+        visibility.mark();
+        const Found found = visibility.find(box_.world, ids);
+        const Found expected = anew.find_anew(box_.world, ids);
+        std::size_t kept = 0, in_all = 0;
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            for (std::size_t j = 0; j < ids.size(); ++j) {
+                const glm::dvec3 from(cell_in_box(ids[i]).position), to(cell_in_box(ids[j]).position);
+                const auto is_met = [&](const Box& box) { return meets(box, from, to); };
+                if (std::ranges::any_of(boxes, is_met)) {
+                    const std::uint16_t factor = found.factors[i][j];
+                    CHECK((factor == expected.factors[i][j] || factor == Visibility::marked_factor));
+                } else {
+                    CHECK(found.factors[i][j] == Visibility::marked_factor);
+                    ++kept;
+                    if (is_met(all)) ++in_all;
+                }
+            }
+        }
+        // Most rays pass between the things.
+        CHECK(kept > ids.size() * ids.size() / 2);
+        CHECK(in_all > ids.size() * ids.size() / 4);
+        CHECK(kept < ids.size() * ids.size());
+        CHECK(visibility.find_anew(box_.world, ids) == expected);
     }
 
     TEST_CASE_FIXTURE(KeptSurfelTests,

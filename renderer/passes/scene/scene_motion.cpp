@@ -1,14 +1,26 @@
 #include "renderer/passes/scene/scene_motion.hpp"
 
-#include <glm/vec4.hpp>
 #include <utility>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/passes/scene/changed_boxes.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
-#include "shaders/bindings.glsl"
 
 namespace candela {
 namespace {
+
+/// One box around both places, if fewer rays meet it than the two: about as many as its surface is large.
+void add_moved(const Box& before, const Box& now, std::vector<Box>& boxes) {
+    const auto size = [](const Box& box) { return half_area(box.lower, box.upper); };
+    Box both = before;
+    both.grow(now);
+    if (size(both) <= size(before) + size(now)) {
+        boxes.push_back(both);
+        return;
+    }
+    boxes.push_back(before);
+    boxes.push_back(now);
+}
 
 /// World-space boxes around the solid drawables of the items that moved, at their old and new places.
 std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& before,
@@ -19,21 +31,11 @@ std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& be
         const glm::mat4& to = now.world[drawable.item];
         if (from != to ||
             vertices_of(drawable, before.deformed).data() != vertices_of(drawable, now.deformed).data()) {
-            boxes.push_back(place_box(bounds_of(drawable, before.deformed), from));
-            boxes.push_back(place_box(bounds_of(drawable, now.deformed), to));
+            add_moved(place_box(bounds_of(drawable, before.deformed), from),
+                      place_box(bounds_of(drawable, now.deformed), to), boxes);
         }
     }
     return boxes;
-}
-
-/// The boxes, or one box around all of them if there are more than `most`.
-std::vector<Box> at_most(std::vector<Box> boxes, std::size_t most) {
-    if (boxes.size() <= most) return boxes;
-    Box all;
-    for (const Box& box : boxes) {
-        all.grow(box);
-    }
-    return {all};
 }
 
 }  // namespace
@@ -56,7 +58,10 @@ ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& sc
                 now.step = last->step + 1;
                 now.everything = last->epoch != now.epoch || last->geometry != now.geometry;
             }
-            if (!now.everything) now.boxes = moved_boxes(run.value(layout), last->placement, now.placement);
+            if (!now.everything) {
+                now.boxes = grouped(moved_boxes(run.value(layout), last->placement, now.placement),
+                                    most_changed_boxes);
+            }
             run.set(motion, std::move(now));
         });
         return motion;
@@ -66,18 +71,7 @@ ValueHandle<SceneMotion> add_scene_motion(FrameGraph& graph, const SceneData& sc
 std::optional<std::vector<Box>> changed_boxes(const SceneMotion& motion, std::uint64_t done) {
     if (motion.step == done) return std::vector<Box>{};
     if (motion.everything || motion.step != done + 1) return std::nullopt;
-    return at_most(motion.boxes, MOST_CHANGED_BOXES);
-}
-
-gl::Uniforms changed_box_uniforms(const std::optional<std::vector<Box>>& boxes, float slack) {
-    std::vector<glm::vec4> corners;
-    for (const Box& box : boxes.value_or(std::vector<Box>{})) {
-        corners.emplace_back(box.lower - slack, 0.0F);
-        corners.emplace_back(box.upper + slack, 0.0F);
-    }
-    return {{"everything_changed", !boxes.has_value()},
-            {"changed_box_count", static_cast<std::uint32_t>(corners.size() / 2)},
-            {"changed_boxes", std::move(corners)}};
+    return motion.boxes;
 }
 
 }  // namespace candela

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/passes/scene/changed_boxes.hpp"
 #include "renderer/passes/surfels/surfel_visibility.hpp"
 
 namespace candela {
@@ -23,9 +24,34 @@ struct QueueKey {
 struct Queue {
     std::vector<TracedSurfel> surfels;  // by surfel of the last frame
     QueueKey key;
-    std::uint64_t step = 0;  // of the scene's motion
+    std::uint64_t step = 0;               // of the scene's motion
+    std::vector<std::vector<Box>> moved;  // SceneMotion::boxes of the last steps; at most most_steps
+    [[nodiscard]] bool knows(std::uint64_t after) const { return step - after <= moved.size(); }
     bool operator==(const Queue&) const = default;
 };
+
+/// Steps of motion after which a surfel that has waited is traced as a whole.
+constexpr std::size_t most_steps = 16;
+
+/// SceneMotion::boxes of the steps before, and of this one.
+std::vector<std::vector<Box>> last_steps(const SceneMotion& motion, const Queue* last) {
+    if (last == nullptr) return {};
+    if (motion.step == last->step) return last->moved;
+    if (motion.everything || motion.step != last->step + 1) return {};
+    std::vector<std::vector<Box>> steps = last->moved;
+    steps.push_back(motion.boxes);
+    if (steps.size() > most_steps) steps.erase(steps.begin());
+    return steps;
+}
+
+/// Around what has moved after step number `step`, one of those that the queue knows.
+std::vector<Box> moved_since(const Queue& queue, std::uint64_t step) {
+    std::vector<Box> boxes;
+    for (std::size_t i = queue.moved.size() - (queue.step - step); i < queue.moved.size(); ++i) {
+        boxes.insert(boxes.end(), queue.moved[i].begin(), queue.moved[i].end());
+    }
+    return grouped(std::move(boxes), most_changed_boxes);
+}
 
 /// What has changed since the last frame.
 struct Changes {
@@ -78,6 +104,7 @@ struct SurfelNow {
     float weight = 0.0F;         // in its urgency
     float changed_share = 0.0F;  // of what it sees; 1 if anything may have changed
     bool sees_change = false;    // within the boxes that have changed
+    bool knows_changes = false;  // if it has waited, where things have moved since
 };
 
 /// `last`: null if it was not there. `keeps_factors`: KeptSurfels::keeps_factors.
@@ -95,9 +122,10 @@ Candidate candidate(const TracedSurfel* last, const SurfelNow& now, bool keeps_f
     const bool has_other_map = !known.has_map || known.map_key != now.map_key;
     const bool anything_changed = now.changed_share > 0.0F && !now.sees_change;
     if (is_elsewhere) out.task |= SURFEL_COLUMN;
-    if (is_elsewhere || has_other_map || anything_changed || known.waits) {
+    const bool waited_long = known.waits && !now.knows_changes;
+    if (is_elsewhere || has_other_map || anything_changed || waited_long) {
         out.task |= SURFEL_WHOLE;
-    } else if (now.sees_change) {
+    } else if (now.sees_change || known.waits) {
         out.task |= SURFEL_CHANGED;
     }
     known.urgency += now.weight * (is_elsewhere || has_other_map ? 1.0F : now.changed_share);
@@ -118,17 +146,15 @@ std::vector<bool> most_urgent(const std::vector<Candidate>& candidates, std::siz
     return chosen;
 }
 
-/// What is known of the surfel after the frame.
-TracedSurfel after(const Candidate& candidate, bool is_traced) {
+/// What is known of the surfel after the frame. `step`: of the scene's motion.
+TracedSurfel after(const Candidate& candidate, bool is_traced, std::uint64_t step) {
     TracedSurfel now = candidate.known;
-    if (!is_traced) {
-        now.waits = candidate.task != 0;
-        return now;
-    }
+    now.waits = !is_traced && candidate.task != 0;
+    if (!now.waits) now.step = step;
+    if (!is_traced) return now;
     now.id = candidate.id;
     now.map_key = candidate.map_key;
     now.in_place = now.has_map = true;
-    now.waits = false;
     now.urgency = 0.0F;
     return now;
 }
@@ -165,7 +191,7 @@ std::vector<std::uint64_t> cells_of(const Queue& queue) {
 }
 
 std::vector<Candidate> candidates(const Execution& run, const UpdateNode& node, const Queue* last,
-                                  const Changes& changes) {
+                                  const Queue& now, const Changes& changes) {
     const std::vector<std::uint64_t>& ids = run.value(node.surfels.ids);
     const std::vector<std::uint64_t>& cells = run.value(node.surfels.cells);
     const std::vector<SurfelPlace>& places = run.value(node.surfels.places);
@@ -180,15 +206,17 @@ std::vector<Candidate> candidates(const Execution& run, const UpdateNode& node, 
     all.reserve(ids.size());
     for (std::size_t i = 0; i < ids.size(); ++i) {
         const auto found = known.find(cells[i]);
+        const TracedSurfel* const before = found == known.end() ? nullptr : found->second;
         const float share = changed_share(places[i], changes);
-        const SurfelNow now{.cell = cells[i],
-                            .id = ids[i],
-                            .map_key = i < maps.slots.size() ? maps.keys[maps.slots[i]] : 0,
-                            .map = places[i].map,
-                            .weight = places[i].area * density_at(foci, places[i].position),
-                            .changed_share = share,
-                            .sees_change = share > 0.0F && !changes.everything};
-        all.push_back(candidate(found == known.end() ? nullptr : found->second, now, keeps_factors));
+        const SurfelNow surfel{.cell = cells[i],
+                               .id = ids[i],
+                               .map_key = i < maps.slots.size() ? maps.keys[maps.slots[i]] : 0,
+                               .map = places[i].map,
+                               .weight = places[i].area * density_at(foci, places[i].position),
+                               .changed_share = share,
+                               .sees_change = share > 0.0F && !changes.everything,
+                               .knows_changes = before != nullptr && now.knows(before->step)};
+        all.push_back(candidate(before, surfel, keeps_factors));
     }
     return all;
 }
@@ -198,10 +226,11 @@ void plan(Execution& run, const UpdateNode& node) {
     const SceneMotion& motion = run.value(node.motion);
     const float ray_offset = run.value(node.tracing.metrics).ray_offset();
     const Changes changes = changes_since(motion, last, 4.0F * ray_offset);
-    const std::vector<Candidate> all = candidates(run, node, last, changes);
     Queue now{.surfels = {},
               .key = {ray_offset, node.refinement ? run.value(*node.refinement).surfel_set : 0},
-              .step = motion.step};
+              .step = motion.step,
+              .moved = last_steps(motion, last)};
+    const std::vector<Candidate> all = candidates(run, node, last, now, changes);
     const bool at_once = last != nullptr && (last->key != now.key || run.value(*node.foci.state).renewed);
     const std::vector<bool> chosen =
         most_urgent(all, at_once ? std::numeric_limits<std::size_t>::max() : run.value(node.clock).limit);
@@ -209,14 +238,16 @@ void plan(Execution& run, const UpdateNode& node) {
     SurfelTasks tasks{
         .of = {}, .changed = {}, .number = tasks_before != nullptr ? tasks_before->number + 1 : 0};
     std::uint32_t waiting = 0;
+    std::uint64_t oldest = motion.step;  // state of surfels of which parts are traced
     now.surfels.reserve(all.size());
     tasks.of.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
-        now.surfels.push_back(after(all[i], chosen[i]));
+        if (chosen[i] && (all[i].task & SURFEL_CHANGED) != 0) oldest = std::min(oldest, all[i].known.step);
+        now.surfels.push_back(after(all[i], chosen[i], motion.step));
         tasks.of.push_back(chosen[i] ? all[i].task : all[i].instead);
         if (now.surfels.back().waits) ++waiting;
     }
-    if (last != nullptr) tasks.changed = changed_boxes(motion, last->step).value_or(std::vector<Box>{});
+    tasks.changed = moved_since(now, oldest);
     const auto is_same = [](const TracedSurfel& a, const TracedSurfel& b) { return a.cell == b.cell; };
     const bool same_surfels = last != nullptr && std::ranges::equal(last->surfels, now.surfels, is_same);
     const bool nothing = std::ranges::count(tasks.of, 0U) == static_cast<std::ptrdiff_t>(tasks.of.size());

@@ -14,7 +14,7 @@ namespace candela {
 /// What has to be traced in a frame, of the surfels' form factors and depth maps.
 struct SurfelTasks {
     std::vector<std::uint32_t> of;  ///< by surfel: SURFEL_* (shaders/types.glsl), 0 if nothing
-    std::vector<Box> changed;       ///< see changed_boxes: for surfels with SURFEL_CHANGED
+    std::vector<Box> changed;       ///< around all that has moved that surfels with SURFEL_CHANGED wait for
     std::uint64_t number = 0;       ///< counts the frames in which anything is traced
     bool operator==(const SurfelTasks&) const = default;
 };
@@ -29,6 +29,7 @@ struct TracedSurfel {
     bool in_place = false;      ///< its form factors, and those of others to it, are of where it is
     bool has_map = false;       ///< else its depth map lets no light through
     bool waits = false;         ///< it has waited since an earlier frame
+    std::uint64_t step = 0;     ///< SceneMotion::step of which its map and form factors are
     float urgency = 0.0F;       ///< sum over the frames in which it waited: see add_surfel_updates
     bool operator==(const TracedSurfel&) const = default;
 };

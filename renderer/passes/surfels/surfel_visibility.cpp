@@ -7,6 +7,7 @@
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/compute_steps.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/passes/scene/changed_boxes.hpp"
 #include "renderer/passes/scene/traced_content.hpp"
 
 namespace candela {
@@ -38,6 +39,7 @@ struct VisibilityNode {
     BufferHandle<std::uint32_t> last_form_factors;
     BufferHandle<std::uint32_t> last_cover;
     TracedContent<VisibilityKey> known;
+    ChangedBoxes changed;
     ValueHandle<std::vector<std::uint64_t>> known_ids;  // Surfels::ids, or with planned tasks Surfels::cells
     std::optional<ValueHandle<SurfelTasks>> planned;
     VisibilityPrograms programs;
@@ -185,14 +187,13 @@ void find_form_factors(ComputeSteps& steps, const gl::Program& program, std::uin
     if (listed_pairs > 0) run(count, listed_pairs, false, true);
 }
 
-void find_visibility(const Gpu& gpu, const Execution& run, const VisibilityNode& node,
-                     const Outdated& outdated) {
+void find_visibility(const Gpu& gpu, Execution& run, const VisibilityNode& node, const Outdated& outdated) {
     constexpr std::uint32_t most_a_line = 32768;  // work groups
     const VisibilityPrograms& programs = node.programs;
     const std::uint32_t count = run.value(node.out.surfels.counts).all_surfels();
     const float ray_offset = run.value(node.tracing.metrics).ray_offset();
     const gl::Uniforms common = count_uniforms(count);
-    const gl::Uniforms traced = common + changed_box_uniforms(outdated.changed, 4.0F * ray_offset) +
+    const gl::Uniforms traced = common + node.changed.upload(gpu, run, outdated.changed, 4.0F * ray_offset) +
                                 gl::Uniforms{{"ray_offset", ray_offset}, {"has_tasks", outdated.has_tasks}};
     const std::uint32_t surfel_groups = groups(count, SURFEL_GROUP);
     ComputeSteps steps(gpu);
@@ -276,6 +277,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
                 pass.write(words("last form factors"), {Usage::copy, BINDING_LAST_FORM_FACTORS}),
             .last_cover = pass.write(words("last surfel cover"), {Usage::copy, BINDING_LAST_COVER}),
             .known = TracedContent<VisibilityKey>(graph, pass, "known visibility"),
+            .changed = ChangedBoxes(graph, pass, "changed boxes of visibility"),
             .known_ids = pass.update(graph.value<std::vector<std::uint64_t>>("ids of known visibility")),
             .planned = tasks,
             .programs = {.kept = gpu.program({"surfels/surfel_kept.comp"}),

@@ -9,6 +9,7 @@
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/layer_target.hpp"
 #include "renderer/passes/inspect/depth_note.hpp"
+#include "renderer/passes/scene/changed_boxes.hpp"
 #include "renderer/passes/scene/traced_content.hpp"
 
 namespace candela {
@@ -42,6 +43,7 @@ struct MapNode {
     VplCommon common;
     TextureHandle depth;
     TracedContent<MapKey> drawn;
+    ChangedBoxes changed;
     ValueHandle<std::vector<std::uint64_t>> drawn_keys;  // SurfelMaps::keys
     BufferHandle<std::uint32_t> tasks;                   // SurfelTasks::of
     const gl::Program* program;
@@ -90,7 +92,7 @@ void draw_maps(Gpu& gpu, Execution& run, const MapNode& node, const MapDraw& dra
     if (!draw.changed) target.clear();
     if (draw.cleared != nullptr) clear_maps(gpu, run, node, *node.surfels, *draw.cleared);
     gl::Uniforms uniforms =
-        changed_box_uniforms(draw.changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
+        node.changed.upload(gpu, run, draw.changed, 4.0F * run.value(node.tracing.metrics).ray_offset());
     if (node.surfels) uniforms = uniforms + gl::Uniforms{{"has_tasks", draw.has_tasks}};
     gpu.draw_points(*node.program, draw.slots, uniforms, {.depth_test = gl::DepthTest::always});
 }
@@ -171,6 +173,7 @@ TextureHandle add_vpl_maps(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, 
             .depth = pass.update(graph.texture("vpl maps", atlas_desc({}, 1), Lifetime::persistent),
                                  Usage::layer_target),
             .drawn = TracedContent<MapKey>(graph, pass, "drawn vpl maps"),
+            .changed = ChangedBoxes(graph, pass, "changed boxes of vpl maps"),
             .drawn_keys = pass.update(graph.value<std::vector<std::uint64_t>>("keys of vpl maps")),
             .tasks = pass.write(growing_buffer<std::uint32_t>(graph, "tasks of vpl maps"),
                                 {Usage::copy, BINDING_MAP_TASKS}),
