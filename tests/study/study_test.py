@@ -456,9 +456,9 @@ class Checks(unittest.TestCase):
             one = row("apartment", "p", 1.0, 0.5, indirect_bias=bias, indirect_rel_mse=error)
             return all(right for _, right, _ in checks.worlds_right([one]))
 
-        self.assertTrue(holds(-0.14, 0.05))
-        self.assertFalse(holds(-0.16, 0.05))
-        self.assertFalse(holds(0.0, 0.07))
+        self.assertTrue(holds(-0.09, 0.03))
+        self.assertFalse(holds(-0.11, 0.03))
+        self.assertFalse(holds(0.0, 0.05))
 
     def test_every_quick_world_has_limits(self) -> None:
         self.assertEqual(set(matrix.QUICK_WORLDS), set(checks.WORLDS))
