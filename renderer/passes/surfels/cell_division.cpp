@@ -39,10 +39,6 @@ bool sees(const Seat& from, const Seat& to, const TracedScene& scene) {
     return glm::dot(from.normal, to.normal) >= least_cosine && !is_blocked(scene, from.above, to.above);
 }
 
-/// Of two points that are as far from their centroid, rounding must not choose. Neither does it, then, when
-/// the cell moves.
-constexpr float distinctly = 0.99F;
-
 /// The point nearest to the centroid of those that are in no part; none if they have no area.
 std::optional<std::uint32_t> middle_of_rest(std::span<const gpu::CellPoint> points,
                                             const CellDivision& division) {

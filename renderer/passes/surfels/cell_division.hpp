@@ -15,6 +15,10 @@ namespace candela {
 /// Most parts of a cell, and the part number of points that are in none.
 inline constexpr std::uint8_t most_cell_parts = 4;
 
+/// Of points that are as near to a place as each other, rounding must not choose, also where a cell moves:
+/// another is nearer only if its distance is less than this times the least one before.
+inline constexpr float distinctly = 0.99F;
+
 /// How a cell is divided: each part has a surfel of its own. That of part 0 is the surfel of the cell.
 struct CellDivision {
     std::vector<std::uint8_t> part_of;  ///< by point of the cell

@@ -172,9 +172,9 @@ SurfelFoci add_surfel_focus(FrameGraph& graph, const SceneData& scene, const Tra
             const bool same_views = last != nullptr && last->views == now.views && last->count == count;
             const bool moves = run.changed(scene.placement) || run.changed(scene.layout);
             const bool holds = same_views && (moves || run.value(*clock).waits);
-            std::vector<Focus> wanted = foci_of(now.views, traced, run.value(tracing.metrics), count);
+            const std::vector<Focus> wanted = foci_of(now.views, traced, run.value(tracing.metrics), count);
             const bool differ = same_views && wanted != last->foci;
-            now.foci = holds ? last->foci : std::move(wanted);
+            now.foci = holds ? last->foci : wanted;
             run.set(out.of_maps, focus_of_maps(now.foci));
             run.set(out.foci, now.foci);
             if (!record) return;

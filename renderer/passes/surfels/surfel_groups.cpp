@@ -34,9 +34,6 @@ Spread spread_of(std::span<const gpu::Surfel> surfels) {
             .variance = static_cast<float>(std::max(sum2 / area - glm::dot(mean, mean), 0.0))};
 }
 
-/// Of two that are as near, rounding must not choose.
-constexpr float distinctly = 0.99F;
-
 const gpu::Surfel& nearest(std::span<const gpu::Surfel> surfels, const glm::vec3& place) {
     const gpu::Surfel* found = &surfels.front();
     for (const gpu::Surfel& surfel : surfels) {
