@@ -23,8 +23,6 @@ using namespace candela;
 
 namespace {
 
-constexpr double pi = glm::pi<double>();
-
 /// A square of 2 m, of two triangles.
 SceneTriangles square_triangles() {
     SceneTriangles scene{.triangles = {}, .item_of = {0, 0}, .double_sided = {false}, .emits = {false}};
