@@ -15,15 +15,18 @@
 namespace candela {
 namespace {
 
+constexpr std::uint32_t most_spare_layers = 4;
+
 TextureDesc atlas_desc(const VplAtlas& atlas, std::uint32_t layers) {
     return {{atlas.side, atlas.side}, Format::depth32f, TextureShape::array, layers};
 }
 
 /// How many layers the texture should have: as many as it has, if that is enough and not far too much, as
-/// another texture would lose the maps of surfels that stay.
-std::uint32_t layers_of(const VplAtlas& atlas, const TextureDesc& now) {
-    const bool enough = now.layers >= atlas.layers && now.layers <= 2 * atlas.layers;
-    return enough ? now.layers : atlas.layers;
+/// another texture would lose the maps of surfels that stay. Otherwise up to `spare` more than are needed:
+/// while a camera moves, the number of surfels goes up and down.
+std::uint32_t layers_of(std::uint32_t needed, std::uint32_t now, std::uint32_t spare) {
+    const std::uint32_t roomy = needed + std::min((needed + 1) / 2, spare);
+    return now >= needed && now <= 2 * roomy ? now : roomy;
 }
 
 /// What the maps were made from.
@@ -123,7 +126,10 @@ void update_surfel_maps(Gpu& gpu, Execution& run, const MapNode& node, const Map
 
 void update_maps(Gpu& gpu, Execution& run, const MapNode& node) {
     const VplAtlas& atlas = run.value(node.common.atlas);
-    run.reserve(node.depth, atlas_desc(atlas, layers_of(atlas, run.desc(node.depth))));
+    const std::uint32_t spare =
+        node.surfels ? std::min(most_spare_layers, gpu.device().limits().texture_layers - atlas.layers) : 0;
+    const std::uint32_t layers = layers_of(atlas.layers, run.desc(node.depth).layers, spare);
+    run.reserve(node.depth, atlas_desc(atlas, layers));
     if (node.surfels) {
         update_surfel_maps(gpu, run, node, *node.surfels);
         return;
