@@ -21,12 +21,14 @@ class UpdateBudget {
 
     /// Changes the limit by the times of a frame that was rendered with it. What the other passes leave of
     /// the budget is for tracing, at least a third of it, so that light also follows where they take all the
-    /// time.
+    /// time. While the world is at rest, tracing may take as long as the other passes: frames that follow
+    /// nothing then need not be short, and the picture is soon complete.
     void learn(const FrameReport& frame);
 
  private:
     double budget_ms_ = 0.0;
     std::uint32_t limit_ = 16;
+    std::uint32_t moving_limit_ = 16;  // what the limit is again once nothing waits
 };
 
 }  // namespace candela::sandbox

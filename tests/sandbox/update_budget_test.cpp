@@ -1,5 +1,8 @@
 // The limit of surfels follows the time that they take.
 
+#include <algorithm>
+#include <cstdint>
+
 #include <doctest/doctest.h>
 
 #include "sandbox/headless/update_budget.hpp"
@@ -12,13 +15,15 @@ namespace {
 constexpr double budget_ms = 60.0;
 
 /// The times of a frame: `surfel_ms` for each of the surfels that were traced, and those of the other passes.
-FrameReport frame_of(std::uint32_t surfels, double surfel_ms, double others_ms, std::uint32_t waiting) {
+FrameReport frame_of(std::uint32_t surfels, double surfel_ms, double others_ms, std::uint32_t waiting,
+                     bool moves = true) {
     const double maps_ms = surfels * surfel_ms;
     return {.index = 0,
             .cpu_ms = 1.0,
             .gpu_ms = maps_ms + others_ms,
             .waiting_surfels = waiting,
-            .passes = {{"surfel-visibility", true, 1.0, 0.5 * others_ms, Workload::other},
+            .passes = {{"scene-gather", moves, 0.0, 0.0, Workload::other},
+                       {"surfel-visibility", true, 1.0, 0.5 * others_ms, Workload::other},
                        {"vpl-maps", true, 1.0, maps_ms, Workload::other}}};
 }
 
@@ -46,6 +51,21 @@ TEST_SUITE("update budget") {
         CHECK(limit >= 19);
         CHECK(limit <= 20);  // a third of the budget
         CHECK(limit_after(UpdateBudget(budget_ms), 1000.0, 0.0) >= 1);
+    }
+
+    TEST_CASE(
+        "at rest, tracing takes as long as the other passes, and the picture is complete in few frames") {
+        UpdateBudget budget(budget_ms);
+        for (int i = 0; i < 100; ++i) budget.learn(frame_of(budget.limit(), 1.0, 500.0, 1000));
+        const std::uint32_t moving = budget.limit();
+        std::uint32_t waiting = 1000;
+        int frames = 0;
+        for (; waiting > 0 && frames < 10; ++frames) {
+            waiting -= std::min(waiting, budget.limit());
+            budget.learn(frame_of(budget.limit(), 1.0, 500.0, waiting, false));
+        }
+        CHECK(frames <= 5);  // of 20 surfels, 80, 320, and 500
+        CHECK(budget.limit() == moving);
     }
 
     TEST_CASE("a frame that had less to trace changes nothing") {
