@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <utility>
 
 #include <candela/graph/compile.hpp>
@@ -46,66 +44,6 @@ FrameReport to_report(const std::vector<PassRecord>& passes, std::uint64_t index
                                  .workload = static_cast<Workload>(pass.tag)});
     }
     return report;
-}
-
-/// Standard error of the sum of independent terms, per channel.
-glm::dvec3 standard_error(const std::vector<glm::dvec3>& terms) {
-    if (terms.size() < 2) return glm::dvec3(0.0);
-    const auto n = static_cast<double>(terms.size());
-    glm::dvec3 sum(0.0);
-    for (const glm::dvec3& term : terms) {
-        sum += term;
-    }
-    glm::dvec3 squares(0.0);
-    for (const glm::dvec3& term : terms) {
-        squares += (term - sum / n) * (term - sum / n);
-    }
-    return glm::sqrt(squares * n / (n - 1.0));
-}
-
-/// VPLs that send light.
-template <class Vpl>
-std::uint32_t count_alive(const std::vector<Vpl>& vpls) {
-    const auto sends = [](const Vpl& vpl) { return vpl.flux != glm::vec3(0.0F); };
-    return static_cast<std::uint32_t>(std::ranges::count_if(vpls, sends));
-}
-
-/// A path traces one ray per hit, and one more if it leaves the scene.
-std::uint32_t count_rays(const std::vector<gpu::Path>& paths, const std::vector<gpu::TracedVpl>& vpls) {
-    std::uint32_t rays = 0;
-    for (const gpu::Path& path : paths) {
-        const auto first = vpls.begin() + path.first_vpl;
-        const auto hits = static_cast<std::uint32_t>(std::count_if(
-            first, first + path.vpl_count, [](const auto& vpl) { return vpl.state == VPL_PLACED; }));
-        rays += std::min(hits + 1, path.vpl_count);
-    }
-    return rays;
-}
-
-EnergyAccount sum_up(const std::vector<gpu::FluxAccount>& accounts) {
-    EnergyAccount total;
-    std::vector<glm::dvec3> roulette;
-    for (const gpu::FluxAccount& account : accounts) {
-        total.emitted += account.emitted;
-        total.absorbed += account.absorbed;
-        total.escaped += account.escaped;
-        total.truncated += account.truncated;
-        total.roulette += account.roulette;
-        roulette.emplace_back(account.roulette);
-    }
-    total.roulette_error = standard_error(roulette);
-    return total;
-}
-
-void warn_of_few_vpls(Log& log, const VplReport& vpls) {
-    // A pixel is then off by about a third, and blotches of light are mistaken for shadows.
-    constexpr double most = 0.1;
-    if (*vpls.estimated_error > most) {
-        log.warn(
-            fmt::format("{0} VPLs are too few for this view: its indirect light is off by about a third or "
-                        "more; set \"vpls\": {{\"count\": {1}}} or more",
-                        vpls.requested, 4 * std::max(vpls.requested, 64U)));
-    }
 }
 
 /// Whether both have the same graph and differ only in how many surfels may be traced in a frame.
@@ -430,85 +368,6 @@ std::string Renderer::State::describe(GraphFormat format) const {
             break;
     }
     return describe_text(graph);
-}
-
-VplReport Renderer::State::report_vpls(const Vpls& vpls, const ViewHandles& view) const {
-    const auto read = [&]<class T>(BufferHandle<T> buffer, std::size_t count) {
-        std::vector<T> elements = backend_.buffer(runtime_.object(buffer)).template download<T>();
-        elements.resize(count);
-        return elements;
-    };
-    const VplCounts& counts = runtime_.value(vpls.counts);
-    VplReport report{.requested = configuration_.vpls.count,
-                     .waiting = waiting_,
-                     .interleave = view.interleave,
-                     .filled_pixels = count_filled(view),
-                     .flux = {},
-                     .estimated_error = estimate_error(view)};
-    if (const auto* const traced = std::get_if<TracedVpls>(&vpls.records)) {
-        const PathPlan& plan = runtime_.value(traced->plan);
-        const std::vector<gpu::TracedVpl> placed = read(traced->vpls, counts.traced);
-        report.alive = count_alive(placed);
-        report.paths = static_cast<std::uint32_t>(plan.paths.size());
-        report.rays = count_rays(plan.paths, placed);
-        report.flux = sum_up(read(vpls.flux, plan.paths.size()));
-        return report;
-    }
-    const auto& lit = std::get<LitSurfels>(vpls.records);
-    report.alive = count_alive(read(lit.surfels, counts.surfels));
-    if (lit.emitters) report.alive += count_alive(read(*lit.emitters, counts.emitters));
-    report.flux = sum_up(read(vpls.flux, std::min(counts.all_surfels(), 1U)));
-    return report;
-}
-
-std::uint32_t Renderer::State::count_filled(const ViewHandles& view) const {
-    if (!view.indirect) return 0;
-    return backend_.buffer(runtime_.object(view.indirect->fill_list)).download<std::uint32_t>().at(3);
-}
-
-std::optional<double> Renderer::State::estimate_error(const ViewHandles& view) const {
-    if (!view.samples) return std::nullopt;
-    const auto read = [&](VplSamples samples) {
-        return backend_.buffer(runtime_.object(samples)).download<glm::vec4>();
-    };
-    return estimated_error(read(view.samples->shown), read(view.samples->other));
-}
-
-LightReport Renderer::State::report_lights(const ViewHandles& view) const {
-    LightReport report{.count =
-                           static_cast<std::uint32_t>(runtime_.value(frame_.lights.table).entries.size())};
-    if (!shows_light(configuration_.show)) {
-        return report;  // shadow maps are culled
-    }
-    const ShadowPlan& shadows = runtime_.value(frame_.lights.shadows.plan);
-    report.with_shadow = shadows.cubes + shadows.maps;
-    report.shadow_views = runtime_.value(frame_.lights.shadows.drawn).newly_drawn;
-    report.without_shadow = shadows.lights_without;
-    if (!view.lists) return report;
-    const LightBins& bins = runtime_.value(view.lists->bins);
-    auto counts = backend_.buffer(runtime_.object(view.lists->count)).download<std::uint32_t>();
-    counts.resize(bins.grid.cells());
-    report.global = bins.global_count;
-    report.tile_max = bins.global_count + *std::ranges::max_element(counts);
-    report.tile_mean =
-        bins.global_count + std::accumulate(counts.begin(), counts.end(), 0.0) / bins.grid.cells();
-    return report;
-}
-
-Report Renderer::State::report(std::size_t index) {
-    const ViewHandles& view = view_handles(index);
-    Report report{.gl_renderer = gpu_.device().renderer(),
-                  .triangles = runtime_.value(frame_.metrics).triangles,
-                  .vpls = std::nullopt,
-                  .refined = view.averaged ? runtime_.value(*view.averaged) + 1 : 0,
-                  .rendered_size = view.parts.size,
-                  .lights = report_lights(view),
-                  .memory = runtime_.memory()};
-    if (frame_.vpls && configuration_.show != Show::direct) {
-        report.vpls = report_vpls(*frame_.vpls, view);
-        if (report.vpls->estimated_error) warn_of_few_vpls(gpu_.log(), *report.vpls);
-    }
-    return report;
 }
 
 }  // namespace candela

@@ -45,9 +45,9 @@ struct SurfelUpdates {
 /// is its share of the light, for which its area times the density of surfels there (density_at) stands,
 /// times the part of what it sees that has changed, summed over the frames in which it waits. The most urgent
 /// ones come first, so that all get their turn, also while things move all the time. When nothing waits, all
-/// is as if it had been traced at once. Another set of surfels is traced at once, and so
-/// are those of other foci, unless things or views move.
-/// Depends on surfels, motion, foci, refinement and clock, and on its own last result.
+/// is as if it had been traced at once. Another set of surfels is traced at once, and so are those of other
+/// foci, unless things or views move. Depends on surfels, motion, foci, refinement and clock, and on its own
+/// last result.
 [[nodiscard]] SurfelUpdates add_surfel_updates(FrameGraph& graph, const Surfels& surfels,
                                                const Tracing& tracing, ValueHandle<SceneMotion> motion,
                                                const SurfelFoci& foci,
