@@ -28,7 +28,14 @@ struct Material {
     uint emissive_width;
     uint emissive_height;
     vec3 emissive;        // radiance
+    float metalness;      // without its texture, as the next
+    vec4 mirror;          // reflectance of what is not metal, in the mirror direction: towards its normal, and grazing
+    vec3 traced_mirror;   // Lambertian surfaces stand for glossy ones where light is traced: of albedo traced_share times
+    float traced_share DEFAULT(1.0);  // the base colour, plus traced_mirror
+    float roughness DEFAULT(1.0);
     float pad0 DEFAULT(0.0);
+    float pad1 DEFAULT(0.0);
+    float pad2 DEFAULT(0.0);
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u

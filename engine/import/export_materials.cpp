@@ -59,6 +59,25 @@ void check_base_colour(const glm::vec4& colour) {
     }
 }
 
+/// Metalness and roughness, and what differs from the defaults of the extensions.
+void write_gloss(const Material& material, Json& json, Draft& draft) {
+    json["pbrMetallicRoughness"]["metallicFactor"] = to_json(material.metalness);
+    json["pbrMetallicRoughness"]["roughnessFactor"] = to_json(material.roughness);
+    Json specular = Json::object();
+    if (material.specular != 1.0F) specular["specularFactor"] = to_json(material.specular);
+    if (material.specular_colour != glm::vec3(1.0F)) {
+        specular["specularColorFactor"] = to_json(material.specular_colour);
+    }
+    if (!specular.members().empty()) {
+        json["extensions"][specular_extension] = std::move(specular);
+        draft.use_extension(specular_extension);
+    }
+    if (material.ior != 1.5F) {
+        json["extensions"][ior_extension] = {{"ior", to_json(material.ior)}};
+        draft.use_extension(ior_extension);
+    }
+}
+
 /// glTF's emissive factors are at most 1. Quotients and strength are written in double precision, so that
 /// their product, rounded to a float, is the emission again.
 void write_emission(const glm::vec3& emissive, Json& material, Draft& draft) {
@@ -82,16 +101,17 @@ std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& mate
     return materials_.emplace(material, draft_.add("materials", std::move(json))).first->second;
 }
 
-/// Metalness 0 and roughness 1 make it diffuse in other renderers, too.
 Json MaterialWriter::describe(const Material& material) {
     check_base_colour(material.base_colour);
-    Json json = {{"pbrMetallicRoughness",
-                  {{"baseColorFactor", to_json(material.base_colour)},
-                   {"metallicFactor", 0},
-                   {"roughnessFactor", 1}}}};
+    Json json = {{"pbrMetallicRoughness", {{"baseColorFactor", to_json(material.base_colour)}}}};
+    write_gloss(material, json, draft_);
     if (!material.name.empty()) json["name"] = to_json(material.name);
     if (material.base_colour_texture) {
         json["pbrMetallicRoughness"]["baseColorTexture"] = texture_info(material.base_colour_texture);
+    }
+    if (material.metal_roughness_texture) {
+        json["pbrMetallicRoughness"]["metallicRoughnessTexture"] =
+            texture_info(material.metal_roughness_texture);
     }
     if (emits(material)) write_emission(material.emissive, json, draft_);
     if (material.emissive_texture) json["emissiveTexture"] = texture_info(material.emissive_texture);

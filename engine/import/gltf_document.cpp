@@ -138,32 +138,25 @@ void check_images(const Json& document) {
     }
 }
 
-/// Whether any material has the member at `path`, with a value for which `counts` holds.
-bool any_material(const Json& document, const char* path, bool (*counts)(const Json& value)) {
-    return std::ranges::any_of(list_in(document, "materials").items(), [&](const Json& material) {
-        const Json* const member = material.find_path(path);
-        return member && counts(*member);
-    });
+/// Whether any material has the member at `path`.
+bool any_material(const Json& document, const std::string& path) {
+    return std::ranges::any_of(list_in(document, "materials").items(),
+                               [&](const Json& material) { return material.find_path(path) != nullptr; });
 }
 
 /// A warning for each kind of thing that the file asks for explicitly and the import leaves out.
 std::vector<std::string> omissions(const Json& document) {
-    const auto any = [](const Json&) { return true; };
-    const auto above_0 = [](const Json& value) { return value.number() > 0.0; };
-    const auto below_1 = [](const Json& value) { return value.number() < 1.0; };
     std::vector<std::string> warnings;
     for (const char* member : {"animations", "skins"}) {
         if (document.contains(member)) warnings.push_back(fmt::format("{} are ignored", member));
     }
-    if (any_material(document, "pbrMetallicRoughness/metallicFactor", above_0) ||
-        any_material(document, "pbrMetallicRoughness/metallicRoughnessTexture", any)) {
-        warnings.emplace_back("metalness is ignored: all surfaces are diffuse");
+    for (const char* texture : {"specularTexture", "specularColorTexture"}) {
+        if (any_material(document, fmt::format("extensions/{}/{}", specular_extension, texture))) {
+            warnings.push_back(fmt::format("{}s of {} are ignored", texture, specular_extension));
+        }
     }
-    if (any_material(document, "pbrMetallicRoughness/roughnessFactor", below_1)) {
-        warnings.emplace_back("roughness is ignored: all surfaces are diffuse");
-    }
-    if (any_material(document, "normalTexture", any)) warnings.emplace_back("normal maps are ignored");
-    if (any_material(document, "occlusionTexture", any)) {
+    if (any_material(document, "normalTexture")) warnings.emplace_back("normal maps are ignored");
+    if (any_material(document, "occlusionTexture")) {
         warnings.emplace_back("occlusion textures are ignored");
     }
     return warnings;

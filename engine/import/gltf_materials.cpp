@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,7 +20,7 @@ namespace candela::gltf {
 
 namespace {
 
-using ImageKey = std::tuple<const unsigned char*, Wrap, Wrap>;  // encoded bytes, wrap_u, wrap_v
+using ImageKey = std::tuple<const unsigned char*, Wrap, Wrap, Encoding>;  // encoded bytes, wrap_u, wrap_v
 
 Wrap to_wrap(int mode, int sampler) {
     switch (mode) {
@@ -74,7 +76,7 @@ class ImageReader {
 
     /// The image of a textureInfo; null, with a warning that starts with `label`, if it cannot be used. `use`
     /// may be null.
-    std::shared_ptr<const Image> read(const Json* use, const std::string& label) {
+    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, const std::string& label) {
         if (!use) return nullptr;
         const Json& texture = document_.at("textures", index_in(*use, "index"));
         const int image = index_in(texture, "source");
@@ -87,19 +89,20 @@ class ImageReader {
             return nullptr;
         }
         const Wraps wraps = wraps_of(document_, texture);
-        return naming(fmt::format("image {}", image), [&] { return load(image, wraps); });
+        return naming(fmt::format("image {}", image), [&] { return load(image, wraps, encoding); });
     }
 
     void warn(std::string warning) { document_.warnings.push_back(std::move(warning)); }
 
  private:
-    std::shared_ptr<const Image> load(int index, const Wraps& wraps) {
+    std::shared_ptr<const Image> load(int index, const Wraps& wraps, Encoding encoding) {
         const Bytes encoded = encoded_image(index);
-        std::shared_ptr<const Image>& image = images_[{encoded.data(), wraps.u, wraps.v}];
+        std::shared_ptr<const Image>& image = images_[{encoded.data(), wraps.u, wraps.v, encoding}];
         if (!image) {
             Image decoded = decode_image(encoded, budget_);
             decoded.wrap_u = wraps.u;
             decoded.wrap_v = wraps.v;
+            decoded.encoding = encoding;
             image = std::make_shared<const Image>(std::move(decoded));
         }
         return image;
@@ -128,6 +131,25 @@ AlphaMode to_alpha_mode(std::string_view name) {
     return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
+/// Factors of pbrMetallicRoughness, KHR_materials_specular and KHR_materials_ior.
+void read_gloss(const Json& source, Material& material) {
+    material.metalness = number_in(source, "pbrMetallicRoughness/metallicFactor", 1.0F);
+    material.roughness = number_in(source, "pbrMetallicRoughness/roughnessFactor", 1.0F);
+    material.specular = number_in(source, "extensions/KHR_materials_specular/specularFactor", 1.0F);
+    material.specular_colour =
+        vector_in(source, "extensions/KHR_materials_specular/specularColorFactor", glm::vec3(1.0F));
+    material.ior = number_in(source, "extensions/KHR_materials_ior/ior", 1.5F);
+}
+
+void read_emission(const Json& source, const std::string& label, Material& material) {
+    const double strength =
+        number_in(source, "extensions/KHR_materials_emissive_strength/emissiveStrength", 1.0);
+    material.emissive = glm::vec3(vector_in(source, "emissiveFactor", glm::dvec3(0.0)) * strength);
+    if (!std::isfinite(std::max({material.emissive.r, material.emissive.g, material.emissive.b}))) {
+        throw SceneError(fmt::format("{}: its emission is too large", label));
+    }
+}
+
 /// KHR_materials_unlit: what is seen is the base colour, whatever the light. Such a surface emits it.
 void show_unlit(Material& material) {
     material.emissive = glm::vec3(material.base_colour);
@@ -135,34 +157,60 @@ void show_unlit(Material& material) {
     material.base_colour = glm::vec4(0.0F, 0.0F, 0.0F, material.base_colour.a);
 }
 
+/// Reads the textures of a material. All are transformed like the first one that is read, with a warning if
+/// another is to be transformed in another way.
+class TextureReader {
+ public:
+    TextureReader(ImageReader& images, std::string label) : images_(images), label_(std::move(label)) {}
+
+    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, const char* name) {
+        std::shared_ptr<const Image> image =
+            images_.read(use, encoding, fmt::format("{}: its {}", label_, name));
+        if (!image) return nullptr;
+        const glm::mat3 transform = transform_of(use);
+        if (!first_) first_ = {name, transform};
+        if (first_->transform != transform) {
+            images_.warn(fmt::format("{}: its {} is transformed like its {}", label_, name, first_->name));
+        }
+        return image;
+    }
+
+    [[nodiscard]] glm::mat3 transform() const { return first_ ? first_->transform : glm::mat3(1.0F); }
+
+ private:
+    struct Use {
+        const char* name;
+        glm::mat3 transform;
+    };
+    ImageReader& images_;
+    std::string label_;
+    std::optional<Use> first_;
+};
+
 ReadMaterial read_material(const Json& source, const std::string& label, ImageReader& images) {
-    const Json* const base = source.find_path("pbrMetallicRoughness/baseColorTexture");
-    const bool unlit = source.find_path("extensions/KHR_materials_unlit") != nullptr;
-    const Json* const emissive = unlit ? base : source.find("emissiveTexture");
-    const double strength =
-        number_in(source, "extensions/KHR_materials_emissive_strength/emissiveStrength", 1.0);
     Material material;
+    TextureReader textures(images, label);
     material.name = text_in(source, "name");
     material.base_colour = vector_in(source, "pbrMetallicRoughness/baseColorFactor", glm::vec4(1.0F));
-    material.emissive = glm::vec3(vector_in(source, "emissiveFactor", glm::dvec3(0.0)) * strength);
-    if (!std::isfinite(std::max({material.emissive.r, material.emissive.g, material.emissive.b}))) {
-        throw SceneError(fmt::format("{}: its emission is too large", label));
-    }
-    material.base_colour_texture = images.read(base, label + ": its texture");
-    if (unlit) {
+    material.base_colour_texture = textures.read(source.find_path("pbrMetallicRoughness/baseColorTexture"),
+                                                 Encoding::srgb, "base colour texture");
+    read_emission(source, label, material);
+    if (source.find_path("extensions/KHR_materials_unlit")) {
         show_unlit(material);
-    } else if (material.emissive != glm::vec3(0.0F)) {
-        material.emissive_texture = images.read(emissive, label + ": its emissive texture");
-    }
-    const glm::mat3 transform = transform_of(base);
-    if (material.base_colour_texture && material.emissive_texture && transform != transform_of(emissive)) {
-        images.warn(label + ": its emissive texture is transformed like its base colour");
+    } else {
+        read_gloss(source, material);
+        if (emits(material)) {
+            material.emissive_texture =
+                textures.read(source.find("emissiveTexture"), Encoding::srgb, "emissive texture");
+        }
+        material.metal_roughness_texture =
+            textures.read(source.find_path("pbrMetallicRoughness/metallicRoughnessTexture"), Encoding::linear,
+                          "metallic-roughness texture");
     }
     material.double_sided = flag_in(source, "doubleSided", false);
     material.alpha_mode = to_alpha_mode(text_in(source, "alphaMode"));
     material.alpha_cutoff = number_in(source, "alphaCutoff", 0.5F);
-    const glm::mat3 used = material.base_colour_texture ? transform : transform_of(emissive);
-    return {std::make_shared<const Material>(std::move(material)), used};
+    return {std::make_shared<const Material>(std::move(material)), textures.transform()};
 }
 
 std::vector<bool> used_materials(const Document& document, const std::vector<bool>& used_meshes) {
@@ -190,7 +238,9 @@ std::vector<ReadMaterial> read_materials(Document& document, const std::vector<b
             materials[i] = read_material(document.all("materials")[i], fmt::format("material {}", i), images);
         }
     }
-    materials.push_back({std::make_shared<const Material>()});
+    Material by_default;
+    read_gloss(Json::object(), by_default);
+    materials.push_back({std::make_shared<const Material>(std::move(by_default))});
     return materials;
 }
 

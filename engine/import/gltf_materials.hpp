@@ -17,10 +17,11 @@ struct ReadMaterial {
     glm::mat3 uv_transform{1.0F};  ///< of (u, v, 1)
 };
 
-/// The document's materials in its order, followed by the default material (white, single-sided). Those that
-/// no mesh of `used_meshes` has are null. Textures with the same file or buffer view and wrapping share one
-/// Image; images that no material uses are not loaded. A texture that cannot be used is left out, with an
-/// entry in the document's warnings. Throws SceneError, which names the image or sampler and the problem.
+/// The document's materials in its order, followed by the default material (rough white metal, single-sided).
+/// Those that no mesh of `used_meshes` has are null. Textures with the same file or buffer view and wrapping
+/// share one Image; images that no material uses are not loaded. A texture that cannot be used is left out,
+/// with an entry in the document's warnings. Throws SceneError, which names the image or sampler and the
+/// problem.
 [[nodiscard]] std::vector<ReadMaterial> read_materials(Document& document,
                                                        const std::vector<bool>& used_meshes,
                                                        ImportFiles& files, ImportBudget& budget,

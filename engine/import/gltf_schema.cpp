@@ -61,6 +61,14 @@ Check number(Range range) {
     return [range](const Json& value, const Json&) { return check_number(value, range); };
 }
 
+/// KHR_materials_ior: at least 1, or 0.
+Check index_of_refraction() {
+    return [](const Json& value, const Json&) {
+        const bool is_0 = value.is_number() && value.number() == 0.0;
+        return is_0 ? Problem{} : check_number(value, {.lowest = 1.0});
+    };
+}
+
 Check numbers(std::size_t length, Range range) {
     return [length, range](const Json& value, const Json&) -> Problem {
         if (!value.is_array() || value.size() != length) return fmt::format("is not {} numbers", length);
@@ -227,6 +235,9 @@ std::vector<Rule> rules() {
         {"materials.[].pbrMetallicRoughness.metallicFactor", number(unit)},
         {"materials.[].pbrMetallicRoughness.roughnessFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_emissive_strength.emissiveStrength", number(not_negative)},
+        {"materials.[].extensions.KHR_materials_ior.ior", index_of_refraction()},
+        {"materials.[].extensions.KHR_materials_specular.specularFactor", number(unit)},
+        {"materials.[].extensions.KHR_materials_specular.specularColorFactor", numbers(3, not_negative)},
 
         {"meshes.[]", has({"primitives"})},
         {"meshes.[].name", text()},

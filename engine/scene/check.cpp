@@ -101,8 +101,30 @@ Fault fault_of_size(std::uint32_t width, std::uint32_t height, std::size_t count
     return {};
 }
 
-Fault fault_of(const std::shared_ptr<const Image>& image) {
-    return image ? fault_of_size(image->width, image->height, image->texels.size()) : Fault{};
+Fault fault_of(const std::shared_ptr<const Image>& image, Encoding encoding, std::string_view name) {
+    if (!image) return {};
+    if (const Fault fault = fault_of_size(image->width, image->height, image->texels.size())) {
+        return fmt::format("{} has {}", name, *fault);
+    }
+    if (image->encoding == encoding) return {};
+    return fmt::format("{} is not encoded as {}", name,
+                       encoding == Encoding::srgb ? "sRGB" : "linear values");
+}
+
+bool is_share(float x) {
+    return x >= 0.0F && x <= 1.0F;
+}
+
+/// Of what makes a material glossy.
+Fault fault_of_gloss(const Material& material) {
+    if (!is_share(material.metalness)) return "the metalness is not between 0 and 1";
+    if (!is_share(material.roughness)) return "the roughness is not between 0 and 1";
+    if (!is_share(material.specular)) return "the specular strength is not between 0 and 1";
+    if (!is_amount(material.specular_colour)) return negative_or_infinite("the specular colour");
+    if (!is_amount(material.ior) || (material.ior > 0.0F && material.ior < 1.0F)) {
+        return "the index of refraction is neither 0 nor a finite number of at least 1";
+    }
+    return {};
 }
 
 Fault fault_of(const Material& material) {
@@ -113,11 +135,15 @@ Fault fault_of(const Material& material) {
     if (!is_amount(material.alpha_cutoff, Limit::infinite)) {
         return "the alpha cutoff is negative or not a number";
     }
-    if (const Fault fault = fault_of(material.base_colour_texture)) {
-        return "the base colour texture has " + *fault;
+    if (Fault fault = fault_of_gloss(material)) return fault;
+    if (Fault fault = fault_of(material.base_colour_texture, Encoding::srgb, "the base colour texture")) {
+        return fault;
     }
-    if (const Fault fault = fault_of(material.emissive_texture)) return "the emissive texture has " + *fault;
-    return {};
+    if (Fault fault =
+            fault_of(material.metal_roughness_texture, Encoding::linear, "the metal-roughness texture")) {
+        return fault;
+    }
+    return fault_of(material.emissive_texture, Encoding::srgb, "the emissive texture");
 }
 
 Fault fault_of(const Vertex& vertex, Strictness strictness) {

@@ -224,10 +224,14 @@ WorldContents contents_of(const World& world, SceneCheck& check) {
     };
     FrameContents& of_frame = contents.of_frame;
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
-        of_frame.emitters = check.accepts(world, entity, instance) && emits(*instance.mesh) &&
-                            is_placed(entity) &&
-                            check.accepts_at(world, entity, instance, world_matrices(entity));
-        if (of_frame.emitters) break;
+        if (!check.accepts(world, entity, instance)) continue;
+        const bool emitter = !of_frame.emitters && emits(*instance.mesh);
+        const bool glossy = !of_frame.glossy && is_glossy(*instance.mesh);
+        if (!emitter && !glossy) continue;
+        if (!is_placed(entity) || !check.accepts_at(world, entity, instance, world_matrices(entity)))
+            continue;
+        of_frame.emitters |= emitter;
+        of_frame.glossy |= glossy;
     }
     const Environment environment = accepted_environment(world, check);
     of_frame.sky = environment.radiance != glm::vec3(0.0F);

@@ -65,6 +65,7 @@ struct ViewShape {
 /// What a world contains, as far as the passes of its frames depend on it.
 struct FrameContents {
     bool emitters = false;  ///< surfaces that emit light
+    bool glossy = false;    ///< surfaces that may be glossy: is_glossy
     bool sky = false;       ///< an Environment that is not black
     bool operator==(const FrameContents&) const = default;
 };

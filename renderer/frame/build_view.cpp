@@ -37,11 +37,20 @@ bool shows_emitters(const SharedFrame& shared) {
     return shared.contents.emitters && shows_sources(shared.configuration.show);
 }
 
+/// Whether the surfaces of a view are shaded as glossy ones. The irradiance is shown as if they were white.
+bool shades_gloss(const SharedFrame& shared, const ViewHandles& view) {
+    const Show show = shared.configuration.show;
+    return shared.contents.glossy && !view.host && shows_light(show) && show != Show::irradiance;
+}
+
 /// The surfaces as far as they are found before they are shaded. `asked`: parts that passes other than that
 /// which shades need.
-Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, SurfaceStage stage, const SceneData& seen,
-                       const ViewData& view, const FrameParts& asked) {
-    if (stage == SurfaceStage::gbuffer || asked.albedo) return add_gbuffer(graph, gpu, seen, view);
+Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
+                       const ViewData& view, const ViewHandles& out, const FrameParts& asked) {
+    const SurfaceStage stage = info_of(shared.configuration.path).surfaces;
+    if (stage == SurfaceStage::gbuffer || asked.albedo) {
+        return add_gbuffer(graph, gpu, seen, view, shades_gloss(shared, out));
+    }
     if (stage == SurfaceStage::forward_after_prepass || asked.depth || asked.normal) {
         return add_depth_prepass(graph, gpu, seen, view);
     }
@@ -80,8 +89,11 @@ TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
 }
 
 /// What the passes that shade read, all but gathered light.
-Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>& lists) {
-    Lighting lighting{.lights = shared.lit.lights, .lists = lists, .show = shared.configuration.show};
+Lighting lighting_of(const SharedFrame& shared, const ViewHandles& view) {
+    Lighting lighting{.lights = shared.lit.lights,
+                      .lists = view.lists,
+                      .show = shared.configuration.show,
+                      .glossy = shades_gloss(shared, view)};
     if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
         lighting.shadow_rays = shared.lit.tracing;
     }
@@ -94,7 +106,7 @@ Lighting lighting_of(const SharedFrame& shared, const std::optional<LightLists>&
 /// they get lists without depth bounds.
 Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewHandles& out) {
     const ShadingPathInfo& path = info_of(shared.configuration.path);
-    Lighting lighting = lighting_of(shared, out.lists);
+    Lighting lighting = lighting_of(shared, out);
     if (out.interleave > 1) lighting.most_vpls = most_vpls_of_blended;
     if (out.lists && path.lights == LightList::tile && path.surfaces != SurfaceStage::forward) {
         lighting.lists = add_blended_light_tiles(graph, gpu, out.lists->inputs, shared.lit.scene.layout);
@@ -127,6 +139,8 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
                     .depth = surfaces.depth,
                     .normal = surfaces.normal,
                     .albedo = surfaces.albedo,
+                    .mirror = surfaces.mirror,
+                    .gloss = surfaces.gloss,
                     .lights = shared.lit.lights.buffer};
     if (shared.vpls) set_vpls(parts, shared.vpls->light.vpls);
     return parts;
@@ -134,13 +148,17 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
 
 /// The surfaces, of which extensions may have replaced parts.
 Surfaces surfaces_of(const ViewFrame& parts) {
-    return {.depth = parts.depth, .normal = parts.normal, .albedo = parts.albedo};
+    return {.depth = parts.depth,
+            .normal = parts.normal,
+            .albedo = parts.albedo,
+            .mirror = parts.mirror,
+            .gloss = parts.gloss};
 }
 
 /// The light that solid surfaces reflect: sets the parts `radiance` and `depth`.
 void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
            const ViewData& view, const ViewHandles& out, ViewFrame& parts) {
-    Lighting lighting = lighting_of(shared, out.lists);
+    Lighting lighting = lighting_of(shared, out);
     if (parts.indirect) {
         lighting.indirect = parts.indirect;
         lighting.vpls.reset();
@@ -188,7 +206,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     asked.depth |= gathers || estimates;
 
     const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
-                                    : find_surfaces(graph, gpu, path.surfaces, seen, view, asked);
+                                    : find_surfaces(graph, gpu, shared, seen, view, out, asked);
     ViewFrame parts = first_parts(shared, index, view, found);
     extend(graph, shared, ExtensionPlace::after_surfaces, parts);
 

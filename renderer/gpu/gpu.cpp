@@ -3,8 +3,11 @@
 #include <fmt/ranges.h>
 #include <array>
 #include <cstddef>
+#include <span>
+#include <vector>
 
 #include <candela/scene/components.hpp>
+#include "renderer/gpu/mirror_shares.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
@@ -25,6 +28,15 @@ gl::Texture make_white(gl::Device& device) {
     gl::Texture texture(device, "white", TextureDesc{});
     const std::array<std::byte, 4> texel{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
     texture.upload(texel);
+    return texture;
+}
+
+gl::Texture make_mirror_shares(gl::Device& device) {
+    gl::Texture texture(device, "mirror shares",
+                        {.size = glm::uvec2(mirror_table_size), .format = Format::rgba32f});
+    std::vector<glm::vec4> texels;
+    for (const glm::vec3& shares : mirror_table()) texels.emplace_back(shares, 0.0F);
+    texture.upload(std::as_bytes(std::span(texels)));
     return texture;
 }
 
@@ -63,6 +75,11 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererO
       layer_target_(device_, "layer target") {
     require_limits(device_.limits());
     layer_target_.draw_buffers(0);
+}
+
+const gl::Texture& Gpu::mirror_shares() {
+    if (!mirror_shares_) mirror_shares_ = make_mirror_shares(device_);
+    return *mirror_shares_;
 }
 
 const gl::Program& Gpu::program(const std::vector<std::string>& stages,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,8 @@ class Gpu {
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }
     /// A 1 × 1 white texture, for materials without an image.
     [[nodiscard]] const gl::Texture& white() const { return white_; }
+    /// mirror_table as a texture, for scenes with glossy surfaces; made at the first request.
+    [[nodiscard]] const gl::Texture& mirror_shares();
     /// For textures of the host's, which may have any parameters: no filtering, mip level 0, no comparison.
     [[nodiscard]] const gl::Sampler& nearest() const { return nearest_; }
     /// A framebuffer for passes that draw into single layers. They attach a layer and detach it again.
@@ -86,6 +89,7 @@ class Gpu {
     gl::VertexArray mesh_vertices_;
     gl::VertexArray no_vertices_;  // for geometry that shaders generate
     gl::Texture white_;
+    std::optional<gl::Texture> mirror_shares_;
     gl::Sampler nearest_;
     gl::Framebuffer layer_target_;
 };

@@ -50,10 +50,19 @@ class Scene:
     def vertices(self, rows):
         return self.accessor([single(row) for row in rows], FLOAT, "f", VERTICES)
 
-    def material(self, name, colour, alpha=1.0, texture=None, **properties):
+    def material(self, name, colour, alpha=1.0, texture=None, extensions=None, **properties):
+        """A Lambertian material."""
         pbr = {"baseColorFactor": [*colour, alpha], "metallicFactor": 0.0, "roughnessFactor": 1.0}
         if texture is not None:
             pbr["baseColorTexture"] = {"index": texture}
+        self.use("KHR_materials_specular")
+        all_extensions = {"KHR_materials_specular": {"specularFactor": 0.0}, **(extensions or {})}
+        described = {"name": name, "pbrMetallicRoughness": pbr, "extensions": all_extensions, **properties}
+        return self.add("materials", described)
+
+    def glossy(self, name, colour, roughness, metalness=0.0, **properties):
+        """A material that also reflects in the mirror direction."""
+        pbr = {"baseColorFactor": [*colour, 1.0], "metallicFactor": metalness, "roughnessFactor": roughness}
         return self.add("materials", {"name": name, "pbrMetallicRoughness": pbr, **properties})
 
     def emitter(self, name, colour, radiance, **properties):

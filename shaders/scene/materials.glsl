@@ -52,6 +52,9 @@ vec4 colour_at(Material material, vec2 uv) {
     return material.base_colour * bilinear_texel(image, uv);
 }
 
+// Albedo of the Lambertian surface that stands for a material of this base colour.
+vec3 traced_albedo(Material material, vec3 colour) { return material.traced_share * colour + material.traced_mirror; }
+
 // Radiance that a surface emits.
 vec3 emission_at(Material material, vec2 uv) {
     if (material.emissive == vec3(0.0) || material.emissive_width == 0u) return material.emissive;

@@ -6,6 +6,10 @@
 #include "surfaces/visible_surface.glsl"
 
 layout(binding = UNIT_ALBEDO) uniform sampler2D gbuffer_albedo;
+#ifdef GLOSSY
+layout(binding = UNIT_MIRROR) uniform sampler2D gbuffer_mirror;
+layout(binding = UNIT_GLOSS) uniform sampler2D gbuffer_gloss;
+#endif
 layout(rgba32f, binding = IMAGE_RADIANCE) restrict uniform image2D radiance;
 
 void main() {
@@ -19,6 +23,9 @@ void main() {
         depth[s] = texelFetch(surface_depth, at, 0).r;
         nearest = max(nearest, depth[s]);
         surfaces[s] = visible_surface(at, depth[s], texelFetch(gbuffer_albedo, at, 0).rgb);
+#ifdef GLOSSY
+        set_gloss(surfaces[s], PackedGloss(texelFetch(gbuffer_mirror, at, 0), texelFetch(gbuffer_gloss, at, 0).rg));
+#endif
     }
     vec3 reflected[SURFACES];
     for (int s = 0; s < SURFACES; ++s) reflected[s] = vec3(0.0);

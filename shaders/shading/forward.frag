@@ -19,13 +19,24 @@ void main() {
     vec3 reflected[SURFACES];
     pixels[0] = uvec2(gl_FragCoord.xy);
     surfaces[0] = unpack_surface(fragment_surface(colour.rgb), gl_FragCoord.xyz, view.target_size, view.world_from_clip);
+#ifdef GLOSSY
+    set_gloss(surfaces[0], fragment_gloss());
+#ifdef BLENDED
+    surfaces[0].albedo *= colour.a;  // what is reflected in the mirror direction does not fade
+#endif
+#endif
     reflect_radiance(surfaces, pixels, reflected);
 #ifdef BLENDED
+    vec3 emitted = vec3(0.0);
 #ifdef EMISSION
-    reflected[0] += fragment_emission();
+    emitted = fragment_emission();
+#endif
+#ifdef GLOSSY
+    reflected[0] += colour.a * emitted;
+#else
+    reflected[0] = colour.a * (reflected[0] + emitted);
 #endif
     cover = vec4(colour.a);
-    reflected[0] *= colour.a;
 #endif
     radiance = vec4(reflected[0], 1.0);
 }

@@ -7,6 +7,7 @@
 #include "lights/lights.glsl"
 #include "lights/shadow.glsl"
 #include "loop_part.glsl"
+#include "shading/gloss.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
 
@@ -18,16 +19,53 @@
 // that all lights share, which radiance_of applies.
 struct Reflected {
     vec3 diffuse;  // the irradiance
+#ifdef GLOSSY
+    vec3 mirror;  // radiance
+#endif
 };
 
+#ifdef GLOSSY
+
+void add_from(inout Reflected reflected, vec3 irradiance, Response response) {
+    reflected.diffuse += response.diffuse * irradiance;
+    reflected.mirror += response.mirror * irradiance;
+}
+
+void add_from_direction(inout Reflected reflected, vec3 irradiance, vec3 direction, Surface surface) {
+    add_from(reflected, irradiance, response_to(direction, surface));
+}
+
+void add_from_all_sides(inout Reflected reflected, vec3 irradiance, Surface surface) {
+    add_from(reflected, irradiance, response_to_all_sides(surface));
+}
+
+Reflected nothing_reflected() { return Reflected(vec3(0.0), vec3(0.0)); }
+
+vec3 radiance_of(Reflected reflected, Surface surface) {
+    return surface.albedo / PI * reflected.diffuse + reflected.mirror;
+}
+
+#else
+
+void add_from_direction(inout Reflected reflected, vec3 irradiance, vec3 direction, Surface surface) {
+    reflected.diffuse += irradiance;
+}
+
+void add_from_all_sides(inout Reflected reflected, vec3 irradiance, Surface surface) { reflected.diffuse += irradiance; }
+
+Reflected nothing_reflected() { return Reflected(vec3(0.0)); }
+
 vec3 radiance_of(Reflected reflected, Surface surface) { return surface.albedo / PI * reflected.diffuse; }
+
+#endif
 
 // `light` is lights[index].
 void add_light(inout Reflected reflected, uint index, Light light, Surface surface) {
     Incident incident = incident_light(light, surface.position);
     float cos_surface = dot(shading_normal(surface), incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return;
-    reflected.diffuse += incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
+    vec3 irradiance = incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
+    add_from_direction(reflected, irradiance, incident.direction, surface);
 }
 
 #ifndef DIRECT_HIDDEN
@@ -66,7 +104,7 @@ layout(binding = UNIT_INDIRECT) uniform sampler2D indirect_irradiance;
 // Adds the light of the VPLs, as vpl_gather.comp and later passes computed it: π times the irradiance.
 void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
     for (int s = 0; s < SURFACES; ++s) {
-        reflected[s].diffuse += texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb / PI;
+        add_from_all_sides(reflected[s], texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb / PI, surfaces[s]);
     }
 }
 
@@ -85,7 +123,9 @@ void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Refl
     for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < count; i += vpl_stride) {
         add_vpl(i, surfaces, irradiance);
     }
-    for (int s = 0; s < SURFACES; ++s) reflected[s].diffuse += irradiance[s] * float(vpl_stride) / PI;
+    for (int s = 0; s < SURFACES; ++s) {
+        add_from_all_sides(reflected[s], irradiance[s] * float(vpl_stride) / PI, surfaces[s]);
+    }
 }
 
 #else
@@ -113,7 +153,7 @@ void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out ve
 // SHOW_IRRADIANCE: as if they were white.
 void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
     Reflected reflected[SURFACES];
-    for (int s = 0; s < SURFACES; ++s) reflected[s] = Reflected(vec3(0.0));
+    for (int s = 0; s < SURFACES; ++s) reflected[s] = nothing_reflected();
     add_lights(surfaces, pixels, reflected);
     if (part_first == 0u) add_indirect(surfaces, pixels, reflected);
 #ifdef SHOW_IRRADIANCE

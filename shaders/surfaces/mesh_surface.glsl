@@ -30,6 +30,18 @@ vec3 fragment_emission() { return materials[material_index].emissive * texture(e
 
 #endif
 
+#ifdef GLOSSY
+
+layout(binding = UNIT_METAL_ROUGHNESS) uniform sampler2D metal_roughness;
+
+PackedGloss fragment_gloss() {
+    vec2 stored = texture(metal_roughness, uv).gb;
+    Material material = materials[material_index];
+    return pack_gloss(material.mirror, stored * vec2(material.roughness, material.metalness));
+}
+
+#endif
+
 PackedSurface fragment_surface(vec3 albedo) {
     vec3 facing = gl_FrontFacing ? normal : -normal;
     return pack_surface(albedo, normalize(facing));

@@ -8,6 +8,11 @@ struct Surface {
     vec3 albedo;     // linear
     vec3 to_viewer;  // unit
     float pixel;     // metres: a pixel's width at the position
+#ifdef GLOSSY
+    // Then `albedo` is that of the diffuse part.
+    vec4 mirror;      // reflectance in the mirror direction: where the surface faces the viewer, and (alpha) grazing
+    float roughness;  // square root of GGX's α
+#endif
 };
 
 struct PackedSurface {
@@ -20,6 +25,31 @@ struct PackedSurface {
 // the host's normal, because no material changes it. One member for both keeps arrays of surfaces small.
 vec3 face_normal(Surface surface) { return surface.normal; }
 vec3 shading_normal(Surface surface) { return surface.normal; }
+
+#ifdef GLOSSY
+
+// What a material makes glossy, in the G-buffer.
+struct PackedGloss {
+    vec4 mirror;  // Material::mirror
+    vec2 gloss;   // roughness, metalness
+};
+
+// The values as the G-buffer, of half floats, has them.
+PackedGloss pack_gloss(vec4 mirror, vec2 gloss) {
+    vec2 low = unpackHalf2x16(packHalf2x16(mirror.rg));
+    vec2 high = unpackHalf2x16(packHalf2x16(mirror.ba));
+    return PackedGloss(vec4(low, high), unpackHalf2x16(packHalf2x16(gloss)));
+}
+
+// Metal reflects its base colour in the mirror direction, and nothing else.
+void set_gloss(inout Surface surface, PackedGloss stored) {
+    float metalness = stored.gloss.y;
+    surface.mirror = mix(stored.mirror, vec4(surface.albedo, 1.0), metalness);
+    surface.albedo *= 1.0 - metalness;
+    surface.roughness = stored.gloss.x;
+}
+
+#endif
 
 PackedSurface pack_surface(vec3 albedo, vec3 normal) {
     vec3 rounded = vec3(unpackHalf2x16(packHalf2x16(albedo.rg)), unpackHalf2x16(packHalf2x16(albedo.bb)).x);
@@ -37,7 +67,13 @@ Surface unpack_surface(PackedSurface surface, vec3 window, vec2 target_size, mat
     vec3 position = world.xyz / world.w;
     vec3 to_viewer = normalize(step_in_clip(world_from_clip[2], position, world.w));
     float pixel = 2.0 / target_size.x * length(step_in_clip(world_from_clip[0], position, world.w));
-    return Surface(position, octahedral_decode(surface.normal), surface.albedo, to_viewer, pixel);
+    Surface found;
+    found.position = position;
+    found.normal = octahedral_decode(surface.normal);
+    found.albedo = surface.albedo;
+    found.to_viewer = to_viewer;
+    found.pixel = pixel;
+    return found;
 }
 
 // Where visibility is judged: 1/32 of a pixel nearer to the viewer. At a crease the position may lie behind the other

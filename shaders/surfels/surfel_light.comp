@@ -179,5 +179,5 @@ void main() {
     }
     vec3 emitted = area * PI * emission_at(material, point.uv);
     vec3 from_emitters = emitting_count > 0u && area > 0.0 ? area * irradiance_from_emitters(id, point) : vec3(0.0);
-    direct_points[id] = DirectPoint(arriving + from_emitters, area, colour.rgb, 0.0, emitted, 0.0, from_emitters, 0.0);
+    direct_points[id] = DirectPoint(arriving + from_emitters, area, traced_albedo(material, colour.rgb), 0.0, emitted, 0.0, from_emitters, 0.0);
 }

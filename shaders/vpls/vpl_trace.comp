@@ -27,7 +27,7 @@ VplRecord follow(Ray ray, vec3 throughput) {
     vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
     bool from_front = dot(front, ray.direction) < 0.0;
     vec3 normal = from_front ? front : -front;
-    vec3 albedo = from_front || is_double_sided(triangle.material) ? hit_colour(triangle, hit.barycentric).rgb : vec3(0.0);
+    vec3 albedo = from_front || is_double_sided(triangle.material) ? traced_albedo(materials[triangle.material], hit_colour(triangle, hit.barycentric).rgb) : vec3(0.0);
     vec3 position = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
     return VplRecord(position, VPL_PLACED, normal, 0.0, throughput * albedo, 0.0);
 }

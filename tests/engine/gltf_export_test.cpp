@@ -228,6 +228,7 @@ SpotLight any_spot_light() {
 /// What instances, primitives and materials share.
 struct Stock {
     std::vector<std::shared_ptr<const Image>> images{nullptr};
+    std::vector<std::shared_ptr<const Image>> linear_images{nullptr};
     std::vector<std::shared_ptr<const Material>> materials;
     std::vector<std::shared_ptr<const Mesh>> meshes;
 };
@@ -246,6 +247,12 @@ Material any_material(const Stock& stock) {
         material.emissive = glm::vec3(any_amount(), any_amount(), any_positive());
         material.emissive_texture = any_of(stock.images);
     }
+    material.metalness = any_fraction();
+    material.roughness = any_fraction();
+    material.metal_roughness_texture = any_of(stock.linear_images);
+    material.specular = any_fraction();
+    if (any_bool()) material.specular_colour = glm::vec3(any_amount(), any_amount(), any_positive());
+    if (any_bool()) material.ior = any_bool() ? 0.0F : 1.0F + any_amount();
     material.double_sided = any_bool();
     material.alpha_mode = *rc::gen::element(AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend);
     material.alpha_cutoff = any_bool() ? 0.5F : any_amount();
@@ -287,6 +294,9 @@ Stock any_stock() {
     };
     for (std::uint32_t i = 1; i < 4; ++i) {
         stock.images.push_back(image(3 * i, i, *rc::gen::arbitrary<unsigned int>(), any_wrap(), any_wrap()));
+        Image linear = *image(i, 2 * i, *rc::gen::arbitrary<unsigned int>(), any_wrap(), any_wrap());
+        linear.encoding = Encoding::linear;
+        stock.linear_images.push_back(std::make_shared<const Image>(std::move(linear)));
     }
     for (int i = 0; i < 3; ++i) {
         stock.materials.push_back(std::make_shared<const Material>(any_material(stock)));

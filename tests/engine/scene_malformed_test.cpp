@@ -284,6 +284,10 @@ TEST_SUITE("malformed glTF") {
              "materials[0].pbrMetallicRoughness.metallicFactor is 2, which is out of range"},
             {"/materials/0/pbrMetallicRoughness/roughnessFactor", "\"rough\"",
              "materials[0].pbrMetallicRoughness.roughnessFactor is not a number"},
+            {"/materials/0/extensions/KHR_materials_ior/ior", "0.5",
+             "materials[0].extensions.KHR_materials_ior.ior is 0.5, which is out of range"},
+            {"/materials/0/extensions/KHR_materials_specular/specularFactor", "1.5",
+             "materials[0].extensions.KHR_materials_specular.specularFactor is 1.5, which is out of range"},
             {"/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform",
              R"({"offset": [1]})",
              "materials[0].pbrMetallicRoughness.baseColorTexture.extensions.KHR_texture_transform.offset is "

@@ -45,6 +45,11 @@ Json data_uri(const Bytes& image) {
     return {{"uri", "data:image/png;base64," + base64(image)}};
 }
 
+bool is_rough_metal(const Material& material) {
+    return material.metalness == 1.0F && material.roughness == 1.0F && material.specular == 1.0F &&
+           material.ior == 1.5F;
+}
+
 const Image& texture_of(const Imported& imported) {
     return *imported.primitive().material->base_colour_texture;
 }
@@ -151,27 +156,55 @@ TEST_SUITE("glTF materials") {
         // Only one set of texture coordinates is kept.
         file.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
         file.document["materials"][0]["emissiveTexture"]["index"] = 0;
-        CHECK(
-            Imported(file).report.warnings ==
-            std::vector<std::string>{"material 0: its emissive texture is transformed like its base colour"});
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{
+                  "material 0: its emissive texture is transformed like its base colour texture"});
     }
 
     TEST_CASE("one warning for each kind of thing that materials ask for and that is ignored") {
         GltfBuilder file = right_triangle();
         file.document["images"][0] = data_uri(png(four_colours, 2, 2));
         file.document["textures"] = Json::parse(R"([{"source": 0}])");
-        // The values that describe a diffuse surface need no warning, nor do defaults.
-        file.document["materials"] =
-            Json::parse(R"([{}, {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1}}])");
-        CHECK(Imported(file).report.warnings.empty());
+        file.document["extensionsUsed"] = {"KHR_materials_specular"};
         file.document["materials"] = Json::parse(R"([
-            {"pbrMetallicRoughness": {"metallicFactor": 0.5, "roughnessFactor": 0.2}, "normalTexture": {"index": 0}},
-            {"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}}, "normalTexture": {"index": 0},
-             "occlusionTexture": {"index": 0}}])");
+            {"normalTexture": {"index": 0}},
+            {"normalTexture": {"index": 0}, "occlusionTexture": {"index": 0}, "extensions": {"KHR_materials_specular":
+             {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 0}}}}])");
         CHECK(Imported(file).report.warnings ==
-              std::vector<std::string>{"metalness is ignored: all surfaces are diffuse",
-                                       "roughness is ignored: all surfaces are diffuse",
+              std::vector<std::string>{"specularTextures of KHR_materials_specular are ignored",
+                                       "specularColorTextures of KHR_materials_specular are ignored",
                                        "normal maps are ignored", "occlusion textures are ignored"});
+    }
+
+    TEST_CASE("metalness, roughness and specular reflection") {
+        GltfBuilder file = right_triangle();
+        // Without a material: white rough metal, by glTF's defaults.
+        CHECK(is_rough_metal(*Imported(file).primitive().material));
+        file.primitive()["material"] = 0;
+        file.document["materials"] = Json::parse("[{}]");
+        CHECK(is_rough_metal(*Imported(file).primitive().material));
+
+        file.document["images"][0] = data_uri(png(four_colours, 2, 2));
+        file.document["textures"] = Json::parse(R"([{"source": 0}])");
+        file.document["extensionsUsed"] = {"KHR_materials_specular", "KHR_materials_ior"};
+        file.document["materials"] = Json::parse(R"([{"pbrMetallicRoughness":
+            {"metallicFactor": 0.25, "roughnessFactor": 0.5, "baseColorTexture": {"index": 0},
+             "metallicRoughnessTexture": {"index": 0}},
+            "extensions": {"KHR_materials_specular": {"specularFactor": 0.75, "specularColorFactor": [1, 0.5, 2]},
+                           "KHR_materials_ior": {"ior": 1.25}}}])");
+        const Imported imported(file);
+        const Material& material = *imported.primitive().material;
+        CHECK(material.metalness == 0.25F);
+        CHECK(material.roughness == 0.5F);
+        CHECK(material.specular == 0.75F);
+        CHECK(material.specular_colour == glm::vec3(1.0F, 0.5F, 2.0F));
+        CHECK(material.ior == 1.25F);
+        // The same picture, once as colours and once as other values.
+        REQUIRE(material.metal_roughness_texture != nullptr);
+        CHECK(material.metal_roughness_texture->encoding == Encoding::linear);
+        CHECK(material.base_colour_texture->encoding == Encoding::srgb);
+        CHECK(material.metal_roughness_texture->texels == material.base_colour_texture->texels);
+        CHECK(imported.report.warnings.empty());
     }
 
     TEST_CASE("alpha modes and their cutoff") {
@@ -258,13 +291,14 @@ TEST_SUITE("glTF materials") {
         SUBCASE("a second set of texture coordinates") {
             file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
             CHECK(Imported(file).report.warnings ==
-                  std::vector<std::string>{
-                      "material 0: its texture uses coordinate set 1; only set 0 is read; ignored"});
+                  std::vector<std::string>{"material 0: its base colour texture uses coordinate set 1; only "
+                                           "set 0 is read; ignored"});
         }
         SUBCASE("a texture whose image comes from an extension") {
             file.document["textures"][0].erase("source");
             CHECK(Imported(file).report.warnings ==
-                  std::vector<std::string>{"material 0: its texture has no PNG or JPEG image; ignored"});
+                  std::vector<std::string>{
+                      "material 0: its base colour texture has no PNG or JPEG image; ignored"});
         }
     }
 

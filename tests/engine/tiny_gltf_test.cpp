@@ -38,6 +38,8 @@ void compare(const Material& read, const tinygltf::Material& expected) {
     CHECK(read.base_colour == to_vector(expected.pbrMetallicRoughness.baseColorFactor, glm::vec4(1.0F)));
     CHECK((read.base_colour_texture != nullptr) ==
           (expected.pbrMetallicRoughness.baseColorTexture.index >= 0));
+    CHECK(read.metalness == static_cast<float>(expected.pbrMetallicRoughness.metallicFactor));
+    CHECK(read.roughness == static_cast<float>(expected.pbrMetallicRoughness.roughnessFactor));
     CHECK(read.double_sided == expected.doubleSided);
     CHECK((read.alpha_mode == AlphaMode::blend) == (expected.alphaMode == "BLEND"));
     CHECK((read.alpha_mode == AlphaMode::mask) == (expected.alphaMode == "MASK"));

@@ -145,12 +145,18 @@ class WorldComparison {
         expect(a.emissive == b.emissive, "its emission");
         expect(a.double_sided == b.double_sided, "whether it is double-sided");
         expect(a.alpha_mode == b.alpha_mode && a.alpha_cutoff == b.alpha_cutoff, "its alpha mode");
+        expect(a.metalness == b.metalness && a.roughness == b.roughness, "its metalness and roughness");
+        expect(a.specular == b.specular && a.specular_colour == b.specular_colour, "its specular colour");
+        expect(a.ior == b.ior, "its index of refraction");
         compare_shared(a.base_colour_texture, b.base_colour_texture, images_, "its texture");
+        compare_shared(a.metal_roughness_texture, b.metal_roughness_texture, images_,
+                       "its metal-roughness texture");
         compare_shared(a.emissive_texture, b.emissive_texture, images_, "its emissive texture");
     }
 
     void compare(const Image& a, const Image& b) {
         expect(a.width == b.width && a.height == b.height && a.texels == b.texels, "its texels");
+        expect(a.encoding == b.encoding, "its texture's encoding");
         expect(a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v, "its texture's wrapping");
     }
 

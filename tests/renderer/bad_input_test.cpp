@@ -108,6 +108,15 @@ std::vector<FaultCase> mesh_faults() {
                  [](Material& m) { m.base_colour_texture = image(2, 3, 5); }),
         material("the base colour texture has 0 texels for 0 × 4",
                  [](Material& m) { m.base_colour_texture = image(0, 4, 0); }),
+        material("the metalness is not between 0 and 1", [](Material& m) { m.metalness = 1.5F; }),
+        material("the roughness is not between 0 and 1", [](Material& m) { m.roughness = not_a_number; }),
+        material("the specular strength is not between 0 and 1", [](Material& m) { m.specular = -0.5F; }),
+        material("the specular colour is negative or not finite",
+                 [](Material& m) { m.specular_colour.g = infinity; }),
+        material("the index of refraction is neither 0 nor a finite number of at least 1",
+                 [](Material& m) { m.ior = 0.5F; }),
+        material("the metal-roughness texture is not encoded as linear values",
+                 [](Material& m) { m.metal_roughness_texture = image(2, 3, 6); }),
         material("the emissive texture has 7 texels for 2 × 3",
                  [](Material& m) { m.emissive_texture = image(2, 3, 7); })};
 }

@@ -41,7 +41,12 @@ struct ViewFrame {
     ValueHandle<CameraView> view{};
     std::optional<TextureHandle> depth{};
     std::optional<TextureHandle> normal{};
-    std::optional<TextureHandle> albedo{};
+    std::optional<TextureHandle> albedo{};  ///< base colour, as FrameResults::albedo
+    /// Of scenes with glossy surfaces, where the albedo is. rgba16f: reflectance in the mirror direction of
+    /// what is not metal, where the surface faces the viewer and (alpha) at grazing angles. rg16f: roughness
+    /// and metalness.
+    std::optional<TextureHandle> mirror{};
+    std::optional<TextureHandle> gloss{};
     std::optional<TextureHandle> indirect{};
     std::optional<TextureHandle> radiance{};
     BufferHandle<gpu::Light> lights{};  ///< the scene's lights: `Light` as in glsl_types()

@@ -117,7 +117,7 @@ struct FrameResults {
     CameraView view;       ///< the textures were rendered with it, refinement's offset in the pixels included
     ResultTexture depth;   ///< depth32f, reversed: 1 at the near plane, 0 where there is no surface
     ResultTexture normal;  ///< rg32f: octahedral encoding, world space
-    ResultTexture albedo;  ///< rgba16f: linear, of the solid surfaces
+    ResultTexture albedo;  ///< rgba16f: linear base colour of the solid surfaces
     /// rgba32f: π times the irradiance from all VPLs, in lux or W/m², at the solid surfaces.
     ResultTexture indirect;
     /// rgba32f: linear radiance before exposure and tone mapping, the mean of all frames with refinement;

@@ -18,9 +18,11 @@ struct MaterialImageSlot {
 /// All of them. What is kept for the images of a material is an array with an element for each slot.
 inline constexpr std::array material_image_slots{
     MaterialImageSlot{&Material::base_colour_texture, UNIT_BASE_COLOUR},
-    MaterialImageSlot{&Material::emissive_texture, UNIT_EMISSION}};
+    MaterialImageSlot{&Material::emissive_texture, UNIT_EMISSION},
+    MaterialImageSlot{&Material::metal_roughness_texture, UNIT_METAL_ROUGHNESS}};
 inline constexpr std::size_t base_colour_slot = 0;
 inline constexpr std::size_t emissive_slot = 1;
+inline constexpr std::size_t metal_roughness_slot = 2;
 
 /// An image of a material on the GPU, with mip levels; the sampler has its wrap modes.
 struct MaterialTexture {

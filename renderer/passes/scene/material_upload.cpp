@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 #include <iterator>
 
 #define STB_IMAGE_RESIZE_IMPLEMENTATION
@@ -11,6 +12,7 @@
 #include <stb/stb_image_resize.h>
 
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/gpu/mirror_shares.hpp"
 
 namespace candela {
 namespace {
@@ -33,7 +35,7 @@ GLint wrap_mode(Wrap wrap) {
 std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& image) {
     const TextureDesc desc{
         .size = {image.width, image.height},
-        .format = Format::srgb8_alpha8,
+        .format = image.encoding == Encoding::srgb ? Format::srgb8_alpha8 : Format::rgba8,
         .mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)))};
     gl::Texture texture(gpu.device(), "material", desc);
     texture.upload(std::as_bytes(std::span(image.texels)));
@@ -92,12 +94,13 @@ float srgb_decode(std::uint8_t encoded) {
     return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
 }
 
-/// Mean colour of an image, linear; white if it is empty.
+/// Mean of the channels of an image, decoded; 1 if it is empty.
 glm::vec3 mean_of(const Image& image) {
     if (image.texels.empty()) return glm::vec3(1.0F);
     std::array<double, 256> decoded{};
     for (std::size_t i = 0; i < decoded.size(); ++i) {
-        decoded[i] = srgb_decode(static_cast<std::uint8_t>(i));
+        const auto encoded = static_cast<std::uint8_t>(i);
+        decoded[i] = image.encoding == Encoding::srgb ? srgb_decode(encoded) : encoded / 255.0;
     }
     glm::dvec3 sum(0.0);
     for (const glm::u8vec4& texel : image.texels) {
@@ -106,8 +109,9 @@ glm::vec3 mean_of(const Image& image) {
     return glm::vec3(sum / static_cast<double>(image.texels.size()));
 }
 
+/// Only colours are for tracing.
 UploadedImage upload_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
-    const Image reduced = reduce(*image);
+    const Image reduced = image->encoding == Encoding::srgb ? reduce(*image) : Image{};
     UploadedImage uploaded{.image = image,
                            .texture = upload_texture(gpu, *image),
                            .width = reduced.width,
@@ -117,6 +121,32 @@ UploadedImage upload_image(Gpu& gpu, const std::shared_ptr<const Image>& image) 
                            .mean = mean_of(*image)};
     std::ranges::transform(reduced.texels, std::back_inserter(uploaded.texels), pack);
     return uploaded;
+}
+
+/// The reflectance of what is not metal in the mirror direction, where it faces the viewer and (alpha) at
+/// grazing angles: KHR_materials_specular, with that of an interface to air by Fresnel.
+glm::vec4 mirror_of(const Material& material) {
+    const float ratio = (material.ior - 1.0F) / (material.ior + 1.0F);
+    return material.specular *
+           glm::vec4(glm::min(ratio * ratio * material.specular_colour, glm::vec3(1.0F)), 1.0F);
+}
+
+/// A Lambertian surface that reflects as much light as a glossy one, of light from all sides: its albedo is
+/// `share` times the base colour plus `mirror`.
+struct TracedReflection {
+    glm::vec3 mirror{0.0F};
+    float share = 1.0F;
+};
+
+TracedReflection traced_reflection(const Material& material, float metalness, float roughness) {
+    if (!is_glossy(material)) return {};
+    const glm::vec3 shares = mean_mirror_shares(roughness);
+    const glm::vec4 mirror = mirror_of(material);
+    const glm::vec3 facing(mirror);
+    const glm::vec3 fresnel = glm::mix(facing, glm::vec3(mirror.a), shares.z);
+    const float diffuse = (1.0F - metalness) * (1.0F - std::max({fresnel.r, fresnel.g, fresnel.b}));
+    return {(1.0F - metalness) * (shares.x * facing + shares.y * mirror.a) + metalness * shares.y,
+            diffuse + metalness * shares.x};
 }
 
 }  // namespace
@@ -152,10 +182,16 @@ std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image
 }
 
 glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
-    const auto& [listed, images] = by_index_[material];
-    const glm::vec3 factor(listed->base_colour);
-    const std::uint32_t image = images[base_colour_slot];
-    return image == 0 ? factor : factor * images_[image - 1].mean;
+    const Listed& listed = by_index_[material];
+    const gpu::Material record = record_of(listed);
+    return record.traced_share * glm::vec3(record.base_colour) * mean_of_image(listed, base_colour_slot) +
+           record.traced_mirror;
+}
+
+/// Mean of a material's image; 1 if it has none.
+glm::vec3 MaterialTable::mean_of_image(const Listed& listed, std::size_t slot) const {
+    const std::uint32_t image = listed.images[slot];
+    return image == 0 ? glm::vec3(1.0F) : images_[image - 1].mean;
 }
 
 MaterialBinding MaterialTable::binding_of(std::uint32_t material) const {
@@ -187,6 +223,9 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
     const Material& material = *listed.material;
     const UploadedImage& colour = image(listed.images[base_colour_slot]);
     const UploadedImage& emissive = image(listed.images[emissive_slot]);
+    const glm::vec3 gloss = mean_of_image(listed, metal_roughness_slot);
+    const TracedReflection traced =
+        traced_reflection(material, material.metalness * gloss.b, material.roughness * gloss.g);
     return {.base_colour = material.base_colour,
             .first_texel = colour.range.first,
             .texel_width = colour.width,
@@ -196,7 +235,12 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
             .first_emissive_texel = emissive.range.first,
             .emissive_width = emissive.width,
             .emissive_height = emissive.height,
-            .emissive = material.emissive};
+            .emissive = material.emissive,
+            .metalness = material.metalness,
+            .mirror = mirror_of(material),
+            .traced_mirror = traced.mirror,
+            .traced_share = traced.share,
+            .roughness = material.roughness};
 }
 
 void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials,

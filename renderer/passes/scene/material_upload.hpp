@@ -22,9 +22,10 @@ struct UploadedImage {
     std::shared_ptr<const MaterialTexture> texture;
     std::uint32_t width = 0;  ///< of the reduced image
     std::uint32_t height = 0;
-    std::vector<std::uint32_t> texels;  ///< of the reduced image: sRGB, 8 bits per channel, red the lowest
-    BufferRange range;                  ///< of these texels
-    glm::vec3 mean{0.0F};               ///< of the image, linear RGB
+    /// Of the reduced image: sRGB, 8 bits per channel, red the lowest. None of an image that has no colours.
+    std::vector<std::uint32_t> texels;
+    BufferRange range;     ///< of these texels
+    glm::vec3 mean{0.0F};  ///< of the image, decoded
 };
 
 /// The distinct materials of the scenes, one after the other, with their images on the GPU. What two
@@ -44,7 +45,7 @@ class MaterialTable {
     [[nodiscard]] const MaterialImages& images_of(std::uint32_t material) const {
         return by_index_[material].images;
     }
-    /// Base colour of a material times the mean of its image; linear RGB.
+    /// Mean albedo of a material where light is traced; linear RGB.
     [[nodiscard]] glm::vec3 mean_albedo(std::uint32_t material) const;
     [[nodiscard]] MaterialBinding binding_of(std::uint32_t material) const;
 
@@ -59,6 +60,7 @@ class MaterialTable {
     [[nodiscard]] std::uint32_t take_index();
     [[nodiscard]] std::uint32_t number_of(const std::shared_ptr<const Image>& image);
     [[nodiscard]] gpu::Material record_of(const Listed& listed) const;
+    [[nodiscard]] glm::vec3 mean_of_image(const Listed& listed, std::size_t slot) const;
 
     Gpu* gpu_;
     std::vector<Listed> by_index_;

@@ -19,6 +19,7 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces
                                          {Usage::storage, IMAGE_RADIANCE});
         pass.run([=, &gpu, &program](Execution& run) {
             const Groups blocks{groups(view.size.x, PIXEL_BLOCK), groups(view.size.y, PIXEL_BLOCK)};
+            bind_lighting(gpu, lighting);
             ComputeSteps steps(gpu);
             for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
                 steps.run(program, blocks, part);

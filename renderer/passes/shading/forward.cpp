@@ -29,6 +29,7 @@ ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
             } else {
                 gpu.clear_colour_and_depth();
             }
+            bind_lighting(gpu, lighting);
             gl::RasterState state = after_prepass ? visible_surfaces : nearest_surfaces;
             for (const gl::Uniforms& part : lighting_parts(run, lighting)) {
                 draw_surfaces(gpu, run, scene, programs, state, part);

@@ -6,6 +6,7 @@
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/loop_parts.hpp"
+#include "shaders/bindings.glsl"
 
 namespace candela {
 
@@ -35,12 +36,17 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
     } else if (lighting.show == Show::normals) {
         words.emplace_back("SHOW_NORMALS");
     }
+    if (lighting.glossy) words.emplace_back("GLOSSY");
     if (lighting.shadow_rays) words.emplace_back("SHADOW_RAYS");
     if (lighting.lists) words.emplace_back("LIGHT_LIST_CELLS");
     if (lighting.lists && lighting.lists->kind == LightList::cluster) {
         words.emplace_back("LIGHT_LIST_PER_SURFACE");
     }
     return words;
+}
+
+void bind_lighting(Gpu& gpu, const Lighting& lighting) {
+    if (lighting.glossy) gpu.mirror_shares().bind(UNIT_MIRROR_SHARES);
 }
 
 void read_lighting(Pass& pass, const Lighting& lighting) {

@@ -27,6 +27,7 @@ struct Lighting {
     /// Most VPLs that a surface evaluates. If there are more, every k-th is evaluated and weighted by k.
     std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();
     Show show = Show::total;
+    bool glossy = false;  ///< surfaces reflect light in the mirror direction, too: shaders/shading/gloss.glsl
 };
 
 [[nodiscard]] constexpr bool shows_direct(Show show) {
@@ -42,6 +43,9 @@ struct Lighting {
 
 /// Names to define in shaders that include lighting.glsl.
 [[nodiscard]] std::vector<std::string> lighting_variant(const Lighting& lighting);
+
+/// Binds what is not a resource of the graph.
+void bind_lighting(Gpu& gpu, const Lighting& lighting);
 
 /// For a pass whose shader includes lighting.glsl.
 void read_lighting(Pass& pass, const Lighting& lighting);

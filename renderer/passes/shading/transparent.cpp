@@ -81,6 +81,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
                 back_to_front(run.value(scene.layout), run.value(scene.placement), run.value(view.camera));
             if (sorted.empty()) return;
             check_lights(run.value(lighting.lights.table).entries.size());
+            bind_lighting(gpu, lighting);
             bind_meshes(gpu, run, scene);
             program.use(loop_parts(most_lights, most_lights).front());
             for (const SortedGroup& next : sorted) {

@@ -20,9 +20,16 @@ Surfaces write_geometry(FrameGraph& graph, Pass& pass, const ViewData& view) {
             .normal = pass.write(graph.texture("normal", {view.size, Format::rg32f}), Usage::colour_target)};
 }
 
-Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view) {
+Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view, bool glossy) {
+    const auto write = [&](std::string_view name, Format format) {
+        return pass.write(graph.texture(name, {view.size, format}), Usage::colour_target);
+    };
     Surfaces out = write_geometry(graph, pass, view);
-    out.albedo = pass.write(graph.texture("albedo", {view.size, Format::rgba16f}), Usage::colour_target);
+    out.albedo = write("albedo", Format::rgba16f);
+    if (glossy) {
+        out.mirror = write("mirror", Format::rgba16f);
+        out.gloss = write("gloss", Format::rg16f);
+    }
     return out;
 }
 
@@ -34,6 +41,8 @@ void read_geometry(Pass& pass, const Surfaces& surfaces) {
 void read_geometry_and_material(Pass& pass, const Surfaces& surfaces) {
     read_geometry(pass, surfaces);
     pass.read(*surfaces.albedo, {Usage::sampled, UNIT_ALBEDO});
+    if (surfaces.mirror) pass.read(*surfaces.mirror, {Usage::sampled, UNIT_MIRROR});
+    if (surfaces.gloss) pass.read(*surfaces.gloss, {Usage::sampled, UNIT_GLOSS});
 }
 
 void test_depth(Pass& pass, const Surfaces& surfaces) {

@@ -14,19 +14,23 @@ struct Surfaces {
     /// rg32f, octahedral encoding (Cigolle et al., "A Survey of Efficient Representations for Independent
     /// Unit Vectors", 2014), world space. It is the face normal and the shading normal: see surface.glsl.
     std::optional<TextureHandle> normal{};
-    std::optional<TextureHandle> albedo{};  ///< the material: rgba16f, linear
+    std::optional<TextureHandle> albedo{};  ///< the material's base colour: rgba16f, linear
+    /// Of scenes with glossy surfaces: rgba16f, gpu::Material::mirror; and rg16f, roughness and metalness.
+    std::optional<TextureHandle> mirror{};
+    std::optional<TextureHandle> gloss{};
 };
 
 /// Declares the depth of the view as an attachment that `pass` writes.
 [[nodiscard]] TextureHandle write_depth(FrameGraph& graph, Pass& pass, const ViewData& view);
 /// Depth and normal. Shaders write the normal to location 0.
 [[nodiscard]] Surfaces write_geometry(FrameGraph& graph, Pass& pass, const ViewData& view);
-/// The same with the albedo, location 1.
-[[nodiscard]] Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view);
+/// The same with the albedo, location 1, and if the surfaces may be glossy, with that at 2 and 3.
+[[nodiscard]] Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view,
+                                                   bool glossy);
 
 /// For a pass whose shader includes visible_surface.glsl: reads depth and normal.
 void read_geometry(Pass& pass, const Surfaces& surfaces);
-/// The same with the albedo, at UNIT_ALBEDO.
+/// The same with the material, at UNIT_ALBEDO, UNIT_MIRROR and UNIT_GLOSS.
 void read_geometry_and_material(Pass& pass, const Surfaces& surfaces);
 
 /// Reads the depth for the depth test; the pass does not write it.

@@ -44,13 +44,20 @@ struct Transform {
 /// How texture coordinates outside [0, 1] are mapped back.
 enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 
-/// An 8-bit image of sRGB-encoded colour with linear alpha, rows top to bottom, tightly packed.
+/// What the red, green and blue channels of an image are; alpha is always linear.
+enum class Encoding : std::uint8_t {
+    srgb,   ///< colours
+    linear  ///< other values, in [0, 1]
+};
+
+/// An 8-bit image, rows top to bottom, tightly packed.
 struct Image {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<glm::u8vec4> texels;  ///< width × height
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
+    Encoding encoding = Encoding::srgb;
 };
 
 /// What a material's alpha means (glTF's alphaMode).
@@ -60,17 +67,29 @@ enum class AlphaMode : std::uint8_t {
     blend    ///< alpha is the fraction of the light behind the surface that it blocks; see add_transparent
 };
 
-/// A Lambertian surface. Albedo and alpha are `base_colour` × the decoded texture × the colour of the
-/// vertices, each channel in [0, 1]. The back of a single-sided surface is not drawn and reflects no light,
-/// but it still blocks light.
+/// A surface of glTF's metallic-roughness model (glTF 2.0, appendix B). Its base colour and alpha are
+/// `base_colour` × the decoded texture × the colour of the vertices, each channel in [0, 1]. By default it is
+/// Lambertian, and the base colour is its albedo. The back of a single-sided surface is not drawn and
+/// reflects no light, but it still blocks light.
 struct Material {
     std::string name;
     glm::vec4 base_colour{1.0F};                       ///< linear
-    std::shared_ptr<const Image> base_colour_texture;  ///< null: none
+    std::shared_ptr<const Image> base_colour_texture;  ///< sRGB; null: none
+    /// Share of the surface that is metal, in [0, 1], × the texture's blue channel. Metal reflects its base
+    /// colour in the mirror direction; the rest reflects it in all directions.
+    float metalness = 0.0F;
+    /// Square root of α of the GGX distribution of microfacets, in [0, 1], × the texture's green channel.
+    float roughness = 1.0F;
+    std::shared_ptr<const Image> metal_roughness_texture;  ///< linear; null: none
+    /// What is not metal reflects in the mirror direction too: this share, in [0, 1], of what an interface of
+    /// `ior` to air does, times `specular_colour` where it faces the viewer (KHR_materials_specular).
+    float specular = 0.0F;
+    glm::vec3 specular_colour{1.0F};  ///< linear, >= 0
+    float ior = 1.5F;  ///< index of refraction, >= 1; 0: reflects all light (KHR_materials_ior)
     /// Radiance that the surface emits, linear, in cd/m² (or W/(sr m²), like the lights' units), each channel
     /// >= 0 and finite: from the front, and from the back if it is double-sided. Multiplied by the texture.
     glm::vec3 emissive{0.0F};
-    std::shared_ptr<const Image> emissive_texture;  ///< null: none; alpha is ignored
+    std::shared_ptr<const Image> emissive_texture;  ///< sRGB; null: none; alpha is ignored
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;  ///< of AlphaMode::mask, >= 0
@@ -79,6 +98,11 @@ struct Material {
 /// Whether surfaces of the material may emit light.
 [[nodiscard]] inline bool emits(const Material& material) {
     return material.emissive != glm::vec3(0.0F);
+}
+
+/// Whether surfaces of the material may reflect light in other ways than all surfaces of a Lambertian one do.
+[[nodiscard]] inline bool is_glossy(const Material& material) {
+    return material.metalness > 0.0F || material.specular > 0.0F;
 }
 
 /// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.
@@ -109,6 +133,12 @@ struct Mesh {
 [[nodiscard]] inline bool emits(const Mesh& mesh) {
     return std::ranges::any_of(mesh.primitives,
                                [](const Primitive& primitive) { return emits(*primitive.material); });
+}
+
+/// Whether surfaces of the mesh may be glossy.
+[[nodiscard]] inline bool is_glossy(const Mesh& mesh) {
+    return std::ranges::any_of(mesh.primitives,
+                               [](const Primitive& primitive) { return is_glossy(*primitive.material); });
 }
 
 /// A mesh placed by the entity's Transform. `mesh` is never null.

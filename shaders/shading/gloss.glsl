@@ -1,0 +1,51 @@
+// How glossy surfaces reflect light: glTF 2.0, appendix B.3. GGX distribution of microfacets, masking and shadowing by
+// Smith with correlated heights, Fresnel's term by Schlick. What is not reflected in the mirror direction is reflected
+// in all directions.
+#include "bindings.glsl"
+#include "surfaces/surface.glsl"
+
+#ifdef GLOSSY
+
+// renderer/gpu/mirror_shares.hpp
+layout(binding = UNIT_MIRROR_SHARES) uniform sampler2D mirror_shares;
+
+// α of the smoothest surface that reflects lights without extent: the highlight of a smoother one would be smaller than
+// a pixel.
+const float LEAST_ALPHA = 1.0 / 512.0;
+// Interpolated normals may face away from the viewer.
+const float LEAST_COSINE = 1e-3;
+
+struct Response {
+    vec3 mirror;    // radiance towards the viewer over irradiance, 1/sr
+    float diffuse;  // share of the irradiance that the diffuse part reflects
+};
+
+float cosine_to_viewer(Surface surface) { return max(dot(shading_normal(surface), surface.to_viewer), LEAST_COSINE); }
+
+// Light from the unit direction `to_light`, in front of the surface.
+Response response_to(vec3 to_light, Surface surface) {
+    vec3 normal = shading_normal(surface);
+    vec3 middle = normalize(to_light + surface.to_viewer);
+    float alpha2 = max(surface.roughness * surface.roughness, LEAST_ALPHA);
+    alpha2 *= alpha2;
+    float cos_viewer = cosine_to_viewer(surface);
+    float cos_light = dot(normal, to_light);
+    float cos_middle = dot(normal, middle);
+    vec3 aside = cross(normal, middle);
+    float spread = dot(aside, aside) + alpha2 * cos_middle * cos_middle;
+    float facets = alpha2 / (PI * spread * spread);
+    float unmasked = 0.5 / (cos_light * sqrt(mix(cos_viewer * cos_viewer, 1.0, alpha2)) +
+                            cos_viewer * sqrt(mix(cos_light * cos_light, 1.0, alpha2)));
+    float grazing = pow(1.0 - clamp(dot(surface.to_viewer, middle), 0.0, 1.0), 5.0);
+    vec3 fresnel = mix(surface.mirror.rgb, vec3(surface.mirror.a), grazing);
+    return Response(facets * unmasked * fresnel, 1.0 - largest(fresnel));
+}
+
+// Light from all sides, as if it were the same from all.
+Response response_to_all_sides(Surface surface) {
+    vec4 shares = textureLod(mirror_shares, vec2(cosine_to_viewer(surface), surface.roughness), 0.0);
+    vec3 fresnel = mix(surface.mirror.rgb, vec3(surface.mirror.a), shares.z);
+    return Response((surface.mirror.rgb * shares.x + surface.mirror.a * shares.y) / PI, 1.0 - largest(fresnel));
+}
+
+#endif
