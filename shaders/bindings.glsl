@@ -73,12 +73,16 @@
 #define UNIT_LAST 9
 // Passes that draw meshes read no G-buffer.
 #define UNIT_EMISSION UNIT_ALBEDO
-#define UNIT_SKY UNIT_ALBEDO
+#define UNIT_SKY UNIT_INDIRECT
 #define UNIT_METAL_ROUGHNESS UNIT_NORMAL
 #define UNIT_MIRROR UNIT_BASE_COLOUR
 // Passes that shade read no picture.
 #define UNIT_GLOSS UNIT_RADIANCE
 #define UNIT_MIRROR_SHARES UNIT_MEAN
+// Passes that show what mirrors have found light nothing.
+#define UNIT_MIRRORED_PLACE UNIT_SHADOW_CUBES
+#define UNIT_MIRRORED_NORMAL UNIT_SHADOW_MAPS
+#define UNIT_MIRRORED_SOURCE UNIT_VPL_MAPS
 // Passes that show textures read nothing else.
 #define UNIT_INSPECTED UNIT_BASE_COLOUR
 #define UNIT_FIRST_PICTURE UNIT_RADIANCE

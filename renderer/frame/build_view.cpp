@@ -4,6 +4,7 @@
 
 #include "renderer/frame/frame_budget.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
+#include "renderer/passes/mirror/mirror_rays.hpp"
 #include "renderer/passes/output/accumulate.hpp"
 #include "renderer/passes/output/tone_map.hpp"
 #include "renderer/passes/shading/deferred.hpp"
@@ -93,7 +94,8 @@ Lighting lighting_of(const SharedFrame& shared, const ViewHandles& view) {
     Lighting lighting{.lights = shared.lit.lights,
                       .lists = view.lists,
                       .show = shared.configuration.show,
-                      .glossy = shades_gloss(shared, view)};
+                      .glossy = shades_gloss(shared, view),
+                      .mirror_rays = shades_gloss(shared, view)};
     if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
         lighting.shadow_rays = shared.lit.tracing;
     }
@@ -107,6 +109,7 @@ Lighting lighting_of(const SharedFrame& shared, const ViewHandles& view) {
 Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewHandles& out) {
     const ShadingPathInfo& path = info_of(shared.configuration.path);
     Lighting lighting = lighting_of(shared, out);
+    lighting.mirror_rays = false;
     if (out.interleave > 1) lighting.most_vpls = most_vpls_of_blended;
     if (out.lists && path.lights == LightList::tile && path.surfaces != SurfaceStage::forward) {
         lighting.lists = add_blended_light_tiles(graph, gpu, out.lists->inputs, shared.lit.scene.layout);
@@ -172,15 +175,49 @@ void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneDa
     parts.depth = shaded.surfaces.depth;
 }
 
+/// The radiance that mirrored surfaces reflect. None: only sources are shown in mirrors.
+std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared,
+                                            const ViewData& view, const ViewHandles& out,
+                                            const Surfaces& mirrored, bool gathers) {
+    if (!shows_indirect(shared.configuration.show)) return std::nullopt;
+    Lighting lighting = lighting_of(shared, out);
+    lighting.show = Show::total;
+    lighting.lists.reset();  // they are of what the view sees
+    lighting.glossy = lighting.mirror_rays = false;
+    if (shared.configuration.shadows.enabled) lighting.shadow_rays = shared.lit.tracing;
+    if (gathers) {
+        const GatheredVpls gathered = add_vpl_gather(graph, gpu, mirrored, shared.vpls->light,
+                                                     shared.vpls->order, view, out.interleave);
+        lighting.indirect = out.interleave == 1 ? gathered.irradiance
+                                                : add_rough_reconstruct(graph, gpu, mirrored, gathered, view);
+        lighting.vpls.reset();
+    }
+    return add_deferred(graph, gpu, mirrored, lighting, view);
+}
+
+/// What glossy surfaces show in the mirror direction.
+void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewData& view,
+                  const ViewHandles& out, const Surfaces& surfaces, std::optional<TextureHandle> sky_picture,
+                  bool gathers, ViewFrame& parts) {
+    graph.append_to_names(" (mirrored)" + view_ending(parts.index));
+    MirroredSources sources{.emitters = shows_emitters(shared), .sky_picture = sky_picture};
+    if (sky_picture) sources.environment = shared.lit.sky->environment;
+    const MirroredSurfaces mirrored =
+        add_mirror_rays(graph, gpu, surfaces, shared.lit.tracing, sources, view, out.averaged);
+    const auto reflected = shade_mirrored(graph, gpu, shared, view, out, mirrored.surfaces, gathers);
+    parts.radiance = add_mirror_resolve(graph, gpu, surfaces, mirrored, reflected, view, *parts.radiance);
+    graph.append_to_names(view_ending(parts.index));
+}
+
 /// What the surfaces and the sky emit.
 void add_sources(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneData& seen,
-                 const ViewData& view, ViewFrame& parts) {
+                 const ViewData& view, std::optional<TextureHandle> sky_picture, ViewFrame& parts) {
     if (shows_emitters(shared)) {
         parts.radiance = add_emission(graph, gpu, seen, view, surfaces_of(parts), *parts.radiance);
     }
-    if (shared.lit.sky && shows_sources(shared.configuration.show)) {
-        parts.radiance =
-            add_background(graph, gpu, *shared.lit.sky, view, surfaces_of(parts), *parts.radiance);
+    if (sky_picture) {
+        parts.radiance = add_background(graph, gpu, *shared.lit.sky, *sky_picture, view, surfaces_of(parts),
+                                        *parts.radiance);
     }
 }
 
@@ -204,6 +241,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                                          shared.vpls->count > max_vpls_per_invocation(shared.vpls->light));
     const bool estimates = shape.estimate_error && shared.vpls && shared.vpls->other;
     asked.depth |= gathers || estimates;
+    const bool glossy = shades_gloss(shared, out);
+    asked.albedo |= glossy;  // the passes of mirrors read all of the G-buffer
 
     const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
                                     : find_surfaces(graph, gpu, shared, seen, view, out, asked);
@@ -225,7 +264,12 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     }
 
     shade(graph, gpu, shared, seen, view, out, parts);
-    if (!out.host) add_sources(graph, gpu, shared, seen, view, parts);
+    std::optional<TextureHandle> sky_picture;
+    if (!out.host && shared.lit.sky && shows_sources(configuration.show)) {
+        sky_picture = add_sky_picture(graph, gpu, *shared.lit.sky);
+    }
+    if (glossy) add_mirrored(graph, gpu, shared, view, out, found, sky_picture, gathers, parts);
+    if (!out.host) add_sources(graph, gpu, shared, seen, view, sky_picture, parts);
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {
         const Lighting lighting = lighting_of_blended(graph, gpu, shared, out);

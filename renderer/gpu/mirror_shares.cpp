@@ -12,7 +12,7 @@ namespace candela {
 namespace {
 
 /// Samples along a side of a square of samples.
-constexpr int side = 16;
+constexpr int side = 32;
 
 float middle_of(int i, int count) {
     return (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
@@ -79,13 +79,18 @@ float diffuse_part(const glm::vec3& viewer) {
     return sum / static_cast<float>(side * side);
 }
 
+/// A value of the table's row or column.
+float value_of(std::size_t index) {
+    constexpr auto last = static_cast<float>(mirror_table_size - 1);
+    return static_cast<float>(index) / last;
+}
+
 std::vector<glm::vec3> make_table() {
+    constexpr float least_cosine = 1e-3F;
     std::vector<glm::vec3> table;
-    for (std::uint32_t i = 0; i < mirror_table_size * mirror_table_size; ++i) {
-        const auto at = [](std::uint32_t texel) {
-            return middle_of(static_cast<int>(texel), mirror_table_size);
-        };
-        table.push_back(mirror_shares(at(i % mirror_table_size), at(i / mirror_table_size)));
+    for (std::size_t i = 0; i < std::size_t{mirror_table_size} * mirror_table_size; ++i) {
+        const float cosine = std::max(value_of(i % mirror_table_size), least_cosine);
+        table.push_back(mirror_shares(cosine, value_of(i / mirror_table_size)));
     }
     return table;
 }
@@ -98,17 +103,20 @@ glm::vec3 mirror_shares(float cosine, float roughness) {
 }
 
 glm::vec3 mean_mirror_shares(float roughness) {
-    const float row = std::clamp(roughness * mirror_table_size - 0.5F, 0.0F, mirror_table_size - 1.0F);
+    const float row = roughness * (mirror_table_size - 1);
     const auto lower = static_cast<std::size_t>(row);
     const std::size_t upper = std::min<std::size_t>(lower + 1, mirror_table_size - 1);
     glm::vec3 sum(0.0F);
+    float weights = 0.0F;
     for (std::size_t i = 0; i < mirror_table_size; ++i) {
         const glm::vec3& below = mirror_table()[lower * mirror_table_size + i];
         const glm::vec3& above = mirror_table()[upper * mirror_table_size + i];
-        const float cosine = middle_of(static_cast<int>(i), mirror_table_size);
-        sum += 2.0F * cosine * glm::mix(below, above, row - static_cast<float>(lower));
+        // The trapezoidal rule; at 0 the weight is 0 anyway.
+        const float weight = value_of(i) * (i + 1 == mirror_table_size ? 0.5F : 1.0F);
+        sum += weight * glm::mix(below, above, row - static_cast<float>(lower));
+        weights += weight;
     }
-    return sum / static_cast<float>(mirror_table_size);
+    return sum / weights;
 }
 
 const std::vector<glm::vec3>& mirror_table() {

@@ -19,8 +19,8 @@ inline constexpr std::uint32_t mirror_table_size = 32;
 /// The same for viewers in all directions, in proportion to the cosine.
 [[nodiscard]] glm::vec3 mean_mirror_shares(float roughness);
 
-/// mirror_shares as a table: rows of increasing roughness, in them increasing cosine; both at the centres of
-/// the texels of [0, 1].
+/// mirror_shares as a table: rows of increasing roughness, in them increasing cosine, both from 0 to 1 in
+/// equal steps.
 [[nodiscard]] const std::vector<glm::vec3>& mirror_table();
 
 }  // namespace candela

@@ -22,19 +22,51 @@ layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D rec
 const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
 const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in widths of a pixel at that depth
 
-// Tangent plane of the surface at a pixel, in clip space. Its dot product with (x, y, z, 1) in normalised device
-// coordinates is the distance from the plane in pixel widths. See theory.md, "Same surface".
-vec4 tangent_plane(Surface surface) {
-    vec4 plane = vec4(face_normal(surface), -dot(face_normal(surface), surface.position)) * view.world_from_clip;
-    return plane * (0.5 * view.target_size.y / length(view.world_from_clip[1].xyz));
+#ifdef MIRRORED
+
+struct Plane {
+    vec3 normal;
+    vec3 position;
+    float pixel;
+};
+
+Plane plane_at(ivec2 at, float depth, Surface surface) {
+    return Plane(face_normal(surface), surface.position, surface.pixel);
 }
+
+// Pixel widths from the plane to the surface at a pixel, `steps` pixels along.
+float distance_off(Plane plane, ivec2 there, int steps) {
+    return dot(plane.normal, texelFetch(surface_depth, there, 0).gba - plane.position) / plane.pixel;
+}
+
+#else
+
+// Tangent plane of the surface at a pixel.
+struct Plane {
+    float step_off;  // change of the distance from it per pixel along, in pixel widths
+    float by_depth;  // and per depth
+    float depth;     // of the pixel
+};
+
+// In clip space, the plane's dot product with (x, y, z, 1) in normalised device coordinates is the distance from it in
+// pixel widths. See theory.md, "Same surface".
+Plane plane_at(ivec2 at, float depth, Surface surface) {
+    vec4 plane = vec4(face_normal(surface), -dot(face_normal(surface), surface.position)) * view.world_from_clip;
+    plane *= 0.5 * view.target_size.y / length(view.world_from_clip[1].xyz);
+    return Plane(dot(plane.xy, 2.0 * vec2(along) / view.target_size), plane.z, depth);
+}
+
+float distance_off(Plane plane, ivec2 there, int steps) {
+    return float(steps) * plane.step_off + plane.by_depth * (texelFetch(surface_depth, there, 0).r - plane.depth);
+}
+
+#endif
 
 // Irradiance of the pixel, and the share of the classes that it was interpolated from.
 vec4 reconstruct(ivec2 at) {
     float depth = texelFetch(surface_depth, at, 0).r;
     Surface surface = visible_surface(at, depth, vec3(0.0));
-    vec4 plane = tangent_plane(surface);
-    float step_off = dot(plane.xy, 2.0 * vec2(along) / view.target_size);  // change of that distance per pixel
+    Plane plane = plane_at(at, depth, surface);
     ivec2 before = at * along;
     ivec2 behind = (ivec2(view.target_size) - 1 - at) * along;
     int least = -(before.x + before.y);
@@ -50,10 +82,8 @@ vec4 reconstruct(ivec2 at) {
             float weight = float(n - abs(d));
             if (d < least || d > most || weight == 0.0) continue;
             ivec2 there = at + d * along;
-            float z = texelFetch(surface_depth, there, 0).r;
             vec3 normal = visible_face_normal(there);
-            float off_plane = float(d) * step_off + plane.z * (z - depth);
-            if (abs(off_plane) > SAME_PLANE || dot(normal, face_normal(surface)) < SAME_NORMAL) continue;
+            if (abs(distance_off(plane, there, d)) > SAME_PLANE || dot(normal, face_normal(surface)) < SAME_NORMAL) continue;
             vec4 found = texelFetch(gathered, there, 0);
             value += weight * vec4(found.rgb * found.a, found.a);
             fitting += weight;

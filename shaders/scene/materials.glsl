@@ -70,9 +70,12 @@ vec4 vertex_colour(uint colour) {
     return vec4(srgb_decode(stored.rgb), stored.a);
 }
 
+vec2 hit_uv(TraceTriangle triangle, vec2 barycentric) {
+    return triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
+}
+
 vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {
-    vec2 uv = triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
-    vec4 colour = colour_at(materials[triangle.material], uv);
+    vec4 colour = colour_at(materials[triangle.material], hit_uv(triangle, barycentric));
     if ((triangle.colour_a & triangle.colour_b & triangle.colour_c) == 0xffffffffu) return colour;
     vec4 a = vertex_colour(triangle.colour_a);
     vec4 b = vertex_colour(triangle.colour_b);

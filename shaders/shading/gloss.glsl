@@ -12,6 +12,8 @@ layout(binding = UNIT_MIRROR_SHARES) uniform sampler2D mirror_shares;
 // α of the smoothest surface that reflects lights without extent: the highlight of a smoother one would be smaller than
 // a pixel.
 const float LEAST_ALPHA = 1.0 / 512.0;
+// The same of surfaces whose reflections are found by rays.
+const float LEAST_TRACED_ALPHA = 1e-5;
 // Interpolated normals may face away from the viewer.
 const float LEAST_COSINE = 1e-3;
 
@@ -41,11 +43,29 @@ Response response_to(vec3 to_light, Surface surface) {
     return Response(facets * unmasked * fresnel, 1.0 - largest(fresnel));
 }
 
+// How much of what a surface reflects in the mirror direction, of anything but lights, is found by rays: mirror_rays.frag.
+// Rough surfaces would need too many.
+float share_of_rays(float roughness) { return 1.0 - smoothstep(0.6, 0.8, roughness); }
+
+// Share of light from all sides, the same from all, that a surface reflects in the mirror direction. `shares`: of
+// mirror_shares.
+vec3 mirror_share(vec3 shares, Surface surface) { return shares.x * surface.mirror.rgb + shares.y * surface.mirror.a; }
+
+vec3 shares_at(Surface surface) {
+    vec2 last = vec2(textureSize(mirror_shares, 0) - 1);
+    vec2 at = vec2(cosine_to_viewer(surface), surface.roughness) * last + 0.5;
+    return textureLod(mirror_shares, at / (last + 1.0), 0.0).xyz;
+}
+
 // Light from all sides, as if it were the same from all.
 Response response_to_all_sides(Surface surface) {
-    vec4 shares = textureLod(mirror_shares, vec2(cosine_to_viewer(surface), surface.roughness), 0.0);
+    vec3 shares = shares_at(surface);
     vec3 fresnel = mix(surface.mirror.rgb, vec3(surface.mirror.a), shares.z);
-    return Response((surface.mirror.rgb * shares.x + surface.mirror.a * shares.y) / PI, 1.0 - largest(fresnel));
+    vec3 mirror = mirror_share(shares, surface);
+#ifdef MIRROR_RAYS
+    mirror *= 1.0 - share_of_rays(surface.roughness);
+#endif
+    return Response(mirror / PI, 1.0 - largest(fresnel));
 }
 
 #endif

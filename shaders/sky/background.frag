@@ -1,29 +1,9 @@
 // The radiance of the sky. One fragment per pixel without a surface: drawn at depth 0.
 #include "bindings.glsl"
-#include "sky/sky_direction.glsl"
+#include "sky/sky_picture.glsl"
 #include "view/view.glsl"
 
-layout(binding = UNIT_SKY) uniform sampler2D sky_picture;
-
-uniform vec3 radiance_scale;  // multiplies the picture
-uniform float rotation;       // radians around +Y
-
 layout(location = 0) out vec4 radiance;
-
-// Interpolated bilinearly; left and right edge of the picture meet.
-vec3 sky_radiance(vec3 direction) {
-    ivec2 size = textureSize(sky_picture, 0);
-    vec2 at = sky_position(direction) * vec2(size) - 0.5;
-    ivec2 first = ivec2(floor(at));
-    vec2 share = at - vec2(first);
-    int left = (first.x + size.x) % size.x;
-    int right = (first.x + 1) % size.x;
-    int upper = max(first.y, 0);
-    int lower = min(first.y + 1, size.y - 1);
-    vec3 above = mix(texelFetch(sky_picture, ivec2(left, upper), 0).rgb, texelFetch(sky_picture, ivec2(right, upper), 0).rgb, share.x);
-    vec3 below = mix(texelFetch(sky_picture, ivec2(left, lower), 0).rgb, texelFetch(sky_picture, ivec2(right, lower), 0).rgb, share.x);
-    return mix(above, below, share.y);
-}
 
 // Unit direction that the pixel looks in, world space.
 vec3 looking_direction() {
@@ -33,5 +13,5 @@ vec3 looking_direction() {
 }
 
 void main() {
-    radiance = vec4(radiance_scale * sky_radiance(rotate_y(looking_direction(), -rotation)), 0.0);
+    radiance = vec4(sky_light(looking_direction()), 0.0);
 }

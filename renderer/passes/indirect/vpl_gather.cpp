@@ -114,7 +114,8 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
         read_vpl_light(pass, light);
         read_view(pass, view);
         pass.parameter(interleave);
-        const gl::Program& program = gpu.program({"indirect/vpl_gather.comp"}, vpl_light_variant(light));
+        const gl::Program& program =
+            gpu.program({"indirect/vpl_gather.comp"}, surface_variant(surfaces, vpl_light_variant(light)));
         const GatheredVpls out{
             .irradiance = pass.write(graph.texture("gathered irradiance", {view.size, Format::rgba32f}),
                                      {Usage::storage, IMAGE_INDIRECT}),

@@ -36,7 +36,8 @@ TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, Textur
         pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
         pass.read(gathered, {Usage::sampled, UNIT_INDIRECT});
-        const gl::Program& program = gpu.program({"indirect/vpl_reconstruct.comp"});
+        const gl::Program& program =
+            gpu.program({"indirect/vpl_reconstruct.comp"}, surface_variant(pixels.surfaces));
         const TextureHandle out =
             pass.write(graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}),
                        {Usage::storage, IMAGE_INDIRECT});
@@ -60,7 +61,8 @@ Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHa
         pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
         pass.read(rows, {Usage::sampled, UNIT_INDIRECT});
-        const gl::Program& program = gpu.program({"indirect/vpl_reconstruct.comp"}, {"COLUMNS"});
+        const gl::Program& program =
+            gpu.program({"indirect/vpl_reconstruct.comp"}, surface_variant(pixels.surfaces, {"COLUMNS"}));
         const Columns out{
             .irradiance = pass.write(graph.texture("indirect irradiance", {pixels.size, Format::rgba32f}),
                                      {Usage::storage, IMAGE_INDIRECT}),
@@ -107,7 +109,8 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         pass.read(found.fill_list, {Usage::storage, BINDING_FILL_LIST});
         pass.read(found.fill_list, Usage::indirect);
         read_vpl_light(pass, light);
-        const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"}, vpl_light_variant(light));
+        const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"},
+                                                 surface_variant(pixels.surfaces, vpl_light_variant(light)));
         const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
         pass.run([=, &gpu, &program](Execution& run) {
             fill(gpu, program, run.value(light.vpls.counts).sources(), max_vpls_per_invocation(light));
@@ -117,6 +120,12 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
 }
 
 }  // namespace
+
+TextureHandle add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                    const GatheredVpls& gathered, const ViewData& view) {
+    const Pixels pixels{surfaces, view, gathered.interleave, view.size};
+    return add_columns(graph, gpu, pixels, add_rows(graph, gpu, pixels, gathered.irradiance)).irradiance;
+}
 
 IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                   const GatheredVpls& gathered, const VplLight& light, const ViewData& view) {

@@ -15,6 +15,11 @@ struct IndirectLight {
     BufferHandle<std::uint32_t> fill_list;
 };
 
+/// The same without what fills pixels for which too few classes were found: they have the light of those
+/// alone. For rays, whose ends are scattered, and whose light is averaged. Returns the irradiance.
+[[nodiscard]] TextureHandle add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                                  const GatheredVpls& gathered, const ViewData& view);
+
 /// Estimates the light of all VPLs at every pixel from what the pixels have gathered from their shares. Adds
 /// nodes `vpl-reconstruct-rows` and `vpl-reconstruct` (compute): separable filters along rows, then along
 /// columns. Each class of pixels counts once, interpolated linearly between its nearest pixels that lie on

@@ -14,7 +14,8 @@ TextureHandle add_deferred(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces
         read_geometry_and_material(pass, surfaces);
         read_lighting(pass, lighting);
         read_view(pass, view);
-        const gl::Program& program = gpu.program({"shading/deferred.comp"}, lighting_variant(lighting));
+        const gl::Program& program =
+            gpu.program({"shading/deferred.comp"}, surface_variant(surfaces, lighting_variant(lighting)));
         const auto radiance = pass.write(graph.texture("radiance", {view.size, Format::rgba32f}),
                                          {Usage::storage, IMAGE_RADIANCE});
         pass.run([=, &gpu, &program](Execution& run) {

@@ -37,6 +37,7 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.emplace_back("SHOW_NORMALS");
     }
     if (lighting.glossy) words.emplace_back("GLOSSY");
+    if (lighting.mirror_rays) words.emplace_back("MIRROR_RAYS");
     if (lighting.shadow_rays) words.emplace_back("SHADOW_RAYS");
     if (lighting.lists) words.emplace_back("LIGHT_LIST_CELLS");
     if (lighting.lists && lighting.lists->kind == LightList::cluster) {

@@ -28,6 +28,7 @@ struct Lighting {
     std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();
     Show show = Show::total;
     bool glossy = false;  ///< surfaces reflect light in the mirror direction, too: shaders/shading/gloss.glsl
+    bool mirror_rays = false;  ///< what of that is not from lights is added later: add_mirror_resolve
 };
 
 [[nodiscard]] constexpr bool shows_direct(Show show) {

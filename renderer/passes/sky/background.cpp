@@ -34,7 +34,8 @@ void upload_picture(const gl::Functions& gl, GLuint texture, const SkyPicture& p
     }
 }
 
-/// A sky without a picture has one white texel.
+}  // namespace
+
 TextureHandle add_sky_picture(FrameGraph& graph, Gpu& gpu, const Sky& sky) {
     return graph.add("sky-picture", [&](Pass& pass) {
         pass.read(sky.picture);
@@ -51,11 +52,12 @@ TextureHandle add_sky_picture(FrameGraph& graph, Gpu& gpu, const Sky& sky) {
     });
 }
 
-}  // namespace
+gl::Uniforms sky_uniforms(const Environment& environment) {
+    return {{"radiance_scale", environment.radiance}, {"rotation", environment.rotation}};
+}
 
-TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const ViewData& view,
-                             const Surfaces& surfaces, TextureHandle radiance) {
-    const TextureHandle picture = add_sky_picture(graph, gpu, sky);
+TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, TextureHandle picture,
+                             const ViewData& view, const Surfaces& surfaces, TextureHandle radiance) {
     return graph.add("background", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         pass.read(sky.environment);
@@ -65,9 +67,8 @@ TextureHandle add_background(FrameGraph& graph, Gpu& gpu, const Sky& sky, const 
         const gl::Program& program = gpu.program({"output/fullscreen.vert", "sky/background.frag"});
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu, &program](Execution& run) {
-            const Environment& environment = run.value(sky.environment);
             gpu.draw_fullscreen(
-                program, {{"radiance_scale", environment.radiance}, {"rotation", environment.rotation}},
+                program, sky_uniforms(run.value(sky.environment)),
                 {.depth_test = gl::DepthTest::equal, .writes_depth = false});  // depth 0: no surface
         });
         return out;

@@ -33,6 +33,11 @@ Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewDa
     return out;
 }
 
+std::vector<std::string> surface_variant(const Surfaces& surfaces, std::vector<std::string> others) {
+    if (surfaces.mirrored) others.emplace_back("MIRRORED");
+    return others;
+}
+
 void read_geometry(Pass& pass, const Surfaces& surfaces) {
     pass.read(*surfaces.depth, {Usage::sampled, UNIT_DEPTH});
     pass.read(*surfaces.normal, {Usage::sampled, UNIT_NORMAL});

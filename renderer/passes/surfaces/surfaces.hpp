@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/passes/view/view.hpp"
@@ -18,7 +20,12 @@ struct Surfaces {
     /// Of scenes with glossy surfaces: rgba16f, gpu::Material::mirror; and rg16f, roughness and metalness.
     std::optional<TextureHandle> mirror{};
     std::optional<TextureHandle> gloss{};
+    bool mirrored = false;  ///< those that glossy surfaces show: MirroredSurfaces
 };
+
+/// Names to define in shaders that include visible_surface.glsl.
+[[nodiscard]] std::vector<std::string> surface_variant(const Surfaces& surfaces,
+                                                       std::vector<std::string> others = {});
 
 /// Declares the depth of the view as an attachment that `pass` writes.
 [[nodiscard]] TextureHandle write_depth(FrameGraph& graph, Pass& pass, const ViewData& view);

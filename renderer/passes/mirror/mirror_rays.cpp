@@ -1,0 +1,83 @@
+#include "renderer/passes/mirror/mirror_rays.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
+#include "renderer/passes/sky/background.hpp"
+#include "shaders/bindings.glsl"
+
+namespace candela {
+
+MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                 const Tracing& tracing, const MirroredSources& sources, const ViewData& view,
+                                 std::optional<ValueHandle<std::uint32_t>> round) {
+    return graph.add("mirror-rays", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
+        read_geometry_and_material(pass, surfaces);
+        read_tracing(pass, tracing);
+        read_view(pass, view);
+        std::vector<std::string> variant{"GLOSSY"};
+        if (sources.emitters) variant.emplace_back("EMISSION");
+        if (sources.environment) {
+            pass.read(*sources.environment);
+            pass.read(*sources.sky_picture, {Usage::sampled, UNIT_SKY});
+            variant.emplace_back("SKY");
+        }
+        if (round) pass.read(*round);
+        const gl::Program& program =
+            gpu.program({"output/fullscreen.vert", "mirror/mirror_rays.frag"}, variant);
+        const auto write = [&](std::string_view name, Format format) {
+            return pass.write(graph.texture(name, {view.size, format}), Usage::colour_target);
+        };
+        MirroredSurfaces out;
+        out.surfaces.depth = write("mirrored place", Format::rgba32f);
+        out.surfaces.normal = write("mirrored normal", Format::rgba32f);
+        out.surfaces.albedo = write("mirrored albedo", Format::rgba16f);
+        out.surfaces.mirrored = true;
+        out.round = round;
+        out.source = write("mirrored source", Format::rgba32f);
+        pass.run([=, &gpu, &program, metrics = tracing.metrics](Execution& run) {
+            gl::Uniforms uniforms{{"ray_offset", run.value(metrics).ray_offset()},
+                                  {"ray_round", round ? run.value(*round) : 0U}};
+            if (sources.environment) {
+                uniforms = uniforms + sky_uniforms(run.value(*sources.environment));
+            }
+            gpu.clear_colour();
+            gpu.draw_fullscreen(program, uniforms);
+        });
+        return out;
+    });
+}
+
+TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                 const MirroredSurfaces& mirrored, std::optional<TextureHandle> reflected,
+                                 const ViewData& view, TextureHandle radiance) {
+    return graph.add("mirror-resolve", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
+        read_geometry_and_material(pass, surfaces);
+        read_view(pass, view);
+        pass.read(*mirrored.surfaces.depth, {Usage::sampled, UNIT_MIRRORED_PLACE});
+        pass.read(*mirrored.surfaces.normal, {Usage::sampled, UNIT_MIRRORED_NORMAL});
+        pass.read(mirrored.source, {Usage::sampled, UNIT_MIRRORED_SOURCE});
+        std::vector<std::string> variant{"GLOSSY"};
+        if (mirrored.round) pass.read(*mirrored.round);
+        if (reflected) {
+            pass.read(*reflected, {Usage::sampled, UNIT_INDIRECT});
+            variant.emplace_back("REFLECTED");
+        }
+        const gl::Program& program =
+            gpu.program({"output/fullscreen.vert", "mirror/mirror_resolve.frag"}, variant);
+        const TextureHandle out = pass.write(radiance, Usage::colour_target);
+        pass.run([=, &gpu, &program, round = mirrored.round](Execution& run) {
+            gpu.mirror_shares().bind(UNIT_MIRROR_SHARES);
+            gpu.draw_fullscreen(program, {{"ray_round", round ? run.value(*round) : 0U}},
+                                {.blending = gl::Blending::add});
+        });
+        return out;
+    });
+}
+
+}  // namespace candela

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <candela/graph/frame_graph.hpp>
+#include "renderer/gpu/gpu.hpp"
+#include "renderer/passes/scene/bvh.hpp"
+#include "renderer/passes/sky/sky.hpp"
+#include "renderer/passes/surfaces/surfaces.hpp"
+#include "renderer/passes/view/view.hpp"
+
+namespace candela {
+
+/// What emits light that is to be seen in mirrors.
+struct MirroredSources {
+    bool emitters = false;
+    std::optional<ValueHandle<Environment>> environment{};  ///< none: no sky
+    std::optional<TextureHandle> sky_picture{};             ///< likewise; see add_sky_picture
+};
+
+/// What glossy surfaces show in the mirror direction. Textures of the view's size.
+struct MirroredSurfaces {
+    /// As passes that shade read them: `depth` is rgba32f, the width of a pixel there in metres, 0 where
+    /// there is no surface, and the position; `normal` is rgba32f, the face normal and the unit direction
+    /// towards the glossy surface, octahedral. The albedo is that of a Lambertian surface.
+    Surfaces surfaces;
+    /// rgba32f: radiance that they emit, or of the sky; and the density of the ray's direction in 1/sr, 0
+    /// where there is no ray.
+    TextureHandle source;
+    std::optional<ValueHandle<std::uint32_t>> round;  ///< of add_mirror_rays
+};
+
+/// Adds node `mirror-rays` (raster): one ray from each pixel of a glossy surface, in a random direction that
+/// it reflects to the viewer, for surfaces that are smooth enough (share_of_rays of gloss.glsl). Depends on
+/// the surfaces with their material, the scene's triangles and materials, the sources and the view. `round`:
+/// another value gives other directions. None: always the same.
+[[nodiscard]] MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                               const Tracing& tracing, const MirroredSources& sources,
+                                               const ViewData& view,
+                                               std::optional<ValueHandle<std::uint32_t>> round);
+
+/// Adds node `mirror-resolve` (raster): adds what glossy surfaces show in the mirror direction to `radiance`,
+/// from the rays of a pixel and its neighbours. `reflected`: rgba32f, radiance that the mirrored surfaces
+/// reflect; none: only what they emit is shown. Returns the radiance, modified in place.
+[[nodiscard]] TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                               const MirroredSurfaces& mirrored,
+                                               std::optional<TextureHandle> reflected, const ViewData& view,
+                                               TextureHandle radiance);
+
+}  // namespace candela

@@ -1,0 +1,72 @@
+// A ray from each glossy pixel, in a direction that its surface reflects to the viewer, and what it meets: another surface,
+// as visible_surface.glsl reads it (MIRRORED), and what that one emits (EMISSION); or the sky (SKY). One fragment per pixel.
+#include "mirror/glossy_surface.glsl"
+#include "sampling.glsl"
+#include "scene/bvh.glsl"
+#ifdef SKY
+#include "sky/sky_picture.glsl"
+#endif
+
+uniform uint ray_round;        // of rays through the same pixels, from 0
+uniform float ray_offset;  // metres above the surface, where rays start
+
+layout(location = 0) out vec4 width_and_position;    // metres: of a pixel there, 0: no surface
+layout(location = 1) out vec4 normal_and_direction;  // octahedral; from the surface towards the glossy one
+layout(location = 2) out vec4 albedo;
+layout(location = 3) out vec4 radiance_and_density;  // of surface or sky; of the direction, 1/sr, 0: no ray
+
+// Neighbouring pixels have well distributed points.
+vec2 point_of(uvec2 pixel) {
+    uint in_block = (pixel.x & 3u) + 4u * (pixel.y & 3u);
+    uint block = hash_combine(pixel.x >> 2u, pixel.y >> 2u);
+    return sample_2d(16u * ray_round + in_block, 0u, block);
+}
+
+#ifdef SKY
+vec3 light_of_sky(vec3 direction) { return sky_light(direction); }
+#else
+vec3 light_of_sky(vec3 direction) { return vec3(0.0); }
+#endif
+
+// Of what is seen at a distance behind a surface.
+float width_behind(Surface surface, float distance) {
+    if (view.orthographic != 0u) return surface.pixel;
+    float depth = -(view.view_from_world * vec4(surface.position, 1.0)).z;
+    return surface.pixel * (1.0 + distance / depth);
+}
+
+void meet(Hit hit, vec3 direction) {
+    TraceTriangle triangle = triangles[hit.triangle];
+    vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
+    bool from_front = dot(front, direction) < 0.0;
+    width_and_position.yzw = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
+    normal_and_direction = vec4(octahedral_encode(from_front ? front : -front), octahedral_encode(-direction));
+    albedo = vec4(0.0);
+    radiance_and_density.rgb = vec3(0.0);
+    if (!from_front && !is_double_sided(triangle.material)) return;
+    Material material = materials[triangle.material];
+    albedo.rgb = traced_albedo(material, hit_colour(triangle, hit.barycentric).rgb);
+#ifdef EMISSION
+    radiance_and_density.rgb = emission_at(material, hit_uv(triangle, hit.barycentric));
+#endif
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    if (gl_HelperInvocation || !is_surface(at)) discard;
+    Surface surface = glossy_surface(at);
+    if (share_by_rays(surface) == 0.0) discard;
+    Facets facets = facets_of(surface);
+    vec3 direction = sampled_direction(facets, point_of(uvec2(at)));
+    float density = lobe_towards(direction, facets).sampled;
+    if (density <= 0.0 || dot(direction, face_normal(surface)) <= 0.0) discard;
+    vec3 origin = visible_position(surface, ray_offset) + ray_offset * face_normal(surface);
+    Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
+    width_and_position = vec4(0.0);
+    normal_and_direction = vec4(0.0, 0.0, octahedral_encode(-direction));
+    albedo = vec4(0.0);
+    radiance_and_density = vec4(light_of_sky(direction), density);
+    if (hit.triangle == NO_TRIANGLE) return;
+    meet(hit, direction);
+    width_and_position.x = width_behind(surface, hit.t);
+}

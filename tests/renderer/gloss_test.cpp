@@ -1,0 +1,244 @@
+// Glossy surfaces against closed forms, against each other, and against what a mirror must show.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+#include <vector>
+
+#include "renderer/gpu/mirror_shares.hpp"
+#include "tests/renderer/path_fixture.hpp"
+
+using namespace candela;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+std::shared_ptr<const Material> metal(glm::vec3 colour, float roughness) {
+    Material material;
+    material.base_colour = glm::vec4(colour, 1.0F);
+    material.metalness = 1.0F;
+    material.roughness = roughness;
+    return std::make_shared<const Material>(std::move(material));
+}
+
+std::shared_ptr<const Material> plastic(glm::vec3 colour, float roughness) {
+    Material material;
+    material.base_colour = glm::vec4(colour, 1.0F);
+    material.roughness = roughness;
+    material.specular = 1.0F;
+    return std::make_shared<const Material>(std::move(material));
+}
+
+/// glTF 2.0, appendix B.3.2: distribution of microfacets times their visibility.
+double facets_towards(const glm::dvec3& light, const glm::dvec3& viewer, const glm::dvec3& normal,
+                      double alpha) {
+    const glm::dvec3 half = glm::normalize(light + viewer);
+    const double a2 = alpha * alpha;
+    const double nh = glm::dot(normal, half), nl = glm::dot(normal, light), nv = glm::dot(normal, viewer);
+    const double d = a2 / (pi * std::pow(nh * nh * (a2 - 1.0) + 1.0, 2.0));
+    // Correlated heights: Heitz, "Understanding the Masking-Shadowing Function", JCGT 2014, eq. 99.
+    const auto lambda = [a2](double cosine) {
+        return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - cosine * cosine) / (cosine * cosine)) - 1.0);
+    };
+    return d / (1.0 + lambda(nl) + lambda(nv)) / (4.0 * nl * nv);
+}
+
+double schlick(double facing, double grazing, double cosine) {
+    return facing + (grazing - facing) * std::pow(1.0 - cosine, 5.0);
+}
+
+/// What a surface of these reflectances reflects, in the mirror direction alone, of light that is the same
+/// from all sides: the integral over half vectors in polar coordinates, where the distribution of microfacets
+/// is smooth if their tangent is taken in units of α.
+double furnace(double cosine, double roughness, double facing, double grazing) {
+    constexpr int steps = 400;
+    const double alpha = roughness * roughness;
+    const glm::dvec3 viewer(std::sqrt(1.0 - cosine * cosine), 0.0, cosine), normal(0, 0, 1);
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        // With tan θ = α t and t² = u / (1 - u), the distribution times cos θ is even in u.
+        const double u = (i + 0.5) / steps;
+        const double tangent = alpha * std::sqrt(u / (1.0 - u));
+        const double cos_half = 1.0 / std::sqrt(1.0 + tangent * tangent);
+        for (int j = 0; j < steps; ++j) {
+            const double angle = 2.0 * pi * (j + 0.5) / steps;
+            const glm::dvec3 half(cos_half * tangent * std::cos(angle), cos_half * tangent * std::sin(angle),
+                                  cos_half);
+            const double to_half = glm::dot(viewer, half);
+            const glm::dvec3 light = 2.0 * to_half * half - viewer;
+            if (to_half <= 0.0 || light.z <= 0.0) continue;
+            const double d =
+                std::pow(alpha / (cos_half * cos_half * (alpha * alpha + tangent * tangent)), 2.0) / pi;
+            const double brdf =
+                facets_towards(light, viewer, normal, alpha) * schlick(facing, grazing, to_half);
+            // dω of the light is 4 (v·h) dω of the half vector, whose density D cos θ is 1/steps².
+            sum += brdf * light.z * 4.0 * to_half / (d * cos_half);
+        }
+    }
+    return sum / (steps * steps);
+}
+
+/// A ground of this material, seen from 2 m above at 45°, with a tiny view.
+Scene seen_ground(std::shared_ptr<const Material> material) {
+    Scene scene;
+    add(scene.world, Transform{}, MeshInstance{square(4.0F, std::move(material))});
+    scene.light = scene.world.create();
+    scene.camera = add(scene.world, looking({2, 2, 0}, {0, 0, 0}), Camera{.vertical_fov = 0.02F});
+    return scene;
+}
+
+glm::quat turned(float half_turns, glm::vec3 axis) {
+    return glm::angleAxis(half_turns * std::numbers::pi_v<float>, axis);
+}
+
+/// Two coloured squares that stand on a ground, a point light, and a camera of which only the pose is
+/// missing.
+Scene things_on_ground() {
+    Scene scene;
+    add(scene.world, Transform{}, MeshInstance{square(4.0F, diffuse(glm::vec3(0.6F), true))});
+    add(scene.world, Transform{.translation = {1, 0.4F, -0.5F}, .rotation = turned(0.5F, {0, 0, 1})},
+        MeshInstance{square(0.4F, diffuse({0.7F, 0.3F, 0.1F}, true))});
+    add(scene.world, Transform{.translation = {0.6F, 0.5F, 0.7F}, .rotation = turned(0.4F, {0, 0, 1})},
+        MeshInstance{square(0.3F, diffuse({0.1F, 0.5F, 0.7F}, true))});
+    scene.light = add(scene.world, at({0.2F, 2.5F, 0.4F}), PointLight{.intensity = 5.0F});
+    scene.camera = add(scene.world, Camera{.vertical_fov = 0.5F});
+    return scene;
+}
+
+constexpr glm::uvec2 few{9, 9};
+
+double relative_error(double found, double expected) {
+    return std::abs(found / expected - 1.0);
+}
+
+double luminance_at_middle(const Picture& picture) {
+    return static_cast<double>(picture.at(picture.size.x / 2, picture.size.y / 2).g);
+}
+
+}  // namespace
+
+TEST_SUITE("gloss") {
+    TEST_CASE("the table of mirror shares is the integral of the reflection") {
+        // 1,024 samples an entry: their error is below 1 %.
+        for (const float roughness : {0.05F, 0.2F, 0.4F, 0.6F, 0.8F, 1.0F}) {
+            for (const float cosine : {0.1F, 0.3F, 0.6F, 1.0F}) {
+                CAPTURE(roughness);
+                CAPTURE(cosine);
+                const glm::vec3 shares = mirror_shares(cosine, roughness);
+                const auto c = static_cast<double>(cosine), r = static_cast<double>(roughness);
+                CHECK(relative_error(static_cast<double>(shares.x + shares.y), furnace(c, r, 1.0, 1.0)) <
+                      0.01);
+                // Of all the light: where y is small, so is its part.
+                CHECK(std::abs(static_cast<double>(shares.y) - furnace(c, r, 0.0, 1.0)) < 0.005);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture,
+                      "ground of metal or plastic under a light: the specification's formulas") {
+        const glm::dvec3 viewer = glm::normalize(glm::dvec3(2, 2, 0)), normal(0, 1, 0);
+        configure(linear_configuration());
+        for (const float roughness : {0.1F, 0.3F, 0.6F, 1.0F}) {
+            for (const glm::vec3 from :
+                 {glm::vec3(-2, 2.1F, 0.1F), glm::vec3(1, 3, -1), glm::vec3(-3, 0.6F, 0)}) {
+                CAPTURE(roughness);
+                CAPTURE(from.x);
+                const auto expect = [&](const std::shared_ptr<const Material>& material, double facing,
+                                        double grazing, double diffuse) {
+                    Scene scene = seen_ground(material);
+                    add(scene.world, at(from), PointLight{.intensity = 5.0F});
+                    const glm::dvec3 light = glm::normalize(glm::dvec3(from));
+                    const double irradiance = 5.0 / glm::dot(glm::dvec3(from), glm::dvec3(from)) * light.y;
+                    const double alpha = static_cast<double>(roughness) * static_cast<double>(roughness);
+                    const double fresnel =
+                        schlick(facing, grazing, glm::dot(viewer, glm::normalize(light + viewer)));
+                    const double expected =
+                        irradiance * (facets_towards(light, viewer, normal, alpha) * fresnel +
+                                      (1.0 - fresnel) * diffuse / pi);
+                    // The middle of the pixel is on the axis of the view up to rounding, which turns the half
+                    // vector by 1e-6: α is 1e-2 at least. Half floats of the material: 5e-4.
+                    CHECK(luminance_at_middle(render(scene, few)) ==
+                          doctest::Approx(expected).epsilon(0.002));
+                };
+                expect(metal(glm::vec3(0.75F), roughness), 0.75, 1.0, 0.0);
+                expect(plastic(glm::vec3(0.5F), roughness), 0.04, 1.0, 0.5);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "under the same sky everywhere, metal shows the closed form") {
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configure(configuration);
+        for (const float roughness : {0.0F, 0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F, 1.0F}) {
+            CAPTURE(roughness);
+            Scene scene = seen_ground(metal(glm::vec3(0.6F), roughness));
+            Environment sky;
+            sky.radiance = glm::vec3(2.0F);
+            add(scene.world, sky);
+            const double expected =
+                2.0 * furnace(std::sqrt(0.5), std::max(static_cast<double>(roughness), 0.01), 0.6, 1.0);
+            // Rays, or the irradiance of patches of the sky, whose sum is right to 1 %.
+            CHECK(relative_error(luminance_at_middle(render(scene, few)), expected) < 0.01);
+        }
+    }
+
+    TEST_CASE_FIXTURE(PathFixture, "paths agree on glossy surfaces, also behind panes") {
+        Scene scene = cornell_box();
+        Material floor = *plastic(glm::vec3(0.5F), 0.2F);
+        add(scene.world, at({0, 0.01F, 0}),
+            MeshInstance{square(0.9F, std::make_shared<const Material>(floor))});
+        add(scene.world,
+            Transform{.translation = {-0.3F, 1.0F, 0.2F},
+                      .rotation = glm::angleAxis(1.0F, glm::vec3(1, 0, 0))},
+            MeshInstance{square(0.3F, metal({0.9F, 0.7F, 0.3F}, 0.5F))});
+        Material pane = *plastic({0.4F, 0.6F, 0.9F}, 0.1F);
+        pane.alpha_mode = AlphaMode::blend;
+        pane.base_colour.a = 0.4F;
+        pane.double_sided = true;
+        add(scene.world,
+            Transform{.translation = {0.3F, 0.8F, 0.5F},
+                      .rotation = glm::angleAxis(1.3F, glm::vec3(1, 0, 0))},
+            MeshInstance{square(0.3F, std::make_shared<const Material>(pane))});
+        for (const Interleave interleave : {Interleave::one, Interleave::four}) {
+            Configuration configuration = linear_configuration();
+            configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+            configuration.interleave = interleave;
+            check_paths(scene, {52, 36}, configuration);
+        }
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "a flat mirror shows what is seen from behind it") {
+        // The camera and its image in the mirror, at x = -1, look at the same things; the picture is turned
+        // left to right. Direct light, as surfels would be placed differently.
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configure(configuration);
+        Scene scene = things_on_ground();
+        const Entity mirror =
+            add(scene.world, Transform{.translation = {-1, 1, 0}, .rotation = turned(-0.5F, {0, 0, 1})},
+                MeshInstance{square(0.9F, metal(glm::vec3(1.0F), 0.0F))});
+        scene.world.set(scene.camera, looking({0.3F, 1.0F, 0.1F}, {-1, 0.9F, 0}));
+        const Picture shown = render(scene, {48, 48});
+        scene.world.destroy(mirror);
+        scene.world.set(scene.camera, looking({-2.3F, 1.0F, 0.1F}, {-1, 0.9F, 0}));
+        const Picture behind = render(scene, {48, 48});
+        REQUIRE(mean(behind) > 0.01);
+        std::vector<double> errors;
+        for (std::uint32_t y = 0; y < 48; ++y) {
+            for (std::uint32_t x = 0; x < 48; ++x) {
+                const auto expected = static_cast<double>(behind.at(47 - x, y).g);
+                errors.push_back(std::abs(static_cast<double>(shown.at(x, y).g) - expected) /
+                                 (expected + 0.001));
+            }
+        }
+        std::ranges::sort(errors);
+        // Reflectance 1 is exact. At edges, rays and triangles may find different surfaces.
+        CHECK(errors[errors.size() * 3 / 4] < 0.005);
+    }
+}
