@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "sandbox/reference/scattering.hpp"
 #include "sandbox/reference/scene_content.hpp"
 
 namespace candela::reference {
@@ -17,21 +17,12 @@ float area_of(const Triangle& triangle) {
     return 0.5F * glm::length(glm::cross(b.position - a.position, c.position - a.position));
 }
 
-/// The density per area (1/m²) with which cosine-distributed rays from `from` hit `to`, which is also the
-/// irradiance there, divided by π, of unit radiance from a unit area of `to`.
-float transfer(const Surface& from, const Surface& to) {
-    const glm::vec3 between = to.position - from.position;
-    const float squared = glm::dot(between, between);
-    const float cosines = glm::dot(from.normal, between) * -glm::dot(to.face, between);
-    return std::max(cosines, 0.0F) / (std::numbers::pi_v<float> * squared * squared);
-}
-
 /// The light of an emitting surface, weighted for either way in which it was found: both give the same, since
 /// the density of the way itself cancels.
 glm::vec3 weighted(const SceneContent& scene, const Surface& receiver, const Surface& emitter,
                    std::uint32_t triangle) {
-    const float around = transfer(receiver, emitter);
-    return emitter.emission * (around / (around + scene.emitters.density(triangle)));
+    const Scattering way = scattering(receiver, emitter);
+    return emitter.emission * (way.reflected / (way.density + scene.emitters.density(triangle)));
 }
 
 glm::vec3 by_drawing_a_point(const SceneContent& scene, const Surface& receiver, Sampler& sampler) {
@@ -51,7 +42,7 @@ glm::vec3 by_drawing_a_point(const SceneContent& scene, const Surface& receiver,
 glm::vec3 by_looking_around(const SceneContent& scene, const Surface& receiver, Sampler& sampler) {
     const float u = sampler.next();
     const float v = sampler.next();
-    const glm::vec3 direction = cosine_direction(receiver.normal, {u, v});
+    const glm::vec3 direction = look_around(receiver, {u, v}, sampler);
     if (glm::dot(direction, receiver.face) <= 0.0F) return glm::vec3(0.0F);
     const auto hit = scene.geometry.closest(ray_from(receiver, direction, scene.geometry));
     if (!hit) return glm::vec3(0.0F);

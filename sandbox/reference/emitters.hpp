@@ -41,9 +41,10 @@ class Emitters {
     std::vector<float> density_;  ///< by triangle
 };
 
-/// The radiance that the surface would reflect if it were white, of light that comes directly from emitters:
+/// The radiance that the surface reflects, divided by its albedo, of light that comes directly from emitters:
 /// one sample. Two ways are combined with the balance heuristic (Veach, 1997, section 9.2.2): a point on an
-/// emitter, which is noisy close to it, and a cosine-distributed ray, which is noisy far from it.
+/// emitter, which is noisy close to it and at smooth surfaces, and looking around, which is noisy far from
+/// it.
 [[nodiscard]] glm::vec3 light_of_emitters(const SceneContent& scene, const Surface& surface,
                                           Sampler& sampler);
 

@@ -7,14 +7,21 @@
 
 #include <glm/geometric.hpp>
 
+#include "sandbox/reference/scattering.hpp"
+
 namespace candela::reference {
 
 namespace {
 
-/// The radiance that a surface reflects of a light, without occlusion.
+// Where glossy surfaces reflect a light without extent, their highlight is at least this wide.
+constexpr float least_alpha_for_lights = 1.0F / 512.0F;
+
+/// The radiance that a surface reflects of a light, without occlusion. The defects are those of Lambertian
+/// surfaces.
 glm::vec3 reflected(const Arrival& light, const Surface& surface, Defect defect) {
     const float cosine = glm::dot(surface.normal, light.direction);
     if (cosine <= 0.0F) return glm::vec3(0.0F);
+    if (surface.bsdf) return surface.bsdf->value(light.direction, least_alpha_for_lights) * light.irradiance;
     const float weight = defect == Defect::drop_cosine ? 1.0F : cosine;
     const float spread = defect == Defect::drop_pi ? 1.0F : std::numbers::inv_pi_v<float>;
     return surface.albedo * light.irradiance * (weight * spread);
@@ -43,17 +50,15 @@ struct Reflected {
     glm::vec3 radiance{0.0F};
 };
 
-/// The weight of looking around: its share in the sum of the densities with which both ways find `struck` and
-/// the light.
-float share_of_looking_around(const SceneContent& scene, const Surface& receiver, const Surface& struck,
-                              const Reflected& light) {
-    const glm::vec3 between = struck.position - receiver.position;
-    const float squared = glm::dot(between, between);
-    const float cosines = glm::dot(receiver.normal, between) * -glm::dot(struck.face, between);
-    const float around = cosines / (std::numbers::pi_v<float> * squared * squared);
+/// What the receiver reflects, divided by its albedo, of unit radiance from `struck`, in one sample of either
+/// way: what it reflects from a unit area, divided by the sum of the densities with which both ways find
+/// `struck` and the light. The density of the way itself cancels with the balance heuristic.
+glm::vec3 reflected_share(const SceneContent& scene, const Surface& receiver, const Surface& struck,
+                          const Reflected& light) {
+    const Scattering around = scattering(receiver, struck);
     const float cosine = glm::dot(struck.face, light.arrival.direction);
     const float from_light = scene.emission.density(light.light, light.arrival, cosine);
-    return around / (around + from_light);
+    return around.reflected / (around.density + from_light);
 }
 
 /// Keeps the states of lights that contribute at least the faint share of the sum of `powers`.
@@ -99,7 +104,7 @@ glm::vec3 light_by_looking_around(const SceneContent& scene, const Surface& rece
         if (power == total || sampler.next() * total < power) drawn = {i, arriving, radiance};
     }
     if (total == 0.0F || !is_lit(scene.geometry, struck, drawn.arrival)) return glm::vec3(0.0F);
-    const float share = share_of_looking_around(scene, receiver, struck, drawn);
+    const glm::vec3 share = reflected_share(scene, receiver, struck, drawn);
     return drawn.radiance * (share * total / power_of(drawn.radiance));
 }
 
@@ -110,14 +115,16 @@ glm::vec3 light_by_looking_from_light(const SceneContent& scene, const Surface& 
     const Emission::Draw drawn = scene.emission.draw(sampler.next(), u);
     const std::optional<Hit> hit = scene.geometry.closest(drawn.ray);
     if (!hit) return glm::vec3(0.0F);
-    const Surface struck = struck_surface(scene.geometry, *hit, drawn.ray.direction);
+    Surface struck = struck_surface(scene.geometry, *hit, drawn.ray.direction, receiver.shows_gloss);
+    if (struck.bsdf) {
+        struck.bsdf = struck.bsdf->seen_from(glm::normalize(receiver.position - struck.position));
+    }
     Reflected light{drawn.light, arrival(scene.lights[drawn.light], struck.position), {}};
     light.radiance = reflected(light.arrival, struck, defect);
     if (power_of(light.radiance) <= 0.0F || !are_connected(scene.geometry, receiver, struck)) {
         return glm::vec3(0.0F);
     }
-    // The density of this way cancels: radiance · around / from_light · from_light / (around + from_light).
-    return light.radiance * share_of_looking_around(scene, receiver, struck, light);
+    return light.radiance * reflected_share(scene, receiver, struck, light);
 }
 
 }  // namespace candela::reference

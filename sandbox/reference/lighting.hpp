@@ -31,12 +31,12 @@ struct Direct {
 // bound. The second one looks from the light: a ray from the light hits a surface, which is then connected to
 // the receiver. It is noisy where surfaces meet. Each sample is weighted by the share of its way in the sum
 // of both densities: the balance heuristic (Veach, "Robust Monte Carlo Methods for Light Transport
-// Simulation", 1997, section 9.2.2). Both return the radiance that `receiver` would reflect if it were white.
-// Here, surfaces occlude even lights that cast no shadow: that flag is about what a camera sees, and bounced
-// light would have no bound otherwise.
+// Simulation", 1997, section 9.2.2). Both return the radiance that `receiver` reflects, divided by its
+// albedo. Here, surfaces occlude even lights that cast no shadow: that flag is about what a camera sees, and
+// bounced light would have no bound otherwise.
 
-/// By way of `struck`, which was hit by a cosine-distributed ray from the receiver. Samples one light, with a
-/// probability proportional to its unoccluded contribution.
+/// By way of `struck`, which was hit by a ray as the receiver looked around (see scattering.hpp). Samples one
+/// light, with a probability proportional to its unoccluded contribution.
 [[nodiscard]] glm::vec3 light_by_looking_around(const SceneContent& scene, const Surface& receiver,
                                                 const Surface& struck, Sampler& sampler, Defect defect);
 

@@ -15,8 +15,15 @@ float linear(std::uint8_t encoded) {
     return static_cast<float>(value > 0.04045 ? std::pow((value + 0.055) / 1.055, 2.4) : value / 12.92);
 }
 
-glm::vec4 decode(glm::u8vec4 texel) {
+glm::vec4 decode(glm::u8vec4 texel, Encoding encoding) {
+    if (encoding == Encoding::linear) return glm::vec4(texel) / 255.0F;
     return {linear(texel.r), linear(texel.g), linear(texel.b), static_cast<float>(texel.a) / 255.0F};
+}
+
+/// KHR_materials_ior and KHR_materials_specular.
+glm::vec3 dielectric_f0(const Material& material) {
+    const float root = (material.ior - 1.0F) / (material.ior + 1.0F);
+    return material.specular * glm::min(root * root * material.specular_colour, glm::vec3(1.0F));
 }
 
 /// Wraps `i` into [0, count).
@@ -32,7 +39,8 @@ int wrapped(int i, int count, Wrap mode) {
 Texture::Texture(const Image& image)
     : size_(image.width, image.height), wrap_u_(image.wrap_u), wrap_v_(image.wrap_v) {
     texels_.resize(image.texels.size());
-    std::transform(image.texels.begin(), image.texels.end(), texels_.begin(), decode);
+    std::ranges::transform(image.texels, texels_.begin(),
+                           [&](glm::u8vec4 texel) { return decode(texel, image.encoding); });
 }
 
 glm::vec4 Texture::texel(int x, int y) const {
@@ -53,6 +61,16 @@ glm::vec4 Texture::at(glm::vec2 uv) const {
     return glm::mix(upper, lower, share.y);
 }
 
+Gloss SurfaceMaterial::gloss(glm::vec3 colour, glm::vec2 uv) const {
+    const glm::vec4 texel = metal_roughness_texture ? metal_roughness_texture->at(uv) : glm::vec4(1.0F);
+    const float metal = metalness * texel.b;
+    const float rough = roughness * texel.g;
+    return {.diffuse = (1.0F - metal) * colour,
+            .f0 = glm::mix(dielectric_f0, colour, metal),
+            .f90 = glm::mix(specular, 1.0F, metal),
+            .alpha = rough * rough};
+}
+
 std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& material) {
     const auto [found, is_new] =
         index_.try_emplace(material.get(), static_cast<std::uint32_t>(materials_.size()));
@@ -63,7 +81,13 @@ std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& mate
                               .emissive_texture = texture_of(material->emissive_texture),
                               .double_sided = material->double_sided,
                               .alpha_mode = material->alpha_mode,
-                              .alpha_cutoff = material->alpha_cutoff});
+                              .alpha_cutoff = material->alpha_cutoff,
+                              .is_glossy = candela::is_glossy(*material),
+                              .metalness = material->metalness,
+                              .roughness = material->roughness,
+                              .dielectric_f0 = dielectric_f0(*material),
+                              .specular = material->specular,
+                              .metal_roughness_texture = texture_of(material->metal_roughness_texture)});
     }
     return found->second;
 }

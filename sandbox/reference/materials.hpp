@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include <candela/scene/components.hpp>
+#include "sandbox/reference/bsdf.hpp"
 
 namespace candela::reference {
 
@@ -38,6 +39,12 @@ struct SurfaceMaterial {
     bool double_sided;
     AlphaMode alpha_mode;
     float alpha_cutoff;
+    bool is_glossy;
+    float metalness;
+    float roughness;
+    glm::vec3 dielectric_f0;  ///< reflectance of what is not metal for light along the normal
+    float specular;           ///< the same for light that grazes it
+    std::shared_ptr<const Texture> metal_roughness_texture;  ///< null: none
 
     /// Linear RGB, with alpha.
     [[nodiscard]] glm::vec4 colour(glm::vec2 uv) const {
@@ -47,6 +54,8 @@ struct SurfaceMaterial {
     [[nodiscard]] glm::vec3 emission(glm::vec2 uv) const {
         return emissive_texture ? emissive * glm::vec3(emissive_texture->at(uv)) : emissive;
     }
+    /// What it looks like where its base colour is `colour`.
+    [[nodiscard]] Gloss gloss(glm::vec3 colour, glm::vec2 uv) const;
     [[nodiscard]] bool is_hole(glm::vec4 colour) const {
         return alpha_mode == AlphaMode::mask && colour.a < alpha_cutoff;
     }

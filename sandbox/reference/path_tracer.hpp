@@ -33,6 +33,11 @@ struct Settings {
     std::uint32_t seed = 0;
     unsigned threads = 0;  ///< 0: one per core; the result does not depend on it
     Defect defect = Defect::none;
+    /// Whether glossy surfaces bundle the light that they reflect to others. If not, Lambertian ones of equal
+    /// albedo (for light from all sides) stand for them on paths that have left a surface by its diffuse
+    /// part, or by a lobe of a roughness above 0.3: there is less noise, and real-time renderers do the same.
+    /// What smooth surfaces show is exact in both cases.
+    bool caustics = true;
 };
 
 /// Linear radiance, without tone mapping. Where nothing is hit, `direct` shows the sky, and the others are

@@ -5,7 +5,8 @@
 namespace candela::reference {
 
 /// The radiance that a surface reflects of indirect light, from one path. The path continues from the surface
-/// in cosine-distributed directions, and samples the lights at every surface that it hits.
+/// in directions in which surfaces look around (see scattering.hpp), and samples the lights at every surface
+/// that it hits.
 [[nodiscard]] glm::vec3 indirect_light(const SceneContent& scene, const Surface& seen, Sampler& sampler,
                                        const Settings& settings);
 

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "sandbox/reference/scattering.hpp"
 #include "sandbox/reference/scene_content.hpp"
 
 namespace candela::reference {
@@ -36,11 +37,10 @@ double radiance_around(const SkyPicture& picture, std::uint32_t texel) {
 
 /// The light of one direction, weighted for either way in which it was found.
 glm::vec3 weighted(const SceneContent& scene, const Surface& surface, glm::vec3 direction) {
-    const float cosine = glm::dot(surface.normal, direction);
-    if (cosine <= 0.0F || glm::dot(surface.face, direction) <= 0.0F) return glm::vec3(0.0F);
+    const Scattering way = scattering(surface, direction);
+    if (way.density <= 0.0F || glm::dot(surface.face, direction) <= 0.0F) return glm::vec3(0.0F);
     if (scene.geometry.is_blocked(ray_from(surface, direction, scene.geometry))) return glm::vec3(0.0F);
-    const float around = cosine * std::numbers::inv_pi_v<float>;
-    return scene.sky.radiance(direction) * (around / (around + scene.sky.density(direction)));
+    return scene.sky.radiance(direction) * (way.reflected / (way.density + scene.sky.density(direction)));
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ glm::vec3 light_of_sky(const SceneContent& scene, const Surface& surface, Sample
     const glm::vec2 drawn(sampler.next(), sampler.next());
     const glm::vec2 around(sampler.next(), sampler.next());
     return weighted(scene, surface, scene.sky.draw(drawn)) +
-           weighted(scene, surface, cosine_direction(surface.normal, around));
+           weighted(scene, surface, look_around(surface, around, sampler));
 }
 
 }  // namespace candela::reference

@@ -41,9 +41,9 @@ class SkyLight {
     std::vector<float> densities_;  ///< by texel: 1/sr
 };
 
-/// The radiance that the surface would reflect if it were white, of light that comes directly from the sky:
-/// one sample. Two ways are combined with the balance heuristic (Veach, 1997, section 9.2.2): a drawn
-/// direction, and a cosine-distributed one.
+/// The radiance that the surface reflects, divided by its albedo, of light that comes directly from the sky:
+/// one sample. Two ways are combined with the balance heuristic (Veach, 1997, section 9.2.2): a direction
+/// that the sky draws, and one in which the surface looks around.
 [[nodiscard]] glm::vec3 light_of_sky(const SceneContent& scene, const Surface& surface, Sampler& sampler);
 
 }  // namespace candela::reference

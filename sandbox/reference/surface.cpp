@@ -2,9 +2,17 @@
 
 #include <glm/geometric.hpp>
 
+#include "sandbox/reference/hemispherical_albedo.hpp"
+
 namespace candela::reference {
 
 namespace {
+
+/// `direction` is that of a ray from the viewer.
+void add_gloss(Surface& surface, const Gloss& gloss, glm::vec3 direction) {
+    surface.albedo = glm::vec3(1.0F);
+    surface.bsdf = Bsdf(gloss, surface.normal, -glm::normalize(direction));
+}
 
 SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction, float light_through) {
     const Triangle& triangle = geometry.triangle(hit.triangle);
@@ -13,13 +21,15 @@ SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 dir
     const glm::vec4 colour = colour_at(triangle, material, hit.weights);
     const float side = glm::dot(triangle.front, direction) < 0.0F ? 1.0F : -1.0F;
     const float cover = material.alpha_mode == AlphaMode::blend ? colour.a : 1.0F;
-    return {.surface = {.position = position_at(triangle, hit.weights),
-                        .face = side * triangle.front,
-                        .normal = side * glm::normalize(normal_at(triangle, hit.weights)),
-                        .albedo = glm::vec3(colour),
-                        .emission = material.emission(uv)},
-            .weight = light_through * cover,
-            .part = triangle.part};
+    SeenSurface seen{.surface = {.position = position_at(triangle, hit.weights),
+                                 .face = side * triangle.front,
+                                 .normal = side * glm::normalize(normal_at(triangle, hit.weights)),
+                                 .albedo = glm::vec3(colour),
+                                 .emission = material.emission(uv)},
+                     .weight = light_through * cover,
+                     .part = triangle.part};
+    if (material.is_glossy) add_gloss(seen.surface, material.gloss(glm::vec3(colour), uv), direction);
+    return seen;
 }
 
 }  // namespace
@@ -36,18 +46,27 @@ std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray)
     return seen;
 }
 
-Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction) {
+Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction, bool as_it_is) {
     const Triangle& triangle = geometry.triangle(hit.triangle);
     const SurfaceMaterial& material = geometry.material(triangle);
     const bool shows_front = glm::dot(triangle.front, direction) < 0.0F;
     const glm::vec3 face = shows_front ? triangle.front : -triangle.front;
     const bool is_lit = shows_front || material.double_sided;
     const glm::vec2 uv = uv_at(triangle, hit.weights);
-    return {.position = position_at(triangle, hit.weights),
-            .face = face,
-            .normal = face,
-            .albedo = is_lit ? glm::vec3(colour_at(triangle, material, hit.weights)) : glm::vec3(0.0F),
-            .emission = is_lit ? material.emission(uv) : glm::vec3(0.0F)};
+    Surface surface{
+        .position = position_at(triangle, hit.weights),
+        .face = face,
+        .normal = face,
+        .albedo = is_lit ? glm::vec3(colour_at(triangle, material, hit.weights)) : glm::vec3(0.0F),
+        .emission = is_lit ? material.emission(uv) : glm::vec3(0.0F)};
+    if (!is_lit || !material.is_glossy) return surface;
+    const Gloss gloss = material.gloss(surface.albedo, uv);
+    if (as_it_is) {
+        add_gloss(surface, gloss, direction);
+    } else {
+        surface.albedo = hemispherical_albedo(gloss);
+    }
+    return surface;
 }
 
 bool are_connected(const Geometry& geometry, const Surface& a, const Surface& b) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "sandbox/reference/bsdf.hpp"
 #include "sandbox/reference/constants.hpp"
 #include "sandbox/reference/geometry.hpp"
 
@@ -9,11 +11,15 @@ namespace candela::reference {
 
 /// A point from which light is reflected or emitted.
 struct Surface {
-    glm::vec3 position;  ///< metres
-    glm::vec3 face;      ///< unit normal of the triangle, on the side that the ray hit
-    glm::vec3 normal;    ///< unit normal that light is weighted with
-    glm::vec3 albedo;    ///< linear
-    glm::vec3 emission;  ///< radiance that it emits on that side
+    glm::vec3 position;          ///< metres
+    glm::vec3 face;              ///< unit normal of the triangle, on the side that the ray hit
+    glm::vec3 normal;            ///< unit normal that light is weighted with
+    glm::vec3 albedo;            ///< linear; 1 if it is glossy
+    glm::vec3 emission;          ///< radiance that it emits on that side
+    std::optional<Bsdf> bsdf{};  ///< of a glossy surface; Lambertian if not set
+    /// Whether it shows other surfaces as they are. Otherwise it sees Lambertian ones of equal albedo in
+    /// place of glossy ones: see Settings::caustics.
+    bool shows_gloss = true;
 };
 
 /// A surface that the camera sees.
@@ -27,9 +33,10 @@ struct SeenSurface {
 /// in front of it, then the solid one. They are shaded with the normals of the mesh.
 [[nodiscard]] std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray);
 
-/// A surface for bounced light, with the flat normal of its triangle. The back of a single-sided surface is
-/// black.
-[[nodiscard]] Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction);
+/// A surface for bounced light, with the flat normal of its triangle, that a ray from the viewer has hit. The
+/// back of a single-sided surface is black. If not `as_it_is`, it is Lambertian, of equal albedo.
+[[nodiscard]] Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction,
+                                     bool as_it_is = true);
 
 /// Whether two surfaces see each other.
 [[nodiscard]] bool are_connected(const Geometry& geometry, const Surface& a, const Surface& b);
