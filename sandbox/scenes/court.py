@@ -3,8 +3,8 @@
 import math
 
 from gltf_writer import Scene
-from hdr_writer import hdr
-from shapes import block, box, flat, ground, lathe, looking, turn
+from hdr_writer import direction, hdr
+from shapes import ball, block, box, flat, ground, looking, turn
 
 SKY_WIDTH, SKY_HEIGHT = 128, 64
 SUN = (0.45, 0.75, 0.48)  # direction towards it, to be normalised
@@ -12,16 +12,9 @@ SUN_RADIUS = 4.0  # degrees; wider than the real one, so that its shadows have s
 SUN_RADIANCE = [120.0, 100.0, 72.0]
 
 
-def direction(x, y):
-    """That a pixel of the sky shows: the top row is +Y, the centre -Z, +X lies to the right of it."""
-    azimuth = 2.0 * math.pi * ((x + 0.5) / SKY_WIDTH - 0.5)
-    polar = math.pi * (y + 0.5) / SKY_HEIGHT
-    return (math.sin(azimuth) * math.sin(polar), math.cos(polar), -math.cos(azimuth) * math.sin(polar))
-
-
 def sky_radiance(x, y):
     """Blue above, white at the horizon, brown below it, and a sun."""
-    towards = direction(x, y)
+    towards = direction(x, y, SKY_WIDTH, SKY_HEIGHT)
     length = math.sqrt(sum(c * c for c in SUN))
     cosine = sum(a * b for a, b in zip(towards, SUN)) / length
     if cosine > math.cos(math.radians(SUN_RADIUS)):
@@ -50,9 +43,7 @@ def court():
     for i, x in enumerate((-3.5, -1.2, 1.2, 3.5)):
         scene.place(f"post {i}", flat(box(0.15, 2.3, 0.15)), blue, translation=[x, 0.0, -2.4])
     scene.place("bench", flat(box(1.8, 0.45, 0.5)), brick, translation=[1.8, 0.0, -0.4], rotation=turn(25))
-    angles = [math.pi * ring / 16 for ring in range(1, 16)]
-    ball = lathe([(0, -0.6), *[(0.6 * math.sin(a), -0.6 * math.cos(a)) for a in angles], (0, 0.6)], 32)
-    scene.place("bush", ball, green, translation=[-1.6, 0.62, 0.4])
+    scene.place("bush", ball(0.6), green, translation=[-1.6, 0.62, 0.4])
     scene.sky(hdr(SKY_WIDTH, SKY_HEIGHT, sky_radiance))
     scene.camera(60, 0.02, **looking((3.2, 2.0, 3.6), (-0.8, 0.9, -1.5)))
     return scene

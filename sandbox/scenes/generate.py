@@ -17,6 +17,7 @@ from atrium import atrium
 from court import court
 from fields import boxes, plane
 from glass import glass
+from gloss import bath, metals
 from halls import fins, hall
 from house import house, street
 from rooms import apartment, cornell, corner, furnace, lamp, neon, rooms, two_rooms
@@ -35,6 +36,8 @@ SHIPPED = {
     "house": house,
     "plane": plane,
     "apartment": apartment,
+    "metals": metals,
+    "bath": bath,
     "rooms-12": lambda: rooms(12),
     "boxes": boxes,
 }

@@ -3,6 +3,14 @@
 import math
 
 
+def direction(x, y, width, height):
+    """The unit vector that a pixel of an environment shows: the top row is +Y, the centre -Z, +X lies to the right of
+    it."""
+    azimuth = 2.0 * math.pi * ((x + 0.5) / width - 0.5)
+    polar = math.pi * (y + 0.5) / height
+    return (math.sin(azimuth) * math.sin(polar), math.cos(polar), -math.cos(azimuth) * math.sin(polar))
+
+
 def hdr(width, height, radiance):
     """The picture's bytes. `radiance(x, y)`: linear RGB of a pixel, from the top left. Each pixel has three mantissas and
     an exponent (Ward, "Real Pixels", Graphics Gems II, 1991)."""

@@ -121,6 +121,18 @@ def lathe(profile, segments):
     return surface
 
 
+def cylinder(radius, height):
+    """Stands on the origin; without a bottom."""
+    return lathe([(radius, 0), (radius, height)], 32) + lathe([(radius, height), (0, height)], 32)
+
+
+def ball(radius):
+    """A sphere around the origin, of 16 x 32 facets with smooth normals."""
+    angles = [math.pi * ring / 16 for ring in range(1, 16)]
+    arc = [(radius * math.sin(angle), -radius * math.cos(angle)) for angle in angles]
+    return lathe([(0, -radius), *arc, (0, radius)], 32)
+
+
 def turn(degrees):
     """A rotation about +Y."""
     half = math.radians(degrees) / 2
