@@ -105,6 +105,8 @@ void add_reference(CLI::App& app, int& status) {
     part.add_option("--samples", study->samples, "paths a pixel, even")->required();
     part.add_option("--bounces", study->bounces, "of indirect light; default: any");
     part.add_option("--seed", study->seed);
+    part.add_flag("--no-caustics", study->no_caustics,
+                  "diffuse and rough surfaces see glossy ones as Lambertian, as in the renderer");
     part.add_option("--out", study->out, "the folder; left alone if it holds the same already")->required();
     part.callback([=, &status] {
         study->size = size_named(*size);

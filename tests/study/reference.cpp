@@ -14,7 +14,8 @@ int reference(const ReferenceStudy& study) {
                           .size = study.size,
                           .samples = study.samples,
                           .bounces = study.bounces,
-                          .seed = study.seed};
+                          .seed = study.seed,
+                          .caustics = !study.no_caustics};
     if (holds(study.out, request)) {
         fmt::print("{}: holds this reference already\n", study.out.string());
         return 0;

@@ -45,7 +45,8 @@ Json to_json(const Request& request) {
                  {"size", {request.size.x, request.size.y}},
                  {"samples", request.samples},
                  {"bounces", nullptr},
-                 {"seed", request.seed}};
+                 {"seed", request.seed},
+                 {"caustics", request.caustics}};
     if (request.bounces) json["bounces"] = *request.bounces;
     return json;
 }
@@ -56,7 +57,8 @@ Request request_from(const Json& json) {
                     .size = {json.at("size").at(0), json.at("size").at(1)},
                     .samples = json.at("samples"),
                     .bounces = std::nullopt,
-                    .seed = json.at("seed")};
+                    .seed = json.at("seed"),
+                    .caustics = json.value("caustics", true)};
     if (!json.at("bounces").is_null()) request.bounces = json.at("bounces").get<std::uint32_t>();
     return request;
 }

@@ -20,6 +20,7 @@ struct Request {
     std::uint32_t samples = 0;             ///< paths per pixel
     std::optional<std::uint32_t> bounces;  ///< of indirect light; nullopt: unlimited
     std::uint32_t seed = 0;
+    bool caustics = true;  ///< see reference::Settings
     bool operator==(const Request&) const = default;
 };
 

@@ -115,6 +115,7 @@ TEST_SUITE("reference files") {
         CHECK_FALSE(other([](Request& r) { r.bounces = 4; }));
         CHECK_FALSE(other([](Request& r) { r.bounces.reset(); }));
         CHECK_FALSE(other([](Request& r) { r.seed = 8; }));
+        CHECK_FALSE(other([](Request& r) { r.caustics = false; }));
     }
 
     TEST_CASE("a folder with a missing file or a broken description is invalid, and can be written again") {

@@ -49,6 +49,7 @@ struct ReferenceStudy {
     std::uint32_t samples = 0;
     std::optional<std::uint32_t> bounces;
     std::uint32_t seed = 0;
+    bool no_caustics = false;
     std::filesystem::path out;  ///< the folder; unchanged if it already holds the same
 };
 /// Traces a reference for the renderer's pictures.

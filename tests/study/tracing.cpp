@@ -26,8 +26,11 @@ std::string_view tracer_name() {
 Reference trace_request(const World& world, const Request& request) {
     const reference::Scene scene(world);
     const Entity camera = first_camera(world);
-    const reference::Settings settings{
-        .size = request.size, .samples = request.samples, .bounces = request.bounces, .seed = request.seed};
+    const reference::Settings settings{.size = request.size,
+                                       .samples = request.samples,
+                                       .bounces = request.bounces,
+                                       .seed = request.seed,
+                                       .caustics = request.caustics};
     return {request, reference::trace(scene, camera, settings), trace_fine_direct(scene, camera, request)};
 }
 
