@@ -2,15 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "tests/reference/gltf_model.hpp"
 #include "tests/reference/pictures.hpp"
-#include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
 using namespace candela;
@@ -288,9 +293,12 @@ TEST_SUITE("reference: glossy surfaces") {
         const GltfModel metal{.base_colour = 0.8, .metalness = 1.0, .roughness = 0.5};
         const GltfModel plastic{.base_colour = 0.5, .roughness = 0.3};
         const GltfModel smooth{.base_colour = 0.8, .metalness = 1.0, .roughness = 0.2};
-        for (const auto& [ground, patch] :
-             {std::pair(chalk, chalk), std::pair(metal, chalk), std::pair(chalk, metal),
-              std::pair(plastic, metal), std::pair(metal, plastic), std::pair(smooth, chalk)}) {
+        const std::vector<std::pair<GltfModel, GltfModel>> pairs{{chalk, chalk},   {metal, chalk},
+                                                                 {chalk, metal},   {plastic, metal},
+                                                                 {metal, plastic}, {smooth, chalk}};
+        for (const auto& pair : pairs) {
+            const GltfModel& ground = pair.first;
+            const GltfModel& patch = pair.second;
             const Scene scene = Patch::scene(ground, made_of(patch));
             const Estimate estimate = traced(scene, {.size = {16, 16}, .samples = 1024, .bounces = 1});
             const reference::NoisyMean mean = reference::mean_indirect(estimate, estimate.hit);
