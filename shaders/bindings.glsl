@@ -119,6 +119,7 @@
 #define MOST_CELL_SHARES 16 // of many sources, which the points of a cell divide among them, unless a point's share is too large
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
+#define COVER_DIRECTIONS 64   // in which pixels find the share of their hemisphere that surfaces cover: vpl_light.glsl
 #define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl
 // Distances of a pixel from a group of surfels, in widths of the group: nearer, the surfels are summed one by one; farther,
 // the group as one; between them, both in part. See theory.md, "Groups of surfels".

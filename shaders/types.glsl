@@ -116,8 +116,8 @@ struct TileDepth {
     uint pad0 DEFAULT(0u);
 };
 
-// Virtual point lights (VPLs) are of four kinds: those on paths that were traced from the lights; or surfels, surfels on
-// surfaces that emit light, and patches of the sky. Their indices run through the kinds in this order: VplConstants.
+// Virtual point lights (VPLs) are of five kinds: those on paths that were traced from the lights; or surfels, surfels on
+// surfaces that emit light, patches of the sky, and directions in which all surfaces have the same light. Their indices run through the kinds in this order: VplConstants.
 
 #define VPL_PLACED 0u
 #define VPL_ESCAPED 1u  // the path has left the scene before this bounce
@@ -146,6 +146,10 @@ struct Surfel {
     float width2;      // m², squared width of its cell: the area of a square one
     uint map DEFAULT(0u);   // slot of its depth map, and SURFEL_MAP_OF_FOCUS; unused if it emits light
     uint seed DEFAULT(0u);  // of its random directions
+    float own DEFAULT(1.0F);  // share of `area` that is of its own item; the rest stands for other items
+    float pad0 DEFAULT(0.0F);
+    float pad1 DEFAULT(0.0F);
+    float pad2 DEFAULT(0.0F);
 };
 
 // What is traced for a surfel in a frame, of its form factors to others and its depth map. 0: nothing.
@@ -266,9 +270,9 @@ struct VplConstants {
     vec3 focus_centre;        // metres; SURFEL_MAP_OF_FOCUS: depth maps of surfels far from this sphere see it alone
     float focus_radius;       // metres; 0: there is no such sphere
     uint mapped;              // VPLs with depth maps; the records of groups of surfels follow theirs
+    uint first_direction;     // index of the first direction of light that is the same everywhere
+    uint mean_record;         // index of the LitSurfel that has this light: surfel_mean.comp
     uint pad0 DEFAULT(0u);
-    uint pad1 DEFAULT(0u);
-    uint pad2 DEFAULT(0u);
 };
 
 #ifndef __cplusplus  // C++ has it, with what its members mean, in engine/bvh/wide.hpp

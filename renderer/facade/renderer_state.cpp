@@ -267,11 +267,13 @@ Quality Renderer::State::quality_now(const World& world, std::vector<ViewRequest
 FrameContents Renderer::State::contents_now(const World& world) {
     const std::array revisions{world.revision<MeshInstance>(), world.revision<Environment>()};
     const Tick transforms = world.revision<Transform>();
-    const bool may_differ = revisions != contents_revisions_ ||
+    const std::uint32_t vpls = configuration_.vpls.count;
+    const bool may_differ = revisions != contents_revisions_ || vpls != contents_vpls_ ||
                             (contents_depend_on_transforms_ && transforms != contents_transforms_);
     if (!may_differ) return shape_.contents;
-    const WorldContents contents = contents_of(world, gpu_.scene_check());
+    const WorldContents contents = contents_of(world, gpu_.scene_check(), vpls);
     contents_revisions_ = revisions;
+    contents_vpls_ = vpls;
     contents_transforms_ = transforms;
     contents_depend_on_transforms_ = contents.depend_on_transforms;
     return contents.of_frame;

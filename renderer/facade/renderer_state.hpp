@@ -79,6 +79,7 @@ class CANDELA_PRIVATE Renderer::State {
     std::vector<Extension> extensions_;
     FrameShape shape_;                          // of the last frame
     std::array<Tick, 2> contents_revisions_{};  // of the components that determine the contents
+    std::uint32_t contents_vpls_ = 0;           // VplSettings::count then
     Tick contents_transforms_ = 0;              // revision of Transform then
     bool contents_depend_on_transforms_ = false;
     Quality quality_in_motion_;

@@ -79,6 +79,7 @@ struct WantedVpls {
     float bound = 1.0F;  ///< Configuration::geometry_bound
     ShownLight shown;
     bool emitters = false;    ///< some surfaces emit light
+    bool balanced = false;    ///< LitSurfels::balanced
     std::uint32_t count = 0;  ///< about how many there will be
 
     [[nodiscard]] bool any() const { return shown.emitted || shown.reflected; }
@@ -93,9 +94,12 @@ WantedVpls wanted_vpls(const Configuration& configuration, const FrameContents& 
                       .emitters = contents.emitters};
     if (has_emission) wanted.settings.placement = VplPlacement::surfels;
     if (!configuration.indirect) wanted.settings.bounces = 0;
+    wanted.balanced = contents.shares_items && wanted.settings.placement == VplPlacement::surfels &&
+                      configuration.visibility.method != VplVisibility::none;
     wanted.count = configuration.indirect ? wanted.settings.count : 0;
     wanted.count += contents.emitters ? emitting_surfels(wanted.settings.count) : 0;
     wanted.count += contents.sky ? sky_patches(wanted.settings.count) : 0;
+    wanted.count += wanted.balanced ? COVER_DIRECTIONS : 0;
     return wanted;
 }
 
@@ -115,7 +119,10 @@ SurfelInputs add_surfel_inputs(FrameGraph& graph, Gpu& gpu, const WantedVpls& wa
     SurfelInputs inputs{.motion = add_scene_motion(graph, lit.scene, *frame.epoch),
                         .foci = add_surfel_focus(graph, lit.scene, lit.tracing, *frame.requests,
                                                  wanted.settings.count, frame.update_clock),
-                        .sources = {.lights = lit.lights, .emitters = wanted.emitters, .sky = {}},
+                        .sources = {.lights = lit.lights,
+                                    .emitters = wanted.emitters,
+                                    .sky = {},
+                                    .balanced = wanted.balanced},
                         .update_clock = frame.update_clock};
     frame.focus_state = inputs.foci.state;
     if (lit.sky) inputs.sources.sky = add_sky_patches(graph, gpu, *lit.sky, refinement);
@@ -142,7 +149,7 @@ VplSet add_surfel_set(FrameGraph& graph, Gpu& gpu, const WantedVpls& wanted, con
     }
     const auto tasks = updates ? std::optional(updates->tasks) : std::nullopt;
     const SurfelVisibility visibility =
-        add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion, tasks);
+        add_surfel_visibility(graph, gpu, lit.tracing, surfels, inputs.motion, wanted.balanced, tasks);
     return {.vpls = add_surfel_light(graph, gpu, lit.tracing, visibility, inputs.sources,
                                      wanted.settings.bounces, wanted.shown),
             .mapped = {surfels.counts, MappedSurfels{surfels.surfels, surfels.maps, inputs.motion, tasks},
@@ -202,7 +209,7 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
                                                configuration.visibility)};
     if (configuration.visibility.method == VplVisibility::maps) {
         light.maps = add_vpl_maps(graph, gpu, lit.tracing, set.mapped, light.common);
-        if (contents.emitters || contents.sky) light.rays = lit.tracing;
+        if (contents.emitters || contents.sky || wanted.balanced) light.rays = lit.tracing;
     } else if (configuration.visibility.method == VplVisibility::rays) {
         light.rays = lit.tracing;
     }
@@ -215,7 +222,24 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
 
 }  // namespace
 
-WorldContents contents_of(const World& world, SceneCheck& check) {
+namespace {
+
+/// Objects with surfaces that only reflect light.
+std::size_t reflecting_items(const World& world, SceneCheck& check) {
+    const auto reflects = [](const Primitive& primitive) {
+        return primitive.material->alpha_mode != AlphaMode::blend && !emits(*primitive.material);
+    };
+    std::size_t count = 0;
+    for (const auto& [entity, instance] : world.view<MeshInstance>()) {
+        const bool is_there = check.accepts(world, entity, instance);
+        if (is_there && std::ranges::any_of(instance.mesh->primitives, reflects)) ++count;
+    }
+    return count;
+}
+
+}  // namespace
+
+WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t vpls) {
     WorldContents contents;
     WorldMatrices world_matrices(world);
     const auto is_placed = [&](Entity entity) {
@@ -233,6 +257,7 @@ WorldContents contents_of(const World& world, SceneCheck& check) {
         of_frame.emitters |= emitter;
         of_frame.glossy |= glossy;
     }
+    of_frame.shares_items = shares_items(reflecting_items(world, check), vpls);
     const Environment environment = accepted_environment(world, check);
     of_frame.sky = environment.radiance != glm::vec3(0.0F);
     return contents;

@@ -64,9 +64,10 @@ struct ViewShape {
 
 /// What a world contains, as far as the passes of its frames depend on it.
 struct FrameContents {
-    bool emitters = false;  ///< surfaces that emit light
-    bool glossy = false;    ///< surfaces that may be glossy: is_glossy
-    bool sky = false;       ///< an Environment that is not black
+    bool emitters = false;      ///< surfaces that emit light
+    bool glossy = false;        ///< surfaces that may be glossy: is_glossy
+    bool sky = false;           ///< an Environment that is not black
+    bool shares_items = false;  ///< there are so many objects that a surfel stands for several
     bool operator==(const FrameContents&) const = default;
 };
 
@@ -74,8 +75,8 @@ struct WorldContents {
     FrameContents of_frame;
     bool depend_on_transforms = false;  ///< whether `of_frame` may be another after a Transform has changed
 };
-/// What the world contains of what `check` accepts.
-[[nodiscard]] WorldContents contents_of(const World& world, SceneCheck& check);
+/// What the world contains of what `check` accepts. `vpls`: VplSettings::count.
+[[nodiscard]] WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t vpls);
 
 /// What the passes of a frame depend on.
 struct FrameShape {

@@ -166,6 +166,23 @@ vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
 
 #endif
 
+#ifdef BALANCED
+
+#include "sampling.glsl"
+
+// π times the irradiance from a direction, if a surface is there: theory.md, "Shared items". The directions are those
+// that follow the cosine. In this order the even ones (vpl_fill.comp), and the share of each class of pixels, are spread
+// over the hemisphere.
+vec3 irradiance_from_direction(uint direction, Surface surface) {
+    uint place = direction / 2u + direction % 2u * (COVER_DIRECTIONS / 2u);
+    vec3 towards = cosine_direction(shading_normal(surface), sample_2d(place, 0u, 0u));
+    vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
+    if (!is_surface(closest_hit(origin, towards, 0.0, 1.0 / 0.0), towards)) return vec3(0.0);
+    return PI / float(COVER_DIRECTIONS) * lit_surfels[vpl_constants.mean_record].flux;
+}
+
+#endif
+
 // Adds π times the irradiance from the VPL of that index, or with GROUPS from a group of surfels: the kinds follow one
 // another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the
 // frame of its map made, once.
@@ -180,6 +197,13 @@ void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFA
 #endif
         return;
     }
+#ifdef BALANCED
+    if (index >= vpl_constants.first_direction) {
+        uint direction = index - vpl_constants.first_direction;
+        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_direction(direction, surfaces[s]);
+        return;
+    }
+#endif
 #ifdef EMITTERS
     if (index < vpl_constants.first_sky_patch) {
         LitEmitter emitter = lit_emitters[index - vpl_constants.first_emitter];

@@ -143,3 +143,10 @@ Hit closest_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
 bool any_hit(vec3 origin, vec3 direction, float t_min, float t_max) {
     return trace(origin, direction, t_min, t_max, true).triangle != NO_TRIANGLE;
 }
+
+// Whether the ray has hit a surface from a side that reflects.
+bool is_surface(Hit hit, vec3 direction) {
+    if (hit.triangle == NO_TRIANGLE) return false;
+    TraceTriangle triangle = triangles[hit.triangle];
+    return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
+}

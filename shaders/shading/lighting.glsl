@@ -101,10 +101,12 @@ void add_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflec
 
 layout(binding = UNIT_INDIRECT) uniform sampler2D indirect_irradiance;
 
-// Adds the light of the VPLs, as vpl_gather.comp and later passes computed it: π times the irradiance.
+// Adds the light of the VPLs, as vpl_gather.comp and later passes computed it: π times the irradiance. A sum of VPLs some
+// of which are negative may be so, too.
 void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
     for (int s = 0; s < SURFACES; ++s) {
-        add_from_all_sides(reflected[s], texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb / PI, surfaces[s]);
+        vec3 gathered = max(texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb, 0.0);
+        add_from_all_sides(reflected[s], gathered / PI, surfaces[s]);
     }
 }
 
@@ -124,7 +126,7 @@ void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Refl
         add_vpl(i, surfaces, irradiance);
     }
     for (int s = 0; s < SURFACES; ++s) {
-        add_from_all_sides(reflected[s], irradiance[s] * float(vpl_stride) / PI, surfaces[s]);
+        add_from_all_sides(reflected[s], max(irradiance[s], 0.0) * float(vpl_stride) / PI, surfaces[s]);
     }
 }
 

@@ -15,12 +15,6 @@ layout(std430, binding = BINDING_COVER) writeonly restrict buffer Cover { uint c
 
 uniform float ray_offset;  // metres above the surface, where rays start
 
-bool reflects(Hit hit, vec3 direction) {
-    if (hit.triangle == NO_TRIANGLE) return false;
-    TraceTriangle triangle = triangles[hit.triangle];
-    return is_double_sided(triangle.material) || dot(cross(triangle.edge_ab, triangle.edge_ac), direction) < 0.0;
-}
-
 vec3 ray_direction(Surfel surfel, uint i) {
     return cosine_direction(surfel.normal, sample_2d(gl_LocalInvocationID.x * COVER_RAYS + i, 0u, surfel.seed));
 }
@@ -44,7 +38,7 @@ void main() {
     for (uint i = 0u; i < rays; ++i) {
         vec3 direction = ray_direction(surfel, i);
         Hit hit = closest_hit(surfel.position + ray_offset * surfel.normal, direction, 0.0, 1.0 / 0.0);
-        if (reflects(hit, direction)) ++hits;
+        if (is_surface(hit, direction)) ++hits;
     }
     cover[id * COVER_PARTS + gl_LocalInvocationID.x] = hits;
 }

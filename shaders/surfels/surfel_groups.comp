@@ -31,7 +31,7 @@ void main() {
     float second = 0.0;
     for (uint i = group.first; i < group.first + group.count; ++i) {
         LitSurfel surfel = lit_surfels[i];
-        float w = dot(surfel.flux, vec3(1.0));
+        float w = dot(abs(surfel.flux), vec3(1.0));  // less than 0: theory.md, "Shared items"
         vec3 off = surfel.centre - sum.position;
         sum.flux += surfel.flux;
         sum.area += surfel.area;

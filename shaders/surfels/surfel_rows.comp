@@ -13,7 +13,7 @@ layout(std430, binding = BINDING_SURFEL_ROWS) restrict buffer Rows { vec2 rows[]
 
 uniform uint round;
 
-const float MOST_SCALE = 2.0;  // largest product of the two scales of a factor, over column_stride
+uniform float most_scale;  // largest product of the two scales of a factor, over column_stride
 
 // Scale of a surfel after the previous round.
 float last_scale(uint surfel) {
@@ -32,7 +32,7 @@ void main() {
         vec2 factors = unpackHalf2x16(form_factors[form_factors_at(id, i)]);
         sum += dot(factors, vec2(last_scale(surfel_of(id, 2u * i)), last_scale(surfel_of(id, 2u * i + 1u))));
     }
-    float most = sqrt(MOST_SCALE * float(column_stride));
+    float most = sqrt(most_scale * float(column_stride));
     float scale = sum > 0.0 ? min(sqrt(last_scale(id) * covered / sum), most) : 0.0;
     rows[(round % 2u) * surfel_count + id] = vec2(scale, 1.0 - covered);
 }

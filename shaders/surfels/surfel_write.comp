@@ -1,12 +1,13 @@
 // Turns surfels into VPLs: each has the total flux that its cell emits and reflects, and the position and width of the
 // part of the cell that it comes from. Also writes the flux of each cell point. With EMITTERS, the last surfels are on
-// surfaces that emit light. One invocation per surfel.
+// surfaces that emit light. With BALANCED, surfels that stand for several items have the light of their own one only, and
+// all have only what is more than the mean of the others: theory.md, "Shared items". One invocation per surfel.
 #include "surfels/surfel.glsl"
 
 layout(local_size_x = SURFEL_GROUP) in;
 
 layout(std430, binding = BINDING_SURFELS) readonly restrict buffer Surfels { Surfel surfels[]; };
-layout(std430, binding = BINDING_LIT_SURFELS) writeonly restrict buffer LitSurfels { LitSurfel lit_surfels[]; };
+layout(std430, binding = BINDING_LIT_SURFELS) restrict buffer LitSurfels { LitSurfel lit_surfels[]; };
 layout(std430, binding = BINDING_DIRECT_POINTS) readonly restrict buffer DirectPoints { DirectPoint direct_points[]; };
 layout(std430, binding = BINDING_CELL_POINTS) readonly restrict buffer Points { CellPoint cell_points[]; };
 layout(std430, binding = BINDING_LIT_POINTS) writeonly restrict buffer LitPoints { LitPoint lit_points[]; };
@@ -14,14 +15,21 @@ layout(std430, binding = BINDING_CELL_LIGHT) readonly restrict buffer Cells { Ce
 
 uniform float emitted_share;    // 1 if the VPLs show the light that surfaces emit, else 0
 uniform float reflected_share;  // and the light that they reflect
+uniform uint emitting_count;    // surfels that emit light
 
-void write_points(Surfel surfel, vec3 indirect) {
+// What of a cell is shown.
+struct Shown {
+    float own;  // share of its area
+    vec3 mean;  // radiosity that is taken off
+};
+
+void write_points(Surfel surfel, vec3 indirect, Shown shown) {
     for (uint i = surfel.first_point; i < surfel.first_point + surfel.point_count; ++i) {
         CellPoint point = cell_points[i];
         DirectPoint direct = direct_points[i];
         vec3 reflected = direct.albedo * (direct.arriving + direct.area * indirect);
-        vec3 flux = emitted_share * direct.emitted + reflected_share * reflected;
-        lit_points[i] = LitPoint(point.position, point.area, point.normal, 0.0, flux, 0.0);
+        vec3 flux = emitted_share * direct.emitted + reflected_share * reflected - direct.area * shown.mean;
+        lit_points[i] = LitPoint(point.position, shown.own * point.area, point.normal, 0.0, shown.own * flux, 0.0);
     }
 }
 
@@ -48,11 +56,24 @@ LitSurfel lit_surfel(Surfel surfel, CellLight cell, vec3 spread, vec3 flux) {
 
 layout(std430, binding = BINDING_LIT_EMITTERS) writeonly restrict buffer LitEmitters { LitEmitter lit_emitters[]; };
 
-uniform uint emitting_count;
-
 LitEmitter lit_emitter(Surfel surfel, vec3 flux) {
     return LitEmitter(surfel.position, surfel.first_point, surfel.normal, surfel.point_count, flux, surfel.area);
 }
+
+#endif
+
+#ifdef BALANCED
+
+uniform uint mean_record;  // of surfel_mean.comp
+
+Shown shown_of(uint id) {
+    if (id >= surfel_count - emitting_count) return Shown(1.0, vec3(0.0));
+    return Shown(surfels[id].own, lit_surfels[mean_record].flux);
+}
+
+#else
+
+Shown shown_of(uint id) { return Shown(1.0, vec3(0.0)); }
 
 #endif
 
@@ -61,7 +82,8 @@ void main() {
     if (id >= surfel_count) return;
     Surfel surfel = surfels[id];
     CellLight cell = cells[id];
-    write_points(surfel, cell.indirect);
+    Shown shown = shown_of(id);
+    write_points(surfel, cell.indirect, shown);
     vec3 spread = cell.area * cell.albedo * cell.indirect;
     vec3 flux = emitted_share * cell.emitted + reflected_share * (cell.direct - cell.emitted + spread);
 #ifdef EMITTERS
@@ -71,5 +93,8 @@ void main() {
         return;
     }
 #endif
-    lit_surfels[id] = lit_surfel(surfel, cell, spread, flux);
+    surfel.area *= shown.own;
+    surfel.width2 *= shown.own;
+    cell.radius2 *= shown.own;
+    lit_surfels[id] = lit_surfel(surfel, cell, spread, shown.own * (flux - cell.area * shown.mean));
 }

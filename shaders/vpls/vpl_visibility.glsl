@@ -8,7 +8,8 @@
 #include "types.glsl"
 #include "vpls/vpl_constants.glsl"
 
-#if defined(VPL_VISIBILITY_RAYS) || (defined(VPL_VISIBILITY_MAPS) && (defined(EMITTERS) || defined(SKY)))
+#if defined(VPL_VISIBILITY_RAYS) || \
+    (defined(VPL_VISIBILITY_MAPS) && (defined(EMITTERS) || defined(SKY) || defined(BALANCED)))
 
 float visibility_of_sky(vec3 direction, Surface surface) {
     vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);

@@ -198,6 +198,7 @@ TEST_SUITE("surfels: placement") {
         for (int i = 0; i < sets; ++i) {
             const SurfelSet set = placed(many, {.reflecting = 200}, test_seed() + static_cast<unsigned>(i));
             CHECK(set.surfels.size() == 200);
+            for (const gpu::Surfel& surfel : set.surfels) CHECK(surfel.own * surfel.area <= 4.001F);
             mean += total_area(set) / sets;
         }
         // Some fifty items are chosen for each set, each at random: the mean of 32 sets is off by about

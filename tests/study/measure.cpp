@@ -353,7 +353,7 @@ int measure(const MeasureStudy& study) {
     Truth truth = truth_of(reference);
     Log log({});
     SceneCheck check(log, false);
-    const FrameContents contents = contents_of(scene.world, check).of_frame;
+    const FrameContents contents = contents_of(scene.world, check, 0).of_frame;
     truth.emission = contents.emitters || contents.sky;
     const auto context = HeadlessContext::create(study.context);
     context->make_current();

@@ -40,6 +40,7 @@ std::vector<std::string> vpl_light_variant(const VplLight& light) {
         if (lit->emitters) words.emplace_back("EMITTERS");
         if (lit->sky) words.emplace_back("SKY");
         if (lit->group_size > 1) words.emplace_back("GROUPS");
+        if (lit->balanced) words.emplace_back("BALANCED");
     }
     if (light.maps) words.emplace_back("VPL_VISIBILITY_MAPS");
     if (light.rays && !light.maps) words.emplace_back("VPL_VISIBILITY_RAYS");

@@ -134,8 +134,24 @@ DirectLight add_direct_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing
 
 /// Names to define in surfel_write.comp.
 std::vector<std::string> writer_variant(const SurfelSources& sources) {
-    return sources.emitters ? std::vector<std::string>{"EMITTERS"} : std::vector<std::string>{};
+    std::vector<std::string> words;
+    if (sources.emitters) words.emplace_back("EMITTERS");
+    if (sources.balanced) words.emplace_back("BALANCED");
+    return words;
 }
+
+/// The step that finds the mean light of items without surfels.
+struct MeanStep {
+    const gl::Program* program = nullptr;  // null: all items have some
+
+    void run(ComputeSteps& steps, const VplCounts& counts, ShownLight shown) const {
+        if (program == nullptr) return;
+        steps.run(*program, {},
+                  {{"reflecting_count", counts.surfels},
+                   {"mean_record", counts.lit_surfels()},
+                   {"reflected_share", shown.reflected ? 1.0F : 0.0F}});
+    }
+};
 
 /// The step that sums up groups of surfels.
 struct GroupStep {
@@ -163,7 +179,8 @@ LitSurfels write_lit_surfels(FrameGraph& graph, Pass& pass, const Surfels& surfe
                    .points = pass.write(growing_buffer<gpu::LitPoint>(graph, "lit points"),
                                         {Usage::storage, BINDING_LIT_POINTS}),
                    .sky = shown.emitted ? sources.sky : std::nullopt,
-                   .group_size = surfels.group_size};
+                   .group_size = surfels.group_size,
+                   .balanced = sources.balanced};
     if (sources.emitters) {
         lit.emitters = pass.write(growing_buffer<gpu::LitEmitter>(graph, "lit emitters"),
                                   {Usage::storage, BINDING_LIT_EMITTERS});
@@ -199,6 +216,7 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
             .extrapolate = gpu.program({"surfels/surfel_extrapolate.comp"}),
             .account = gpu.program({"surfels/surfel_account.comp"}),
             .writer = gpu.program({"surfels/surfel_write.comp"}, writer_variant(sources))};
+        const MeanStep mean_step{sources.balanced ? &gpu.program({"surfels/surfel_mean.comp"}) : nullptr};
         const GroupStep group_step = read_groups(gpu, pass, surfels);
         [[maybe_unused]] const auto lit_cells =
             pass.write(direct.cells, {Usage::storage, BINDING_CELL_LIGHT});
@@ -212,18 +230,21 @@ Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing, const
         pass.run([=, &gpu, sky = sources.sky](Execution& run) {
             VplCounts counts = run.value(surfels.counts);
             counts.sky_patches = sky ? run.value(sky->count) : 0;
+            counts.directions = lit.balanced && counts.surfels > 0 ? COVER_DIRECTIONS : 0;
             run.set(out.counts, counts);
             const auto [count, points] = numbers_of(run, surfels);
             run.reserve(bounced, 3 * count);
-            run.reserve(lit.surfels, count + counts.groups);
+            run.reserve(lit.surfels, count + counts.groups + (lit.balanced ? 1 : 0));
             run.reserve(lit.points, points);
             if (lit.emitters) run.reserve(*lit.emitters, counts.emitters);
             if (count == 0) return;
             ComputeSteps steps(gpu);
             gather_bounces(steps, programs, count, bounces);
-            steps.run(programs.writer, {groups(count, SURFEL_GROUP)},
-                      count_uniforms(count) + share_uniforms(shown) +
-                          gl::Uniforms{{"emitting_count", counts.emitters}});
+            mean_step.run(steps, counts, shown);
+            steps.run(
+                programs.writer, {groups(count, SURFEL_GROUP)},
+                count_uniforms(count) + share_uniforms(shown) +
+                    gl::Uniforms{{"emitting_count", counts.emitters}, {"mean_record", counts.lit_surfels()}});
             group_step.run(steps, counts);
         });
         return out;

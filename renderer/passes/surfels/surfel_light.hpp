@@ -24,6 +24,7 @@ struct SurfelSources {
     SceneLights lights;
     bool emitters = false;          ///< some surfaces emit light
     std::optional<SkyPatches> sky;  ///< none: the world has no sky
+    bool balanced = false;          ///< LitSurfels::balanced
 };
 
 /// Adds two nodes. `surfel-light` (compute): light of the real lights at each point of the surfels' cells,
@@ -33,7 +34,8 @@ struct SurfelSources {
 /// radiosity equation; Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", 1984), up
 /// to `bounces` or until a bounce adds less than 0.02 % to the light of each; then they are written as VPLs.
 /// With `all_bounces`, light of the bounces to come is added that the last two foretell (shaders/theory.md,
-/// "Bounces to come"). They depend on surfels, visibility, lights, sky and BVH. Returns LitSurfels.
+/// "Bounces to come"). If `sources.balanced`, the light of the VPLs is that above a mean, which is written
+/// behind them ("Shared items"). They depend on surfels, visibility, lights, sky and BVH. Returns LitSurfels.
 [[nodiscard]] Vpls add_surfel_light(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                     const SurfelVisibility& visibility, const SurfelSources& sources,
                                     std::uint32_t bounces, ShownLight shown);

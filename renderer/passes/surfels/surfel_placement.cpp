@@ -20,9 +20,6 @@ enum CellUse : std::uint64_t { use_weight = 8, use_item, use_order, use_scale };
 /// its points.
 constexpr std::uint32_t most_patches_a_surfel = 256;
 
-/// So many items have cells of their own in any case.
-constexpr std::uint32_t few_items = 16;
-
 /// Interpolated between the corners, in sRGB: gpu::CellPoint::colour.
 std::uint32_t colour_at(const gpu::TraceTriangle& triangle, glm::vec2 b) {
     return glm::packUnorm4x8((1.0F - b.x - b.y) * glm::unpackUnorm4x8(triangle.colour_a) +
@@ -155,7 +152,7 @@ std::vector<SurfelPlacement::Cell> SurfelPlacement::cells_on(const std::vector<R
                                                              std::span<const std::vector<Focus>> foci) {
     if (count == 0 || roots.empty()) return {};
     std::vector<Cell> cells;
-    if (roots.size() > std::max(count / 4, few_items)) {
+    if (shares_items(roots.size(), count)) {
         cells = share_items(roots, count, foci);
     } else {
         for (const Root& root : roots) cells.push_back({root.patch, root.item});
@@ -197,7 +194,8 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
                            .point_count = static_cast<std::uint32_t>(parts.size()),
                            .area = area,
                            // The variance of a square's positions is a sixth of its area.
-                           .width2 = std::max(area, 6.0F * patch.spread2)});
+                           .width2 = std::max(area, 6.0F * patch.spread2),
+                           .own = static_cast<float>(1.0 / cell.scale)});
     set.surfel_places.push_back(set.point_places[static_cast<std::size_t>(middle - set.points.begin())]);
     set.item_of.push_back(cell.item);
     set.patches.push_back(patch.id);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -48,6 +49,12 @@ inline constexpr std::uint32_t points_an_emitter = 64;
 /// maps, and each pixel traces rays to its share of them: see max_vpls_per_invocation.
 [[nodiscard]] constexpr std::uint32_t emitting_surfels(std::uint32_t count) {
     return std::clamp(count / 8, 64U, 128U);
+}
+
+/// Whether so many items are too many for `count` surfels, so that one stands for several.
+[[nodiscard]] constexpr bool shares_items(std::size_t items, std::uint32_t count) {
+    constexpr std::uint32_t few_items = 16;  // they have cells of their own in any case
+    return items > std::max(count / 4, few_items);
 }
 
 /// How many surfels are placed at most on surfaces that do not emit light, and on those that do.

@@ -42,6 +42,7 @@ struct VisibilityNode {
     ChangedBoxes changed;
     ValueHandle<std::vector<std::uint64_t>> known_ids;  // Surfels::ids, or with planned tasks Surfels::cells
     std::optional<ValueHandle<SurfelTasks>> planned;
+    float most_scale;  // of a form factor: surfel_rows.comp
     VisibilityPrograms programs;
 };
 
@@ -206,7 +207,8 @@ void find_visibility(const Gpu& gpu, Execution& run, const VisibilityNode& node,
     find_form_factors(steps, programs.factors, count, outdated, traced);
     steps.run(programs.cover, {std::min(count, most_a_line), groups(count, most_a_line)}, traced);
     for (std::uint32_t round = 0; round <= last_round; ++round) {
-        steps.run(programs.rows, {surfel_groups}, common + gl::Uniforms{{"round", round}});
+        steps.run(programs.rows, {surfel_groups},
+                  common + gl::Uniforms{{"round", round}, {"most_scale", node.most_scale}});
     }
 }
 
@@ -247,7 +249,7 @@ KeptSurfels kept_surfels(std::span<const std::uint64_t> last_ids, std::span<cons
 
 SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                        const Surfels& surfels, ValueHandle<SceneMotion> motion,
-                                       std::optional<ValueHandle<SurfelTasks>> tasks) {
+                                       bool shares_items, std::optional<ValueHandle<SurfelTasks>> tasks) {
     return graph.add("surfel-visibility", [&](Pass& pass) {
         pass.read(surfels.counts);
         pass.read(tasks ? surfels.cells : surfels.ids);
@@ -280,6 +282,7 @@ SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracin
             .changed = ChangedBoxes(graph, pass, "changed boxes of visibility"),
             .known_ids = pass.update(graph.value<std::vector<std::uint64_t>>("ids of known visibility")),
             .planned = tasks,
+            .most_scale = shares_items ? 1e4F : 2.0F,
             .programs = {.kept = gpu.program({"surfels/surfel_kept.comp"}),
                          .factors = gpu.program({"surfels/surfel_form_factors.comp"}),
                          .cover = gpu.program({"surfels/surfel_cover.comp"}),

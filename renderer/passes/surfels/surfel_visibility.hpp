@@ -52,13 +52,15 @@ struct KeptSurfels {
 /// Adds node `surfel-visibility` (compute). It finds the form factors between surfels, with one ray for each
 /// pair of surfels that face each other; the form factor is that of a disc (shaders/vpls/disc.glsl). Factors
 /// are then scaled, so that those of a surfel add up to the share of its hemisphere in which rays hit
-/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/surfels/surfel_rows.comp). Between surfels that
+/// reflecting surfaces (Sinkhorn and Knopp, 1967: shaders/surfels/surfel_rows.comp); without bounds if
+/// `shares_items`: a surfel stands for several items. Between surfels that
 /// stay (Surfels::ids), and above each of them, only rays that pass through the changed boxes are traced
 /// again; with more than MOST_COLUMNS surfels only if all that stay keep their indices. With `tasks`
 /// (add_surfel_updates), only rays of the surfels whose turn it is. Depends on surfels, BVH, motion and
 /// tasks, and on its own last result.
 [[nodiscard]] SurfelVisibility add_surfel_visibility(FrameGraph& graph, Gpu& gpu, const Tracing& tracing,
                                                      const Surfels& surfels, ValueHandle<SceneMotion> motion,
+                                                     bool shares_items = false,
                                                      std::optional<ValueHandle<SurfelTasks>> tasks = {});
 
 }  // namespace candela

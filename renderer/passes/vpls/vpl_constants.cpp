@@ -34,7 +34,9 @@ gpu::VplConstants constants_of(const VplCounts& counts, const SceneMetrics& metr
             .map_near = atlas.near,
             .focus_centre = atlas.focus.centre,
             .focus_radius = atlas.focus.radius,
-            .mapped = counts.mapped()};
+            .mapped = counts.mapped(),
+            .first_direction = counts.sources() - counts.directions,
+            .mean_record = counts.lit_surfels()};
 }
 
 }  // namespace
