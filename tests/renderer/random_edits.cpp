@@ -19,7 +19,7 @@ Entity last_mesh(const World& world) {
     return last;
 }
 
-/// A material with an image of random texels, some of them holes.
+/// A material with an image of random texels, some of them holes; some are glossy.
 std::shared_ptr<const Material> textured(std::uint32_t texture_size, std::uint32_t seed) {
     std::mt19937 random(seed);
     Image image{.width = texture_size, .height = texture_size, .texels = {}};
@@ -30,6 +30,8 @@ std::shared_ptr<const Material> textured(std::uint32_t texture_size, std::uint32
     Material material;
     material.base_colour_texture = std::make_shared<const Image>(std::move(image));
     material.double_sided = true;
+    material.roughness = 0.3F;
+    material.metalness = seed % 3 == 0 ? 0.5F : 0.0F;
     material.alpha_mode = seed % 4 == 0 ? AlphaMode::mask : AlphaMode::opaque;
     return std::make_shared<const Material>(std::move(material));
 }

@@ -131,6 +131,10 @@ glm::vec4 mirror_of(const Material& material) {
            glm::vec4(glm::min(ratio * ratio * material.specular_colour, glm::vec3(1.0F)), 1.0F);
 }
 
+float largest_of(const glm::vec3& v) {
+    return std::max({v.r, v.g, v.b});
+}
+
 /// A Lambertian surface that reflects as much light as a glossy one, of light from all sides: its albedo is
 /// `share` times the base colour plus `mirror`.
 struct TracedReflection {
@@ -144,9 +148,12 @@ TracedReflection traced_reflection(const Material& material, float metalness, fl
     const glm::vec4 mirror = mirror_of(material);
     const glm::vec3 facing(mirror);
     const glm::vec3 fresnel = glm::mix(facing, glm::vec3(mirror.a), shares.z);
-    const float diffuse = (1.0F - metalness) * (1.0F - std::max({fresnel.r, fresnel.g, fresnel.b}));
-    return {(1.0F - metalness) * (shares.x * facing + shares.y * mirror.a) + metalness * shares.y,
-            diffuse + metalness * shares.x};
+    const glm::vec3 mirrored = shares.x * facing + shares.y * mirror.a;
+    // At most what is not mirrored: by the specification's formula, smooth white surfaces would reflect more
+    // light than they receive.
+    const float diffuse = 1.0F - largest_of(glm::max(fresnel, mirrored));
+    return {(1.0F - metalness) * mirrored + metalness * shares.y,
+            (1.0F - metalness) * diffuse + metalness * shares.x};
 }
 
 }  // namespace
