@@ -52,8 +52,8 @@ Scene wall_on_tiles(int side) {
     const float width = 40.0F / static_cast<float>(side);
     const auto tile = square(0.5F * width, diffuse(glm::vec3(0.6F)));
     for (int i = 0; i < side * side; ++i) {
-        const glm::vec3 corner(static_cast<float>(i % side), 0.0F, static_cast<float>(i / side));
-        add(scene.world, at(width * (corner + 0.5F) - glm::vec3(20.0F, 0.0F, 20.0F)), MeshInstance{tile});
+        const glm::vec2 middle = width * (glm::vec2(i % side, i / side) + 0.5F) - 20.0F;
+        add(scene.world, at({middle.x, 0.0F, middle.y}), MeshInstance{tile});
     }
     const Transform upright{.translation = {0.0F, 1.0F, 0.0F},
                             .rotation = glm::angleAxis(glm::half_pi<float>(), glm::vec3(1.0F, 0.0F, 0.0F)),
