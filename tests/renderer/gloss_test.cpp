@@ -233,12 +233,16 @@ TEST_SUITE("gloss") {
         for (std::uint32_t y = 0; y < 48; ++y) {
             for (std::uint32_t x = 0; x < 48; ++x) {
                 const auto expected = static_cast<double>(behind.at(47 - x, y).g);
+                // Where nothing is seen, the light has the faint edge of its highlight.
+                if (expected < 0.01) continue;
                 errors.push_back(std::abs(static_cast<double>(shown.at(x, y).g) - expected) /
                                  (expected + 0.001));
             }
         }
+        REQUIRE(errors.size() > 500);
         std::ranges::sort(errors);
-        // Reflectance 1 is exact. At edges, rays and triangles may find different surfaces.
+        // The reflectance is 1 up to the table of shares, 1e-3, and a ray is off by 1e-5 of its length. At
+        // edges, rays and triangles may find different surfaces.
         CHECK(errors[errors.size() * 3 / 4] < 0.005);
     }
 }
