@@ -175,7 +175,8 @@ void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneDa
     parts.depth = shaded.surfaces.depth;
 }
 
-/// The radiance that mirrored surfaces reflect. None: only sources are shown in mirrors.
+/// The radiance that mirrored surfaces reflect. None: only sources are shown in mirrors. `gathers`: as the
+/// view gathers the light of VPLs.
 std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared,
                                             const ViewData& view, const ViewHandles& out,
                                             const Surfaces& mirrored, bool gathers) {
@@ -197,14 +198,15 @@ std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const S
 
 /// What glossy surfaces show in the mirror direction.
 void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewData& view,
-                  const ViewHandles& out, const Surfaces& surfaces, std::optional<TextureHandle> sky_picture,
-                  bool gathers, ViewFrame& parts) {
+                  const ViewHandles& out, std::optional<TextureHandle> sky_picture, ViewFrame& parts) {
     graph.append_to_names(" (mirrored)" + view_ending(parts.index));
     MirroredSources sources{.emitters = shows_emitters(shared), .sky_picture = sky_picture};
     if (sky_picture) sources.environment = shared.lit.sky->environment;
+    const Surfaces surfaces = surfaces_of(parts);
     const MirroredSurfaces mirrored =
         add_mirror_rays(graph, gpu, surfaces, shared.lit.tracing, sources, view, out.averaged);
-    const auto reflected = shade_mirrored(graph, gpu, shared, view, out, mirrored.surfaces, gathers);
+    const auto reflected =
+        shade_mirrored(graph, gpu, shared, view, out, mirrored.surfaces, parts.indirect.has_value());
     parts.radiance = add_mirror_resolve(graph, gpu, surfaces, mirrored, reflected, view, *parts.radiance);
     graph.append_to_names(view_ending(parts.index));
 }
@@ -268,7 +270,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     if (!out.host && shared.lit.sky && shows_sources(configuration.show)) {
         sky_picture = add_sky_picture(graph, gpu, *shared.lit.sky);
     }
-    if (glossy) add_mirrored(graph, gpu, shared, view, out, found, sky_picture, gathers, parts);
+    if (glossy) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);
     if (!out.host) add_sources(graph, gpu, shared, seen, view, sky_picture, parts);
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {

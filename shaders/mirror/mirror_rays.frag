@@ -7,10 +7,10 @@
 #include "sky/sky_picture.glsl"
 #endif
 
-uniform uint ray_round;        // of rays through the same pixels, from 0
+uniform uint ray_round;    // of rays through the same pixels, from 0
 uniform float ray_offset;  // metres above the surface, where rays start
 
-layout(location = 0) out vec4 width_and_position;    // metres: of a pixel there, 0: no surface
+layout(location = 0) out vec4 width_and_position;    // metres: of a pixel there, 0 without a surface; position
 layout(location = 1) out vec4 normal_and_direction;  // octahedral; from the surface towards the glossy one
 layout(location = 2) out vec4 albedo;
 layout(location = 3) out vec4 radiance_and_density;  // of surface or sky; of the direction, 1/sr, 0: no ray
