@@ -86,6 +86,14 @@ struct Material {
     float specular = 0.0F;
     glm::vec3 specular_colour{1.0F};  ///< linear, >= 0
     float ior = 1.5F;  ///< index of refraction, >= 1; 0: reflects all light (KHR_materials_ior)
+    /// Normals in the space of the vertices' tangents, from 0 to 1 for -1 to 1; linear, null: none. They turn
+    /// what the surface reflects, but cast no shadows. x and y are multiplied by `normal_scale`.
+    std::shared_ptr<const Image> normal_texture;
+    float normal_scale = 1.0F;
+    /// The red channel is the share of indirect light that reaches the surface; linear, null: 1. Only
+    /// `occlusion_strength` of what is missing is taken away, in [0, 1].
+    std::shared_ptr<const Image> occlusion_texture;
+    float occlusion_strength = 1.0F;
     /// Radiance that the surface emits, linear, in cd/m² (or W/(sr m²), like the lights' units), each channel
     /// >= 0 and finite: from the front, and from the back if it is double-sided. Multiplied by the texture.
     glm::vec3 emissive{0.0F};
@@ -105,13 +113,21 @@ struct Material {
     return material.metalness > 0.0F || material.specular > 0.0F;
 }
 
+/// Whether the material has images of details of its surfaces' shape.
+[[nodiscard]] inline bool is_bumpy(const Material& material) {
+    return material.normal_texture != nullptr || material.occlusion_texture != nullptr;
+}
+
 /// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.
-/// `colour` multiplies the material's base colour and alpha; linear, 65535 is 1.
+/// `colour` multiplies the material's base colour and alpha; linear, 65535 is 1. `tangent` is the direction
+/// of increasing u, as a unit vector, and w is 1 or -1: w cross(normal, tangent) is the direction of
+/// decreasing v. 32767 is 1. Only normal textures need it; zero means that there is none.
 struct Vertex {
     glm::vec3 position;
     glm::vec3 normal;
     glm::vec2 uv;
     glm::u16vec4 colour{65535};
+    glm::i16vec4 tangent{0};
     bool operator==(const Vertex&) const = default;
 };
 
@@ -139,6 +155,12 @@ struct Mesh {
 [[nodiscard]] inline bool is_glossy(const Mesh& mesh) {
     return std::ranges::any_of(mesh.primitives,
                                [](const Primitive& primitive) { return is_glossy(*primitive.material); });
+}
+
+/// Whether surfaces of the mesh may be bumpy.
+[[nodiscard]] inline bool is_bumpy(const Mesh& mesh) {
+    return std::ranges::any_of(mesh.primitives,
+                               [](const Primitive& primitive) { return is_bumpy(*primitive.material); });
 }
 
 /// A mesh placed by the entity's Transform. `mesh` is never null.
