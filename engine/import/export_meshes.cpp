@@ -20,7 +20,7 @@ namespace {
 
 // Vertices are written as memory holds them, interleaved, so that every bit is kept.
 static_assert(offsetof(Vertex, normal) == 12 && offsetof(Vertex, uv) == 24 && offsetof(Vertex, colour) == 32);
-static_assert(sizeof(Vertex) == 40);
+static_assert(sizeof(Vertex) == 48);
 
 struct Attribute {
     const char* name;
