@@ -70,12 +70,17 @@
 #define UNIT_VPL_MAPS 7
 #define UNIT_MEAN 8
 #define UNIT_INDIRECT 9
-#define UNIT_LAST 9
+#define UNIT_BUMPS 10
+#define UNIT_LAST 10
 // Passes that draw meshes read no G-buffer.
 #define UNIT_EMISSION UNIT_ALBEDO
 #define UNIT_SKY UNIT_INDIRECT
 #define UNIT_METAL_ROUGHNESS UNIT_NORMAL
+#define UNIT_NORMAL_MAP UNIT_DEPTH
+#define UNIT_OCCLUSION UNIT_RADIANCE
 #define UNIT_MIRROR UNIT_BASE_COLOUR
+// Passes that read the direction of gathered light evaluate no VPLs.
+#define UNIT_INDIRECT_DIRECTION UNIT_VPL_MAPS
 // Passes that shade read no picture.
 #define UNIT_GLOSS UNIT_RADIANCE
 #define UNIT_MIRROR_SHARES UNIT_MEAN
@@ -91,13 +96,15 @@
 #define IMAGE_RADIANCE 0
 #define IMAGE_INDIRECT 0
 #define IMAGE_INSPECTED 0
-#define IMAGE_LAST 0
+#define IMAGE_INDIRECT_DIRECTION 1
+#define IMAGE_LAST 1
 
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_NORMAL 1
 #define ATTRIBUTE_UV 2
 #define ATTRIBUTE_INSTANCE 3
 #define ATTRIBUTE_COLOUR 4
+#define ATTRIBUTE_TANGENT 5
 
 #define BVH_STACK_SIZE 145
 

@@ -33,9 +33,9 @@ struct Material {
     vec3 traced_mirror;   // Lambertian surfaces stand for glossy ones where light is traced: of albedo traced_share times
     float traced_share DEFAULT(1.0);  // the base colour, plus traced_mirror
     float roughness DEFAULT(1.0);
+    float normal_scale DEFAULT(0.0);  // of the normals' x and y; 0: no normal texture
+    float occlusion_strength DEFAULT(0.0);
     float pad0 DEFAULT(0.0);
-    float pad1 DEFAULT(0.0);
-    float pad2 DEFAULT(0.0);
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u

@@ -251,11 +251,13 @@ WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t v
         if (!check.accepts(world, entity, instance)) continue;
         const bool emitter = !of_frame.emitters && emits(*instance.mesh);
         const bool glossy = !of_frame.glossy && is_glossy(*instance.mesh);
-        if (!emitter && !glossy) continue;
+        const bool bumpy = !of_frame.bumpy && is_bumpy(*instance.mesh);
+        if (!emitter && !glossy && !bumpy) continue;
         if (!is_placed(entity) || !check.accepts_at(world, entity, instance, world_matrices(entity)))
             continue;
         of_frame.emitters |= emitter;
         of_frame.glossy |= glossy;
+        of_frame.bumpy |= bumpy;
     }
     of_frame.shares_items = shares_items(reflecting_items(world, check), vpls);
     const Environment environment = accepted_environment(world, check);

@@ -66,6 +66,7 @@ struct ViewShape {
 struct FrameContents {
     bool emitters = false;      ///< surfaces that emit light
     bool glossy = false;        ///< surfaces that may be glossy: is_glossy
+    bool bumpy = false;         ///< surfaces with normal or occlusion textures: is_bumpy
     bool sky = false;           ///< an Environment that is not black
     bool shares_items = false;  ///< there are so many objects that a surfel stands for several
     bool operator==(const FrameContents&) const = default;

@@ -38,10 +38,12 @@ bool shows_emitters(const SharedFrame& shared) {
     return shared.contents.emitters && shows_sources(shared.configuration.show);
 }
 
-/// Whether the surfaces of a view are shaded as glossy ones. The irradiance is shown as if they were white.
-bool shades_gloss(const SharedFrame& shared, const ViewHandles& view) {
+/// What is used of the materials of a view's surfaces. The irradiance is shown as if they were white.
+MaterialParts shaded_parts(const SharedFrame& shared, const ViewHandles& view) {
+    if (view.host) return {};
     const Show show = shared.configuration.show;
-    return shared.contents.glossy && !view.host && shows_light(show) && show != Show::irradiance;
+    return {.glossy = shared.contents.glossy && shows_light(show) && show != Show::irradiance,
+            .bumpy = shared.contents.bumpy && show != Show::albedo};
 }
 
 /// The surfaces as far as they are found before they are shaded. `asked`: parts that passes other than that
@@ -50,7 +52,7 @@ Surfaces find_surfaces(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, c
                        const ViewData& view, const ViewHandles& out, const FrameParts& asked) {
     const SurfaceStage stage = info_of(shared.configuration.path).surfaces;
     if (stage == SurfaceStage::gbuffer || asked.albedo) {
-        return add_gbuffer(graph, gpu, seen, view, shades_gloss(shared, out));
+        return add_gbuffer(graph, gpu, seen, view, shaded_parts(shared, out));
     }
     if (stage == SurfaceStage::forward_after_prepass || asked.depth || asked.normal) {
         return add_depth_prepass(graph, gpu, seen, view);
@@ -80,22 +82,23 @@ std::optional<LightLists> add_lists(FrameGraph& graph, Gpu& gpu, const Configura
 }
 
 /// Irradiance that is gathered from the VPLs before surfaces are shaded.
-TextureHandle gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const SharedVpls& vpls,
-                          const ViewData& view, ViewHandles& out) {
+GatheredLight gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const SharedVpls& vpls,
+                          const ViewData& view, bool directed, ViewHandles& out) {
     const GatheredVpls gathered =
-        add_vpl_gather(graph, gpu, surfaces, vpls.light, vpls.order, view, out.interleave);
-    if (out.interleave == 1) return gathered.irradiance;
+        add_vpl_gather(graph, gpu, surfaces, vpls.light, vpls.order, view, out.interleave, directed);
+    if (out.interleave == 1) return gathered.light;
     out.indirect = add_vpl_reconstruct(graph, gpu, surfaces, gathered, vpls.light, view);
-    return out.indirect->irradiance;
+    return out.indirect->light;
 }
 
 /// What the passes that shade read, all but gathered light.
 Lighting lighting_of(const SharedFrame& shared, const ViewHandles& view) {
+    const MaterialParts materials = shaded_parts(shared, view);
     Lighting lighting{.lights = shared.lit.lights,
                       .lists = view.lists,
                       .show = shared.configuration.show,
-                      .glossy = shades_gloss(shared, view),
-                      .mirror_rays = shades_gloss(shared, view)};
+                      .materials = materials,
+                      .mirror_rays = materials.glossy};
     if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
         lighting.shadow_rays = shared.lit.tracing;
     }
@@ -144,6 +147,7 @@ ViewFrame first_parts(const SharedFrame& shared, std::size_t index, const ViewDa
                     .albedo = surfaces.albedo,
                     .mirror = surfaces.mirror,
                     .gloss = surfaces.gloss,
+                    .bumps = surfaces.bumps,
                     .lights = shared.lit.lights.buffer};
     if (shared.vpls) set_vpls(parts, shared.vpls->light.vpls);
     return parts;
@@ -155,7 +159,8 @@ Surfaces surfaces_of(const ViewFrame& parts) {
             .normal = parts.normal,
             .albedo = parts.albedo,
             .mirror = parts.mirror,
-            .gloss = parts.gloss};
+            .gloss = parts.gloss,
+            .bumps = parts.bumps};
 }
 
 /// The light that solid surfaces reflect: sets the parts `radiance` and `depth`.
@@ -163,7 +168,7 @@ void shade(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const SceneDa
            const ViewData& view, const ViewHandles& out, ViewFrame& parts) {
     Lighting lighting = lighting_of(shared, out);
     if (parts.indirect) {
-        lighting.indirect = parts.indirect;
+        lighting.indirect = {*parts.indirect, parts.indirect_flow};
         lighting.vpls.reset();
     }
     if (out.host || info_of(shared.configuration.path).surfaces == SurfaceStage::gbuffer) {
@@ -184,12 +189,13 @@ std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const S
     Lighting lighting = lighting_of(shared, out);
     lighting.show = Show::total;
     lighting.lists.reset();  // they are of what the view sees
-    lighting.glossy = lighting.mirror_rays = false;
+    lighting.materials = {};
+    lighting.mirror_rays = false;
     if (shared.configuration.shadows.enabled) lighting.shadow_rays = shared.lit.tracing;
     if (gathers) {
         const GatheredVpls gathered = add_vpl_gather(graph, gpu, mirrored, shared.vpls->light,
-                                                     shared.vpls->order, view, out.interleave);
-        lighting.indirect = out.interleave == 1 ? gathered.irradiance
+                                                     shared.vpls->order, view, out.interleave, false);
+        lighting.indirect = out.interleave == 1 ? gathered.light
                                                 : add_rough_reconstruct(graph, gpu, mirrored, gathered, view);
         lighting.vpls.reset();
     }
@@ -201,6 +207,7 @@ void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const 
                   const ViewHandles& out, std::optional<TextureHandle> sky_picture, ViewFrame& parts) {
     graph.append_to_names(" (mirrored)" + view_ending(parts.index));
     MirroredSources sources{.emitters = shows_emitters(shared), .sky_picture = sky_picture};
+    if (shared.vpls) sources.vpls = shared.vpls->light;
     if (sky_picture) sources.environment = shared.lit.sky->environment;
     const Surfaces surfaces = surfaces_of(parts);
     const MirroredSurfaces mirrored =
@@ -243,8 +250,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                                          shared.vpls->count > max_vpls_per_invocation(shared.vpls->light));
     const bool estimates = shape.estimate_error && shared.vpls && shared.vpls->other;
     asked.depth |= gathers || estimates;
-    const bool glossy = shades_gloss(shared, out);
-    asked.albedo |= glossy;  // the passes of mirrors read all of the G-buffer
+    const MaterialParts materials = shaded_parts(shared, out);
+    asked.albedo |= materials.glossy;  // the passes of mirrors read all of the G-buffer
 
     const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
                                     : find_surfaces(graph, gpu, shared, seen, view, out, asked);
@@ -259,7 +266,12 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.list_count = out.lists->count;
         parts.list_entries = out.lists->entries;
     }
-    if (gathers) parts.indirect = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, out);
+    if (gathers) {
+        const GatheredLight gathered =
+            gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, materials.bumpy, out);
+        parts.indirect = gathered.irradiance;
+        parts.indirect_flow = gathered.flow;
+    }
     if (estimates) {
         out.samples =
             add_vpl_error(graph, gpu, surfaces_of(parts), shared.vpls->light, *shared.vpls->other, view);
@@ -270,7 +282,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     if (!out.host && shared.lit.sky && shows_sources(configuration.show)) {
         sky_picture = add_sky_picture(graph, gpu, *shared.lit.sky);
     }
-    if (glossy) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);
+    if (materials.glossy) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);
     if (!out.host) add_sources(graph, gpu, shared, seen, view, sky_picture, parts);
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {

@@ -19,6 +19,7 @@ gl::VertexArray make_mesh_vertices(gl::Device& device) {
     array.attribute(ATTRIBUTE_NORMAL, 3, GL_FLOAT, offsetof(Vertex, normal));
     array.attribute(ATTRIBUTE_UV, 2, GL_FLOAT, offsetof(Vertex, uv));
     array.normalized_attribute(ATTRIBUTE_COLOUR, 4, GL_UNSIGNED_SHORT, offsetof(Vertex, colour));
+    array.normalized_attribute(ATTRIBUTE_TANGENT, 4, GL_SHORT, offsetof(Vertex, tangent));
     array.integer_attribute(ATTRIBUTE_INSTANCE, 1, GL_UNSIGNED_INT, 0, 1);
     device.gl().VertexArrayBindingDivisor(array.name(), 1, 1);
     return array;

@@ -16,26 +16,32 @@ layout(std430, binding = BINDING_FILL_LIST) readonly restrict buffer FillList {
 };
 
 layout(rgba32f, binding = IMAGE_INDIRECT) restrict uniform image2D reconstructed;
+#ifdef DIRECTED
+layout(rgba32f, binding = IMAGE_INDIRECT_DIRECTION) restrict uniform image2D reconstructed_flow;
+#endif
 
 void main() {
     if (gl_GlobalInvocationID.x >= fill_count) return;
     uint packed_pixel = fill_pixels[gl_GlobalInvocationID.x];
     ivec2 at = ivec2(packed_pixel & 0xffffu, packed_pixel >> 16);
     Surface surfaces[SURFACES];
-    vec3 irradiance[SURFACES];
+    Gathered gathered[SURFACES];
     surfaces[0] = visible_surface(at, texelFetch(surface_depth, at, 0).r, vec3(0.0));
-    irradiance[0] = vec3(0.0);
+    gathered[0] = nothing_gathered();
     uint end = min(vpl_constants.count, 2u * (part_first + part_size));
     for (uint i = 2u * part_first + uint(at.x + at.y) % 2u; i < end; i += 2u) {
 #ifdef SURFELS
         // In the order of the buffer: neighbouring surfels have adjacent indices and so fall into different halves.
-        add_vpl(i, surfaces, irradiance);
+        add_vpl(i, surfaces, gathered);
 #else
-        add_vpl(vpl_order[i], surfaces, irradiance);
+        add_vpl(vpl_order[i], surfaces, gathered);
 #endif
     }
     vec4 found = imageLoad(reconstructed, at);
     float weight = 1.0 / (found.a + 0.5);  // the sum over half of the VPLs is half of the estimate
-    if (part_first == 0u) found.rgb *= found.a * weight;
-    imageStore(reconstructed, at, vec4(found.rgb + weight * irradiance[0], found.a));
+    float kept = part_first == 0u ? found.a * weight : 1.0;
+    imageStore(reconstructed, at, vec4(kept * found.rgb + weight * gathered[0].irradiance, found.a));
+#ifdef DIRECTED
+    imageStore(reconstructed_flow, at, kept * imageLoad(reconstructed_flow, at) + weight * gathered[0].flow);
+#endif
 }

@@ -1,5 +1,6 @@
 // Light that virtual point lights (VPLs) send to surfaces. The entry is add_vpl. An invocation has SURFACES surfaces.
 #include "bindings.glsl"
+#include "indirect/gathered.glsl"
 #include "vpls/disc.glsl"
 #include "sky/sky_patch.glsl"
 #include "surfaces/surface.glsl"
@@ -34,7 +35,7 @@ float geometry_term(TracedVpl vpl, Surface surface) {
     if (height <= -CREASE_SLACK * vpl_constants.ray_offset) return 0.0;
     height = max(height, 0.0);
     float tilt = tilt_of(vpl.normal, face_normal(surface)) * share_on_surface(vpl, -to_vpl - height * vpl.normal);
-    return sinking_disc_term(to_vpl, height, vpl.normal, vpl.radius2, tilt, shading_normal(surface));
+    return sinking_disc_term(to_vpl, height, vpl.normal, vpl.radius2, tilt, face_normal(surface));
 }
 
 // π times the irradiance from the VPL, whose index is that of its depth map.
@@ -47,10 +48,13 @@ vec3 irradiance_from_traced(uint index, TracedVpl vpl, VplPose pose, Surface sur
 
 // Adds π times the irradiance from the VPL of that index. Loops over the surfaces inside, so that it is fetched, and the
 // frame of its map made, once.
-void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     TracedVpl vpl = traced_vpls[index];
     VplPose pose = vpl_pose(vpl.position, vpl.normal, index);
-    for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_traced(index, vpl, pose, surfaces[s]);
+    for (int s = 0; s < SURFACES; ++s) {
+        vec3 irradiance = irradiance_from_traced(index, vpl, pose, surfaces[s]);
+        add_gathered(gathered[s], irradiance, vpl.position - surfaces[s].position, surfaces[s]);
+    }
 }
 
 #else
@@ -60,7 +64,7 @@ layout(std430, binding = BINDING_LIT_POINTS) readonly restrict buffer LitPoints 
 
 // disc_term at a visible surface.
 float disc_term_at(Surface surface, vec3 position, vec3 normal, float radius2) {
-    return disc_term(position, normal, radius2, surface.position, face_normal(surface), shading_normal(surface));
+    return disc_term(position, normal, radius2, surface.position, face_normal(surface));
 }
 
 // π times the unoccluded irradiance from the points of a cell.
@@ -90,10 +94,12 @@ vec3 irradiance_from_surfel(LitSurfel surfel, VplPose pose, Surface surface) {
 }
 
 // Adds that light, times `share` by surface. Loops over the surfaces inside, so that the frame of its map is made once.
-void add_surfel(LitSurfel surfel, float share[SURFACES], Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+void add_surfel(LitSurfel surfel, float share[SURFACES], Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     VplPose pose = vpl_pose(surfel.position, surfel.normal, surfel.map);
     for (int s = 0; s < SURFACES; ++s) {
-        if (share[s] > 0.0) irradiance[s] += share[s] * irradiance_from_surfel(surfel, pose, surfaces[s]);
+        if (share[s] <= 0.0) continue;
+        vec3 irradiance = share[s] * irradiance_from_surfel(surfel, pose, surfaces[s]);
+        add_gathered(gathered[s], irradiance, surfel.centre - surfaces[s].position, surfaces[s]);
     }
 }
 
@@ -108,7 +114,7 @@ float share_of_whole(LitSurfel group, Surface surface) {
 // Whether all of a group is behind a surface, or in its plane. Light from surfels that rounding puts a ray offset above
 // it is lost.
 bool is_behind(LitSurfel group, Surface surface) {
-    vec3 normal = shading_normal(surface);
+    vec3 normal = face_normal(surface);
     float above = dot(normal, group.position - surface.position) + group.reach * length(cross(normal, group.normal)) +
                   group.thickness;
     return above <= vpl_constants.ray_offset;
@@ -122,20 +128,23 @@ vec3 irradiance_from_whole(LitSurfel group, VplPose pose, Surface surface) {
 }
 
 // Adds π times the irradiance from a group of surfels: to surfaces far from it from all as one, to near ones from each.
-void add_group(LitSurfel group, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+void add_group(LitSurfel group, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     if (group.flux == vec3(0.0)) return;
     VplPose pose = vpl_pose(group.position, group.normal, group.map);
     float of_each[SURFACES];
     float most = 0.0;
     for (int s = 0; s < SURFACES; ++s) {
         float of_whole = share_of_whole(group, surfaces[s]);
-        if (of_whole > 0.0) irradiance[s] += of_whole * irradiance_from_whole(group, pose, surfaces[s]);
+        if (of_whole > 0.0) {
+            vec3 irradiance = of_whole * irradiance_from_whole(group, pose, surfaces[s]);
+            add_gathered(gathered[s], irradiance, group.centre - surfaces[s].position, surfaces[s]);
+        }
         of_each[s] = of_whole < 1.0 && is_behind(group, surfaces[s]) ? 0.0 : 1.0 - of_whole;
         most = max(most, of_each[s]);
     }
     if (most == 0.0) return;
     for (uint i = 0u; i < group.point_count; ++i) {
-        add_surfel(lit_surfels[group.first_point + i], of_each, surfaces, irradiance);
+        add_surfel(lit_surfels[group.first_point + i], of_each, surfaces, gathered);
     }
 }
 
@@ -157,11 +166,12 @@ vec3 irradiance_from_emitter(LitEmitter emitter, Surface surface) {
 
 #ifdef SKY
 
-// π times the irradiance from a patch of the sky.
-vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
-    PatchLight light = light_of_patch(sky_patch, shading_normal(surface));
-    if (light.cosine <= 0.0) return vec3(0.0);
-    return sky_patch.light * (light.cosine * visibility_of_sky(light.direction, surface));
+// Adds π times the irradiance from a patch of the sky.
+void add_patch(inout Gathered gathered, SkyPatch sky_patch, Surface surface) {
+    PatchLight light = light_of_patch(sky_patch, face_normal(surface));
+    if (light.cosine <= 0.0) return;
+    vec3 irradiance = sky_patch.light * (light.cosine * visibility_of_sky(light.direction, surface));
+    add_gathered(gathered, irradiance, light.direction, surface);
 }
 
 #endif
@@ -170,15 +180,16 @@ vec3 irradiance_from_patch(SkyPatch sky_patch, Surface surface) {
 
 #include "sampling.glsl"
 
-// π times the irradiance from a direction, if a surface is there: theory.md, "Shared items". The directions are those
+// Adds π times the irradiance from a direction, if a surface is there: theory.md, "Shared items". The directions are those
 // that follow the cosine. In this order the even ones (vpl_fill.comp), and the share of each class of pixels, are spread
 // over the hemisphere.
-vec3 irradiance_from_direction(uint direction, Surface surface) {
+void add_direction(inout Gathered gathered, uint direction, Surface surface) {
     uint place = direction / 2u + direction % 2u * (COVER_DIRECTIONS / 2u);
-    vec3 towards = cosine_direction(shading_normal(surface), sample_2d(place, 0u, 0u));
+    vec3 towards = cosine_direction(face_normal(surface), sample_2d(place, 0u, 0u));
     vec3 origin = visible_position(surface, vpl_constants.ray_offset) + vpl_constants.ray_offset * face_normal(surface);
-    if (!is_surface(closest_hit(origin, towards, 0.0, 1.0 / 0.0), towards)) return vec3(0.0);
-    return PI / float(COVER_DIRECTIONS) * lit_surfels[vpl_constants.mean_record].flux;
+    if (!is_surface(closest_hit(origin, towards, 0.0, 1.0 / 0.0), towards)) return;
+    vec3 irradiance = PI / float(COVER_DIRECTIONS) * lit_surfels[vpl_constants.mean_record].flux;
+    add_gathered(gathered, irradiance, towards, surface);
 }
 
 #endif
@@ -186,34 +197,37 @@ vec3 irradiance_from_direction(uint direction, Surface surface) {
 // Adds π times the irradiance from the VPL of that index, or with GROUPS from a group of surfels: the kinds follow one
 // another. Kinds whose light is not shown send none. Loops over the surfaces inside, so that the VPL is fetched, and the
 // frame of its map made, once.
-void add_vpl(uint index, Surface surfaces[SURFACES], inout vec3 irradiance[SURFACES]) {
+void add_vpl(uint index, Surface surfaces[SURFACES], inout Gathered gathered[SURFACES]) {
     if (index < vpl_constants.first_emitter) {
 #ifdef GROUPS
-        add_group(lit_surfels[vpl_constants.mapped + index], surfaces, irradiance);
+        add_group(lit_surfels[vpl_constants.mapped + index], surfaces, gathered);
 #else
         float whole[SURFACES];
         for (int s = 0; s < SURFACES; ++s) whole[s] = 1.0;
-        add_surfel(lit_surfels[index], whole, surfaces, irradiance);
+        add_surfel(lit_surfels[index], whole, surfaces, gathered);
 #endif
         return;
     }
 #ifdef BALANCED
     if (index >= vpl_constants.first_direction) {
         uint direction = index - vpl_constants.first_direction;
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_direction(direction, surfaces[s]);
+        for (int s = 0; s < SURFACES; ++s) add_direction(gathered[s], direction, surfaces[s]);
         return;
     }
 #endif
 #ifdef EMITTERS
     if (index < vpl_constants.first_sky_patch) {
         LitEmitter emitter = lit_emitters[index - vpl_constants.first_emitter];
-        for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_emitter(emitter, surfaces[s]);
+        for (int s = 0; s < SURFACES; ++s) {
+            vec3 irradiance = irradiance_from_emitter(emitter, surfaces[s]);
+            add_gathered(gathered[s], irradiance, emitter.position - surfaces[s].position, surfaces[s]);
+        }
         return;
     }
 #endif
 #ifdef SKY
     SkyPatch sky_patch = sky_patches[index - vpl_constants.first_sky_patch];
-    for (int s = 0; s < SURFACES; ++s) irradiance[s] += irradiance_from_patch(sky_patch, surfaces[s]);
+    for (int s = 0; s < SURFACES; ++s) add_patch(gathered[s], sky_patch, surfaces[s]);
 #endif
 }
 

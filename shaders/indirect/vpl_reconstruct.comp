@@ -18,6 +18,10 @@ uniform uint interleave;
 
 layout(binding = UNIT_INDIRECT) uniform sampler2D gathered;
 layout(rgba32f, binding = IMAGE_INDIRECT) writeonly restrict uniform image2D reconstructed;
+#ifdef DIRECTED
+layout(binding = UNIT_INDIRECT_DIRECTION) uniform sampler2D gathered_flow;
+layout(rgba32f, binding = IMAGE_INDIRECT_DIRECTION) writeonly restrict uniform image2D reconstructed_flow;
+#endif
 
 const float SAME_NORMAL = 0.9;  // smallest cosine between normals of the same surface
 const float SAME_PLANE = 2.0;   // largest distance from the tangent plane, in widths of a pixel at that depth
@@ -62,8 +66,37 @@ float distance_off(Plane plane, ivec2 there, int steps) {
 
 #endif
 
-// Irradiance of the pixel, and the share of the classes that it was interpolated from.
-vec4 reconstruct(ivec2 at) {
+// A weighted sum over pixels.
+struct Sum {
+    vec4 irradiance;  // alpha: of the classes behind each pixel, which weights it, too
+#ifdef DIRECTED
+    vec4 flow;
+#endif
+};
+
+#ifdef DIRECTED
+Sum nothing_found() { return Sum(vec4(0.0), vec4(0.0)); }
+#else
+Sum nothing_found() { return Sum(vec4(0.0)); }
+#endif
+
+void add_pixel(inout Sum sum, ivec2 there, float weight) {
+    vec4 found = texelFetch(gathered, there, 0);
+    sum.irradiance += weight * vec4(found.rgb * found.a, found.a);
+#ifdef DIRECTED
+    sum.flow += weight * found.a * texelFetch(gathered_flow, there, 0);
+#endif
+}
+
+void add_mean(inout Sum sum, Sum pixels, float weight) {
+    sum.irradiance += pixels.irradiance / weight;
+#ifdef DIRECTED
+    sum.flow += pixels.flow / weight;
+#endif
+}
+
+// Over the classes.
+Sum reconstruct(ivec2 at) {
     float depth = texelFetch(surface_depth, at, 0).r;
     Surface surface = visible_surface(at, depth, vec3(0.0));
     Plane plane = plane_at(at, depth, surface);
@@ -72,10 +105,10 @@ vec4 reconstruct(ivec2 at) {
     int least = -(before.x + before.y);
     int most = behind.x + behind.y;
 
-    vec4 sum = vec4(0.0);
+    Sum sum = nothing_found();
     int n = int(interleave);
     for (int offset = 0; offset < n; ++offset) {
-        vec4 value = vec4(0.0);  // of the class `offset` pixels on; rgb is weighted by alpha
+        Sum value = nothing_found();  // of the class `offset` pixels on
         float fitting = 0.0;
         for (int side = 0; side < 2; ++side) {
             int d = side == 0 ? offset : offset - n;
@@ -84,13 +117,17 @@ vec4 reconstruct(ivec2 at) {
             ivec2 there = at + d * along;
             vec3 normal = visible_face_normal(there);
             if (abs(distance_off(plane, there, d)) > SAME_PLANE || dot(normal, face_normal(surface)) < SAME_NORMAL) continue;
-            vec4 found = texelFetch(gathered, there, 0);
-            value += weight * vec4(found.rgb * found.a, found.a);
+            add_pixel(value, there, weight);
             fitting += weight;
         }
-        if (fitting > 0.0) sum += value / fitting;
+        if (fitting > 0.0) add_mean(sum, value, fitting);
     }
-    return vec4(sum.rgb / max(sum.a, 1e-6), sum.a / float(n));
+    return sum;
+}
+
+// Irradiance of a pixel, and the share of the classes that it was interpolated from.
+vec4 mean_irradiance(Sum sum) {
+    return vec4(sum.irradiance.rgb / max(sum.irradiance.a, 1e-6), sum.irradiance.a / float(interleave));
 }
 
 #ifdef COLUMNS
@@ -118,8 +155,13 @@ void mark_for_fill(bool needs_fill) {
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     bool is_surface = at.x < int(view.target_size.x) && texelFetch(surface_depth, at, 0).r > 0.0;
-    vec4 result = is_surface ? reconstruct(at) : vec4(0.0);
+    Sum sum = nothing_found();
+    if (is_surface) sum = reconstruct(at);
+    vec4 result = mean_irradiance(sum);
     imageStore(reconstructed, at, result);  // OpenGL discards stores outside the image
+#ifdef DIRECTED
+    imageStore(reconstructed_flow, at, sum.flow / max(sum.irradiance.a, 1e-6));
+#endif
 #ifdef COLUMNS
     mark_for_fill(is_surface && result.a < ENOUGH);
 #endif

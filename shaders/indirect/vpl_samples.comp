@@ -14,12 +14,12 @@ void main() {
     ivec2 at = ivec2((vec2(cell) + 0.5) / vec2(SAMPLE_COLUMNS, SAMPLE_ROWS) * view.target_size);
     float depth = texelFetch(surface_depth, at, 0).r;
     Surface surfaces[SURFACES];
-    vec3 irradiance[SURFACES];
+    Gathered gathered[SURFACES];
     surfaces[0] = visible_surface(at, depth, vec3(0.0));
-    irradiance[0] = vec3(0.0);
+    gathered[0] = nothing_gathered();
     uint end = depth > 0.0 ? min(vpl_constants.count, part_first + part_size) : 0u;
-    for (uint i = part_first; i < end; ++i) add_vpl(i, surfaces, irradiance);
+    for (uint i = part_first; i < end; ++i) add_vpl(i, surfaces, gathered);
     uint id = gl_GlobalInvocationID.x;
     vec3 before = part_first > 0u ? samples[id].rgb : vec3(0.0);
-    samples[id] = vec4(before + irradiance[0], depth > 0.0 ? 1.0 : 0.0);
+    samples[id] = vec4(before + gathered[0].irradiance, depth > 0.0 ? 1.0 : 0.0);
 }

@@ -10,6 +10,9 @@ layout(binding = UNIT_NORMAL) uniform sampler2D surface_normal;
 layout(binding = UNIT_ALBEDO) uniform sampler2D gbuffer_albedo;
 layout(binding = UNIT_MIRROR) uniform sampler2D gbuffer_mirror;
 layout(binding = UNIT_GLOSS) uniform sampler2D gbuffer_gloss;
+#ifdef BUMPY
+layout(binding = UNIT_BUMPS) uniform sampler2D gbuffer_bumps;
+#endif
 
 bool is_surface(ivec2 at) { return texelFetch(surface_depth, at, 0).r > 0.0; }
 
@@ -18,6 +21,10 @@ Surface glossy_surface(ivec2 at) {
     vec3 window = vec3(vec2(at) + 0.5, texelFetch(surface_depth, at, 0).r);
     Surface surface = unpack_surface(stored, window, view.target_size, view.world_from_clip);
     set_gloss(surface, PackedGloss(texelFetch(gbuffer_mirror, at, 0), texelFetch(gbuffer_gloss, at, 0).rg));
+#ifdef BUMPY
+    vec4 bumps = texelFetch(gbuffer_bumps, at, 0);
+    set_bumps(surface, PackedBumps(bumps.xy, bumps.z));
+#endif
     return surface;
 }
 

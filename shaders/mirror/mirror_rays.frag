@@ -1,6 +1,9 @@
 // A ray from each glossy pixel, in a direction that its surface reflects to the viewer, and what it meets: another surface,
 // as visible_surface.glsl reads it (MIRRORED), and what that one emits (EMISSION); or the sky (SKY). One fragment per pixel.
 #include "mirror/glossy_surface.glsl"
+#ifdef EMITTERS
+#include "mirror/emitter_rays.glsl"
+#endif
 #include "sampling.glsl"
 #include "scene/bvh.glsl"
 #ifdef SKY
@@ -15,11 +18,29 @@ layout(location = 1) out vec4 normal_and_direction;  // octahedral; from the sur
 layout(location = 2) out vec4 albedo;
 layout(location = 3) out vec4 radiance_and_density;  // of surface or sky; of the direction, 1/sr, 0: no ray
 
-// Neighbouring pixels have well distributed points.
-vec2 point_of(uvec2 pixel) {
+// Neighbouring pixels have well distributed points. `pair`: of dimensions.
+vec2 point_of(uvec2 pixel, uint pair) {
     uint in_block = (pixel.x & 3u) + 4u * (pixel.y & 3u);
     uint block = hash_combine(pixel.x >> 2u, pixel.y >> 2u);
-    return sample_2d(16u * ray_round + in_block, 0u, block);
+    return sample_2d(16u * ray_round + in_block, pair, block);
+}
+
+// A direction, and its density in 1/sr; 0: no ray.
+vec4 sampled_ray(Surface surface, uvec2 pixel) {
+    Facets facets = facets_of(surface);
+    vec2 point = point_of(pixel, 0u);
+    vec3 direction = sampled_direction(facets, point);
+#ifdef EMITTERS
+    Choices choices = choices_at(hash_combine(hash_combine(pixel.x, pixel.y), ray_round));
+    float share = share_to_emitters(surface);
+    vec2 kind = point_of(pixel, 1u);
+    if (kind.x < share) direction = direction_to_emitter(choices, surface.position, kind.y, point);
+    float by_lobe = lobe_towards(direction, facets).sampled;
+    float density = mix(by_lobe, emitter_density(choices, surface.position, direction), share);
+    return vec4(direction, by_lobe > 0.0 ? density : 0.0);
+#else
+    return vec4(direction, lobe_towards(direction, facets).sampled);
+#endif
 }
 
 #ifdef SKY
@@ -56,9 +77,9 @@ void main() {
     if (gl_HelperInvocation || !is_surface(at)) discard;
     Surface surface = glossy_surface(at);
     if (share_by_rays(surface) == 0.0) discard;
-    Facets facets = facets_of(surface);
-    vec3 direction = sampled_direction(facets, point_of(uvec2(at)));
-    float density = lobe_towards(direction, facets).sampled;
+    vec4 ray = sampled_ray(surface, uvec2(at));
+    vec3 direction = ray.xyz;
+    float density = ray.w;
     if (density <= 0.0 || dot(direction, face_normal(surface)) <= 0.0) discard;
     vec3 origin = visible_position(surface, ray_offset) + ray_offset * face_normal(surface);
     Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);

@@ -74,5 +74,6 @@ void main() {
         }
     }
     if (sum.weight <= 0.0) discard;
-    radiance = vec4(by_rays * mirror_share(shares_at(surface), surface) * mean_of(sum), 1.0);
+    vec3 share = by_rays * mirror_share(shares_at(surface), surface);
+    radiance = vec4(open_share(surface) * share * mean_of(sum), 1.0);
 }

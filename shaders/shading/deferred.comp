@@ -10,6 +10,9 @@ layout(binding = UNIT_ALBEDO) uniform sampler2D gbuffer_albedo;
 layout(binding = UNIT_MIRROR) uniform sampler2D gbuffer_mirror;
 layout(binding = UNIT_GLOSS) uniform sampler2D gbuffer_gloss;
 #endif
+#ifdef BUMPY
+layout(binding = UNIT_BUMPS) uniform sampler2D gbuffer_bumps;
+#endif
 layout(rgba32f, binding = IMAGE_RADIANCE) restrict uniform image2D radiance;
 
 void main() {
@@ -25,6 +28,10 @@ void main() {
         surfaces[s] = visible_surface(at, depth[s], texelFetch(gbuffer_albedo, at, 0).rgb);
 #ifdef GLOSSY
         set_gloss(surfaces[s], PackedGloss(texelFetch(gbuffer_mirror, at, 0), texelFetch(gbuffer_gloss, at, 0).rg));
+#endif
+#ifdef BUMPY
+        vec4 bumps = texelFetch(gbuffer_bumps, at, 0);
+        set_bumps(surfaces[s], PackedBumps(bumps.xy, bumps.z));
 #endif
     }
     vec3 reflected[SURFACES];

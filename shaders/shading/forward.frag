@@ -25,6 +25,9 @@ void main() {
     surfaces[0].albedo *= colour.a;  // what is reflected in the mirror direction does not fade
 #endif
 #endif
+#ifdef BUMPY
+    set_bumps(surfaces[0], fragment_bumps());
+#endif
     reflect_radiance(surfaces, pixels, reflected);
 #ifdef BLENDED
     vec3 emitted = vec3(0.0);

@@ -3,6 +3,7 @@
 // summed over the VPLs (VPLS). An invocation shades SURFACES surfaces, which share the light list of the first one
 // unless LIGHT_LIST_PER_SURFACE is defined.
 #include "bindings.glsl"
+#include "indirect/gathered.glsl"
 #include "lights/light_list.glsl"
 #include "lights/lights.glsl"
 #include "lights/shadow.glsl"
@@ -64,6 +65,9 @@ void add_light(inout Reflected reflected, uint index, Light light, Surface surfa
     Incident incident = incident_light(light, surface.position);
     float cos_surface = dot(shading_normal(surface), incident.direction);
     if (cos_surface <= 0.0 || incident.irradiance == vec3(0.0)) return;
+#ifdef BUMPY
+    if (dot(face_normal(surface), incident.direction) <= 0.0) return;
+#endif
     vec3 irradiance = incident.irradiance * (cos_surface * shadow_visibility(index, light, surface));
     add_from_direction(reflected, irradiance, incident.direction, surface);
 }
@@ -97,16 +101,28 @@ void add_lights(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflec
 
 #endif
 
+// A sum of VPLs some of which are negative may be so, too. `weight`: of the VPLs.
+void add_gathered_light(inout Reflected reflected, Gathered gathered, float weight, Surface surface) {
+    vec3 irradiance = max(irradiance_of(gathered, surface), 0.0) * weight / PI;
+    add_from_all_sides(reflected, open_share(surface) * irradiance, surface);
+}
+
 #ifdef INDIRECT_IRRADIANCE
 
 layout(binding = UNIT_INDIRECT) uniform sampler2D indirect_irradiance;
+#ifdef DIRECTED
+layout(binding = UNIT_INDIRECT_DIRECTION) uniform sampler2D indirect_flow;
+#endif
 
-// Adds the light of the VPLs, as vpl_gather.comp and later passes computed it: π times the irradiance. A sum of VPLs some
-// of which are negative may be so, too.
+// Adds the light of the VPLs, as vpl_gather.comp and later passes computed it.
 void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
     for (int s = 0; s < SURFACES; ++s) {
-        vec3 gathered = max(texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb, 0.0);
-        add_from_all_sides(reflected[s], gathered / PI, surfaces[s]);
+        Gathered gathered;
+        gathered.irradiance = texelFetch(indirect_irradiance, ivec2(pixels[s]), 0).rgb;
+#ifdef DIRECTED
+        gathered.flow = texelFetch(indirect_flow, ivec2(pixels[s]), 0);
+#endif
+        add_gathered_light(reflected[s], gathered, 1.0, surfaces[s]);
     }
 }
 
@@ -118,16 +134,14 @@ void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Refl
 // than MOST_VPLS, every n-th VPL is used and the sum multiplied by n, with an odd n, because paths often have an even
 // number of VPLs and all bounces should be used; neighbouring pixels use different VPLs.
 void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Reflected reflected[SURFACES]) {
-    vec3 irradiance[SURFACES];  // times π
-    for (int s = 0; s < SURFACES; ++s) irradiance[s] = vec3(0.0);
+    Gathered gathered[SURFACES];
+    for (int s = 0; s < SURFACES; ++s) gathered[s] = nothing_gathered();
     uint count = vpl_constants.count;
     uint vpl_stride = count <= uint(MOST_VPLS) ? 1u : (count + uint(MOST_VPLS) - 1u) / uint(MOST_VPLS) | 1u;
     for (uint i = (pixels[0].x + 5u * pixels[0].y) % vpl_stride; i < count; i += vpl_stride) {
-        add_vpl(i, surfaces, irradiance);
+        add_vpl(i, surfaces, gathered);
     }
-    for (int s = 0; s < SURFACES; ++s) {
-        add_from_all_sides(reflected[s], max(irradiance[s], 0.0) * float(vpl_stride) / PI, surfaces[s]);
-    }
+    for (int s = 0; s < SURFACES; ++s) add_gathered_light(reflected[s], gathered[s], float(vpl_stride), surfaces[s]);
 }
 
 #else

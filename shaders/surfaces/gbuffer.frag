@@ -7,6 +7,13 @@ layout(location = 1) out vec4 albedo;
 layout(location = 2) out vec4 mirror;
 layout(location = 3) out vec2 gloss;
 #endif
+#ifdef BUMPY
+#ifdef GLOSSY
+layout(location = 4) out vec4 bumps;
+#else
+layout(location = 2) out vec4 bumps;
+#endif
+#endif
 
 void main() {
     PackedSurface surface = fragment_surface(fragment_colour().rgb);
@@ -16,5 +23,9 @@ void main() {
     PackedGloss packed_gloss = fragment_gloss();
     mirror = packed_gloss.mirror;
     gloss = packed_gloss.gloss;
+#endif
+#ifdef BUMPY
+    PackedBumps packed_bumps = fragment_bumps();
+    bumps = vec4(packed_bumps.normal, packed_bumps.open, 0.0);
 #endif
 }

@@ -6,6 +6,9 @@ layout(location = ATTRIBUTE_POSITION) in vec3 vertex_position;
 layout(location = ATTRIBUTE_NORMAL) in vec3 vertex_normal;
 layout(location = ATTRIBUTE_UV) in vec2 vertex_uv;
 layout(location = ATTRIBUTE_COLOUR) in vec4 vertex_colour;
+#ifdef BUMPY
+layout(location = ATTRIBUTE_TANGENT) in vec4 vertex_tangent;
+#endif
 layout(location = ATTRIBUTE_INSTANCE) in uint vertex_instance;
 
 layout(std430, binding = BINDING_INSTANCES) readonly restrict buffer Instances { Instance instances[]; };
@@ -24,3 +27,16 @@ vec3 world_normal(Instance instance) {
     vec3 cofactors = vec3(dot(cross(y, z), vertex_normal), dot(cross(z, x), vertex_normal), dot(cross(x, y), vertex_normal));
     return cofactors * sign(dot(x, cross(y, z)));
 }
+
+#ifdef BUMPY
+
+// Not normalised; w as in Vertex::tangent. In a mirrored instance, the normal and the tangent have the other bitangent.
+vec4 world_tangent(Instance instance) {
+    vec3 x = instance.world[0].xyz;
+    vec3 y = instance.world[1].xyz;
+    vec3 z = instance.world[2].xyz;
+    vec3 local = vertex_tangent.xyz;
+    return vec4(dot(x, local), dot(y, local), dot(z, local), vertex_tangent.w * sign(dot(x, cross(y, z))));
+}
+
+#endif

@@ -7,6 +7,9 @@
 layout(binding = UNIT_BASE_COLOUR) uniform sampler2D base_colour;
 
 in vec3 normal;
+#ifdef BUMPY
+in vec4 tangent;  // as Vertex::tangent, world space
+#endif
 in vec2 uv;
 in vec4 colour_off_white;  // of the vertices
 flat in uint material_index;
@@ -38,6 +41,31 @@ PackedGloss fragment_gloss() {
     vec2 stored = texture(metal_roughness, uv).gb;
     Material material = materials[material_index];
     return pack_gloss(material.mirror, stored * vec2(material.roughness, material.metalness));
+}
+
+#endif
+
+#ifdef BUMPY
+
+layout(binding = UNIT_NORMAL_MAP) uniform sampler2D normal_map;
+layout(binding = UNIT_OCCLUSION) uniform sampler2D occlusion;
+
+// glTF 2.0, section 3.9.3: a normal in the space of tangent, bitangent and normal.
+vec3 mapped_normal(Material material) {
+    vec3 stored = 2.0 * texture(normal_map, uv).xyz - 1.0;
+    vec3 across = normalize(normal);
+    vec2 aside = material.normal_scale * stored.xy;
+    // Images have no exact zero, so that surfaces without one must not read it.
+    if (material.normal_scale == 0.0) return across;
+    vec3 along = normalize(tangent.xyz);
+    return normalize(aside.x * along + aside.y * tangent.w * cross(across, along) + stored.z * across);
+}
+
+PackedBumps fragment_bumps() {
+    Material material = materials[material_index];
+    vec3 turned = mapped_normal(material);
+    float open = mix(1.0, texture(occlusion, uv).r, material.occlusion_strength);
+    return pack_bumps(gl_FrontFacing ? turned : -turned, open);
 }
 
 #endif

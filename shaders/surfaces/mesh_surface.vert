@@ -4,6 +4,9 @@
 invariant gl_Position;  // depth pre-pass and later passes must compute identical depths
 
 out vec3 normal;
+#ifdef BUMPY
+out vec4 tangent;
+#endif
 out vec2 uv;
 out vec4 colour_off_white;  // so that white is interpolated exactly
 flat out uint material_index;
@@ -11,6 +14,9 @@ flat out uint material_index;
 void main() {
     Instance instance = instances[vertex_instance];
     normal = world_normal(instance);
+#ifdef BUMPY
+    tangent = world_tangent(instance);
+#endif
     uv = vertex_uv;
     colour_off_white = vertex_colour - 1.0;
     material_index = instance.material;

@@ -13,6 +13,10 @@ struct Surface {
     vec4 mirror;      // reflectance in the mirror direction: where the surface faces the viewer, and (alpha) grazing
     float roughness;  // square root of GGX's α
 #endif
+#ifdef BUMPY
+    vec3 turned_normal;  // to be read through shading_normal
+    float open;          // share of indirect light that reaches the surface
+#endif
 };
 
 struct PackedSurface {
@@ -21,10 +25,22 @@ struct PackedSurface {
 };
 
 // Visibility, creases and the test whether pixels lie on the same surface use the face normal, and the response to light
-// the shading normal; unit vectors on the side that the viewer sees. Both are the interpolated normal of the vertices, or
-// the host's normal, because no material changes it. One member for both keeps arrays of surfaces small.
+// the shading normal; unit vectors on the side that the viewer sees. The face normal is the interpolated normal of the
+// vertices, or the host's. Only a normal texture makes the shading normal another one; one member for both keeps arrays
+// of surfaces small.
 vec3 face_normal(Surface surface) { return surface.normal; }
+#ifdef BUMPY
+vec3 shading_normal(Surface surface) { return surface.turned_normal; }
+#else
 vec3 shading_normal(Surface surface) { return surface.normal; }
+#endif
+
+// Share of indirect light that reaches the surface.
+#ifdef BUMPY
+float open_share(Surface surface) { return surface.open; }
+#else
+float open_share(Surface surface) { return 1.0; }
+#endif
 
 #ifdef GLOSSY
 
@@ -47,6 +63,23 @@ void set_gloss(inout Surface surface, PackedGloss stored) {
     surface.mirror = mix(stored.mirror, vec4(surface.albedo, 1.0), metalness);
     surface.albedo *= 1.0 - metalness;
     surface.roughness = stored.gloss.x;
+}
+
+#endif
+
+#ifdef BUMPY
+
+// What a material's images of details add, in the G-buffer.
+struct PackedBumps {
+    vec2 normal;  // octahedral: the shading normal
+    float open;   // Surface::open
+};
+
+PackedBumps pack_bumps(vec3 normal, float open) { return PackedBumps(octahedral_encode(normal), open); }
+
+void set_bumps(inout Surface surface, PackedBumps stored) {
+    surface.turned_normal = octahedral_decode(stored.normal);
+    surface.open = stored.open;
 }
 
 #endif

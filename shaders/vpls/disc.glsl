@@ -17,17 +17,11 @@ float sinking_disc_term(vec3 to_disc, float height, vec3 normal, float radius2, 
 }
 
 // The same for a disc whose surface continues around it, so that a perpendicular receiver may touch that surface.
-// `from_face`: the receiver's face normal, which tells whether that is a crease; `from_normal`: its shading normal.
-float disc_term(vec3 position, vec3 normal, float radius2, vec3 from, vec3 from_face, vec3 from_normal) {
+float disc_term(vec3 position, vec3 normal, float radius2, vec3 from, vec3 from_normal) {
     vec3 to_disc = position - from;
     float height = -dot(normal, to_disc);
     if (height < 0.0) return 0.0;
-    return sinking_disc_term(to_disc, height, normal, radius2, tilt_of(normal, from_face), from_normal);
-}
-
-// For a receiver with one normal.
-float disc_term(vec3 position, vec3 normal, float radius2, vec3 from, vec3 from_normal) {
-    return disc_term(position, normal, radius2, from, from_normal, from_normal);
+    return sinking_disc_term(to_disc, height, normal, radius2, tilt_of(normal, from_normal), from_normal);
 }
 
 // Whether a cell of that squared width is nearer than three times its width. Its points are then evaluated one by one.

@@ -47,7 +47,14 @@ struct ViewFrame {
     /// and metalness.
     std::optional<TextureHandle> mirror{};
     std::optional<TextureHandle> gloss{};
+    /// Of scenes with normal or occlusion textures, where the albedo is. rgba32f: the shading normal, as
+    /// `normal`, and the share of indirect light that reaches the surface; alpha is not used.
+    std::optional<TextureHandle> bumps{};
     std::optional<TextureHandle> indirect{};
+    /// With `bumps`: how `indirect` is distributed over directions. rgba32f, sums over the VPLs, of π times
+    /// what a surface that faces one receives from it, mean of the channels: times its direction, and (alpha)
+    /// alone.
+    std::optional<TextureHandle> indirect_flow{};
     std::optional<TextureHandle> radiance{};
     BufferHandle<gpu::Light> lights{};  ///< the scene's lights: `Light` as in glsl_types()
     // The VPLs, as in glsl_types(): those on paths; or surfels, surfels that emit light, patches of the sky.

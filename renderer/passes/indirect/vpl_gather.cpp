@@ -1,5 +1,6 @@
 #include "renderer/passes/indirect/vpl_gather.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -104,9 +105,31 @@ BufferHandle<std::uint32_t> add_vpl_order(FrameGraph& graph, const Gpu& gpu, con
     });
 }
 
+GatheredLight write_gathered(FrameGraph& graph, Pass& pass, std::string_view name, glm::uvec2 size,
+                             bool directed) {
+    const auto write = [&](std::string_view content, GLuint image) {
+        const TextureHandle texture =
+            graph.texture(fmt::format("{} {}", name, content), {size, Format::rgba32f});
+        return pass.write(texture, {Usage::storage, image});
+    };
+    GatheredLight light{.irradiance = write("irradiance", IMAGE_INDIRECT)};
+    if (directed) light.flow = write("flow", IMAGE_INDIRECT_DIRECTION);
+    return light;
+}
+
+void read_gathered(Pass& pass, const GatheredLight& light) {
+    pass.read(light.irradiance, {Usage::sampled, UNIT_INDIRECT});
+    if (light.flow) pass.read(*light.flow, {Usage::sampled, UNIT_INDIRECT_DIRECTION});
+}
+
+std::vector<std::string> gathered_variant(const GatheredLight& light, std::vector<std::string> others) {
+    if (light.flow) others.emplace_back("DIRECTED");
+    return others;
+}
+
 GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces, const VplLight& light,
-                            BufferHandle<std::uint32_t> order, const ViewData& view,
-                            std::uint32_t interleave) {
+                            BufferHandle<std::uint32_t> order, const ViewData& view, std::uint32_t interleave,
+                            bool directed) {
     return graph.add("vpl-gather", [&](Pass& pass) {
         pass.tag(Workload::pixels_vpls);
         read_geometry(pass, surfaces);
@@ -114,13 +137,12 @@ GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surface
         read_vpl_light(pass, light);
         read_view(pass, view);
         pass.parameter(interleave);
+        const GatheredVpls out{.light = write_gathered(graph, pass, "gathered", view.size, directed),
+                               .order = order,
+                               .interleave = interleave};
         const gl::Program& program =
-            gpu.program({"indirect/vpl_gather.comp"}, surface_variant(surfaces, vpl_light_variant(light)));
-        const GatheredVpls out{
-            .irradiance = pass.write(graph.texture("gathered irradiance", {view.size, Format::rgba32f}),
-                                     {Usage::storage, IMAGE_INDIRECT}),
-            .order = order,
-            .interleave = interleave};
+            gpu.program({"indirect/vpl_gather.comp"},
+                        gathered_variant(out.light, surface_variant(surfaces, vpl_light_variant(light))));
         pass.run([=, &gpu, &program](Execution& run) {
             gather(gpu, program, view.size, interleave, run.value(light.vpls.counts).sources(),
                    max_vpls_per_invocation(light));

@@ -3,6 +3,9 @@
 #include <candela/configuration.hpp>
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <candela/graph/frame_graph.hpp>
@@ -22,11 +25,28 @@ namespace candela {
 /// the light's low-discrepancy sequence, which are evenly distributed.
 [[nodiscard]] std::vector<std::uint32_t> order_vpls(const PathPlan& paths);
 
+/// The light that pixels have gathered from VPLs.
+struct GatheredLight {
+    TextureHandle irradiance;  ///< rgba32f: π times the irradiance; in lux or W/m², by the unit of the lights
+    /// rgba32f: how it is distributed over directions, Gathered::flow of shaders/indirect/gathered.glsl. Only
+    /// surfaces with shading normals need it.
+    std::optional<TextureHandle> flow{};
+};
+
+/// Writes its textures, whose names start with `name`, to IMAGE_INDIRECT and IMAGE_INDIRECT_DIRECTION.
+[[nodiscard]] GatheredLight write_gathered(FrameGraph& graph, Pass& pass, std::string_view name,
+                                           glm::uvec2 size, bool directed);
+/// Reads them at UNIT_INDIRECT and UNIT_INDIRECT_DIRECTION.
+void read_gathered(Pass& pass, const GatheredLight& light);
+/// Names to define in shaders that handle the light.
+[[nodiscard]] std::vector<std::string> gathered_variant(const GatheredLight& light,
+                                                        std::vector<std::string> others = {});
+
 /// What each pixel has gathered from its share of the VPLs.
 struct GatheredVpls {
-    /// rgba32f: estimate of π times the irradiance from all VPLs, extrapolated from the share of the pixel's
-    /// class; in lux or W/m², by the unit of the lights. Alpha is 1 where there is a surface, else 0.
-    TextureHandle irradiance;
+    /// Estimate for all VPLs, extrapolated from the share of the pixel's class. Alpha of the irradiance is 1
+    /// where there is a surface, else 0.
+    GatheredLight light;
     BufferHandle<std::uint32_t> order;  ///< see add_vpl_order
     std::uint32_t interleave = 1;       ///< n
 };
@@ -39,9 +59,9 @@ struct GatheredVpls {
 /// Adds node `vpl-gather` (compute): each pixel sums the light of the VPLs in the share of its class (Wald et
 /// al., "Interactive Global Illumination using Fast Ray Tracing", 2002; Segovia et al., "Non-interleaved
 /// Deferred Shading of Interleaved Sample Patterns", 2006). Depends on the VPLs, depth and normal of the
-/// surfaces, and the view. `order`: of add_vpl_order. `interleave`: n.
+/// surfaces, and the view. `order`: of add_vpl_order. `interleave`: n. `directed`: with GatheredLight::flow.
 [[nodiscard]] GatheredVpls add_vpl_gather(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                           const VplLight& light, BufferHandle<std::uint32_t> order,
-                                          const ViewData& view, std::uint32_t interleave);
+                                          const ViewData& view, std::uint32_t interleave, bool directed);
 
 }  // namespace candela

@@ -31,23 +31,22 @@ void reconstruct(const Gpu& gpu, const gl::Program& program, const Pixels& pixel
                           {{"interleave", pixels.interleave}});
 }
 
-TextureHandle add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle gathered) {
+GatheredLight add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const GatheredLight& gathered) {
     return graph.add("vpl-reconstruct-rows", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
-        pass.read(gathered, {Usage::sampled, UNIT_INDIRECT});
-        const gl::Program& program =
-            gpu.program({"indirect/vpl_reconstruct.comp"}, surface_variant(pixels.surfaces));
-        const TextureHandle out =
-            pass.write(graph.texture("irradiance along rows", {pixels.size, Format::rgba32f}),
-                       {Usage::storage, IMAGE_INDIRECT});
+        read_gathered(pass, gathered);
+        const gl::Program& program = gpu.program(
+            {"indirect/vpl_reconstruct.comp"}, gathered_variant(gathered, surface_variant(pixels.surfaces)));
+        const GatheredLight out =
+            write_gathered(graph, pass, "row", pixels.size, gathered.flow.has_value());
         pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels); });
         return out;
     });
 }
 
 struct Columns {
-    TextureHandle irradiance;
+    GatheredLight light;
     BufferHandle<std::uint32_t> fill_mask;  ///< one bit per pixel, `row_words` words per row
 };
 
@@ -56,16 +55,16 @@ std::uint32_t row_words(glm::uvec2 size) {
     return groups_of_row(size) * (RECONSTRUCT_GROUP / 32);
 }
 
-Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, TextureHandle rows) {
+Columns add_columns(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const GatheredLight& rows) {
     return graph.add("vpl-reconstruct", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         read_pixels(pass, pixels);
-        pass.read(rows, {Usage::sampled, UNIT_INDIRECT});
+        read_gathered(pass, rows);
         const gl::Program& program =
-            gpu.program({"indirect/vpl_reconstruct.comp"}, surface_variant(pixels.surfaces, {"COLUMNS"}));
+            gpu.program({"indirect/vpl_reconstruct.comp"},
+                        gathered_variant(rows, surface_variant(pixels.surfaces, {"COLUMNS"})));
         const Columns out{
-            .irradiance = pass.write(graph.texture("indirect irradiance", {pixels.size, Format::rgba32f}),
-                                     {Usage::storage, IMAGE_INDIRECT}),
+            .light = write_gathered(graph, pass, "indirect", pixels.size, rows.flow.has_value()),
             .fill_mask = pass.write(graph.buffer<std::uint32_t>(
                                         "fill mask", std::uint64_t{row_words(pixels.size)} * pixels.size.y),
                                     {Usage::storage, BINDING_FILL_MASK})};
@@ -100,7 +99,7 @@ void fill(const Gpu& gpu, const gl::Program& program, std::uint32_t vpl_count, s
     }
 }
 
-TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
+GatheredLight add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const IndirectLight& found,
                        BufferHandle<std::uint32_t> order, const VplLight& light) {
     return graph.add("vpl-fill", [&](Pass& pass) {
         pass.tag(Workload::pixels);
@@ -109,9 +108,13 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         pass.read(found.fill_list, {Usage::storage, BINDING_FILL_LIST});
         pass.read(found.fill_list, Usage::indirect);
         read_vpl_light(pass, light);
-        const gl::Program& program = gpu.program({"indirect/vpl_fill.comp"},
-                                                 surface_variant(pixels.surfaces, vpl_light_variant(light)));
-        const TextureHandle out = pass.write(found.irradiance, {Usage::storage, IMAGE_INDIRECT});
+        const gl::Program& program = gpu.program(
+            {"indirect/vpl_fill.comp"},
+            gathered_variant(found.light, surface_variant(pixels.surfaces, vpl_light_variant(light))));
+        GatheredLight out{pass.write(found.light.irradiance, {Usage::storage, IMAGE_INDIRECT})};
+        if (found.light.flow) {
+            out.flow = pass.write(*found.light.flow, {Usage::storage, IMAGE_INDIRECT_DIRECTION});
+        }
         pass.run([=, &gpu, &program](Execution& run) {
             fill(gpu, program, run.value(light.vpls.counts).sources(), max_vpls_per_invocation(light));
         });
@@ -121,19 +124,19 @@ TextureHandle add_fill(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
 
 }  // namespace
 
-TextureHandle add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+GatheredLight add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                     const GatheredVpls& gathered, const ViewData& view) {
     const Pixels pixels{surfaces, view, gathered.interleave, view.size};
-    return add_columns(graph, gpu, pixels, add_rows(graph, gpu, pixels, gathered.irradiance)).irradiance;
+    return add_columns(graph, gpu, pixels, add_rows(graph, gpu, pixels, gathered.light)).light;
 }
 
 IndirectLight add_vpl_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                   const GatheredVpls& gathered, const VplLight& light, const ViewData& view) {
     const Pixels pixels{surfaces, view, gathered.interleave, view.size};
-    const TextureHandle rows = add_rows(graph, gpu, pixels, gathered.irradiance);
+    const GatheredLight rows = add_rows(graph, gpu, pixels, gathered.light);
     const Columns columns = add_columns(graph, gpu, pixels, rows);
-    IndirectLight found{columns.irradiance, add_list(graph, gpu, columns, view.size)};
-    found.irradiance = add_fill(graph, gpu, pixels, found, gathered.order, light);
+    IndirectLight found{columns.light, add_list(graph, gpu, columns, view.size)};
+    found.light = add_fill(graph, gpu, pixels, found, gathered.order, light);
     return found;
 }
 

@@ -8,7 +8,7 @@ namespace candela {
 
 /// Indirect light of every pixel, after reconstruction.
 struct IndirectLight {
-    TextureHandle irradiance;  ///< rgba32f: π times the irradiance from all VPLs, in lux or W/m²
+    GatheredLight light;  ///< from all VPLs
     /// Pixels that evaluated additional VPLs, because too few neighbours lie on the same surface. Words 0 to
     /// 2: work groups of an indirect dispatch; 3: number of pixels; from 4 on: pixels, x in the lower half
     /// word, y in the upper.
@@ -16,8 +16,8 @@ struct IndirectLight {
 };
 
 /// The same without what fills pixels for which too few classes were found: they have the light of those
-/// alone. For rays, whose ends are scattered, and whose light is averaged. Returns the irradiance.
-[[nodiscard]] TextureHandle add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+/// alone. For rays, whose ends are scattered, and whose light is averaged.
+[[nodiscard]] GatheredLight add_rough_reconstruct(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                                   const GatheredVpls& gathered, const ViewData& view);
 
 /// Estimates the light of all VPLs at every pixel from what the pixels have gathered from their shares. Adds

@@ -1,7 +1,9 @@
 #include "renderer/passes/mirror/mirror_rays.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
@@ -10,6 +12,15 @@
 #include "shaders/bindings.glsl"
 
 namespace candela {
+namespace {
+
+std::optional<BufferHandle<gpu::LitEmitter>> emitters_of(const MirroredSources& sources) {
+    if (!sources.emitters || !sources.vpls) return std::nullopt;
+    const auto* const lit = std::get_if<LitSurfels>(&sources.vpls->vpls.records);
+    return lit != nullptr ? lit->emitters : std::nullopt;
+}
+
+}  // namespace
 
 MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                  const Tracing& tracing, const MirroredSources& sources, const ViewData& view,
@@ -19,8 +30,13 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         read_geometry_and_material(pass, surfaces);
         read_tracing(pass, tracing);
         read_view(pass, view);
-        std::vector<std::string> variant{"GLOSSY"};
+        std::vector<std::string> variant = material_variant(parts_of(surfaces));
         if (sources.emitters) variant.emplace_back("EMISSION");
+        if (const auto emitters = emitters_of(sources)) {
+            pass.read(*emitters, {Usage::storage, BINDING_LIT_EMITTERS});
+            read_vpl_constants(pass, sources.vpls->common);
+            variant.emplace_back("EMITTERS");
+        }
         if (sources.environment) {
             pass.read(*sources.environment);
             pass.read(*sources.sky_picture, {Usage::sampled, UNIT_SKY});
@@ -62,7 +78,7 @@ TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         pass.read(*mirrored.surfaces.depth, {Usage::sampled, UNIT_MIRRORED_PLACE});
         pass.read(*mirrored.surfaces.normal, {Usage::sampled, UNIT_MIRRORED_NORMAL});
         pass.read(mirrored.source, {Usage::sampled, UNIT_MIRRORED_SOURCE});
-        std::vector<std::string> variant{"GLOSSY"};
+        std::vector<std::string> variant = material_variant(parts_of(surfaces));
         if (mirrored.round) pass.read(*mirrored.round);
         if (reflected) {
             pass.read(*reflected, {Usage::sampled, UNIT_INDIRECT});

@@ -5,6 +5,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
+#include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/sky/sky.hpp"
 #include "renderer/passes/surfaces/surfaces.hpp"
@@ -15,6 +16,8 @@ namespace candela {
 /// What emits light that is to be seen in mirrors.
 struct MirroredSources {
     bool emitters = false;
+    /// Whose emitting surfels rays of rough surfaces are sent to, too; none: rays find them by chance.
+    std::optional<VplLight> vpls{};
     std::optional<ValueHandle<Environment>> environment{};  ///< none: no sky
     std::optional<TextureHandle> sky_picture{};             ///< likewise; see add_sky_picture
 };
@@ -32,8 +35,9 @@ struct MirroredSurfaces {
 };
 
 /// Adds node `mirror-rays` (raster): one ray from each pixel of a glossy surface, in a random direction that
-/// it reflects to the viewer, for surfaces that are smooth enough (share_of_rays of gloss.glsl). Depends on
-/// the surfaces with their material, the scene's triangles and materials, the sources and the view. `round`:
+/// it reflects to the viewer, or to a surfel that emits light, for surfaces that are smooth enough
+/// (share_of_rays of gloss.glsl). Depends on the surfaces with their material, the scene's triangles and
+/// materials, the sources and the view. `round`:
 /// another value gives other directions. None: always the same.
 [[nodiscard]] MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                                const Tracing& tracing, const MirroredSources& sources,

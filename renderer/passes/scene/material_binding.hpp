@@ -19,7 +19,9 @@ struct MaterialImageSlot {
 inline constexpr std::array material_image_slots{
     MaterialImageSlot{&Material::base_colour_texture, UNIT_BASE_COLOUR},
     MaterialImageSlot{&Material::emissive_texture, UNIT_EMISSION},
-    MaterialImageSlot{&Material::metal_roughness_texture, UNIT_METAL_ROUGHNESS}};
+    MaterialImageSlot{&Material::metal_roughness_texture, UNIT_METAL_ROUGHNESS},
+    MaterialImageSlot{&Material::normal_texture, UNIT_NORMAL_MAP},
+    MaterialImageSlot{&Material::occlusion_texture, UNIT_OCCLUSION}};
 inline constexpr std::size_t base_colour_slot = 0;
 inline constexpr std::size_t emissive_slot = 1;
 inline constexpr std::size_t metal_roughness_slot = 2;

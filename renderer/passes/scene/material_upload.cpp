@@ -247,7 +247,9 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
             .mirror = mirror_of(material),
             .traced_mirror = traced.mirror,
             .traced_share = traced.share,
-            .roughness = material.roughness};
+            .roughness = material.roughness,
+            .normal_scale = material.normal_texture ? material.normal_scale : 0.0F,
+            .occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F};
 }
 
 void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include <candela/graph/execute.hpp>
 #include "renderer/gpu/loop_parts.hpp"
@@ -36,7 +37,9 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
     } else if (lighting.show == Show::normals) {
         words.emplace_back("SHOW_NORMALS");
     }
-    if (lighting.glossy) words.emplace_back("GLOSSY");
+    for (std::string& word : material_variant(lighting.materials)) words.push_back(std::move(word));
+    if (lighting.vpls && lighting.materials.bumpy) words.emplace_back("DIRECTED");
+    if (lighting.indirect) words = gathered_variant(*lighting.indirect, std::move(words));
     if (lighting.mirror_rays) words.emplace_back("MIRROR_RAYS");
     if (lighting.shadow_rays) words.emplace_back("SHADOW_RAYS");
     if (lighting.lists) words.emplace_back("LIGHT_LIST_CELLS");
@@ -47,7 +50,7 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
 }
 
 void bind_lighting(Gpu& gpu, const Lighting& lighting) {
-    if (lighting.glossy) gpu.mirror_shares().bind(UNIT_MIRROR_SHARES);
+    if (lighting.materials.glossy) gpu.mirror_shares().bind(UNIT_MIRROR_SHARES);
 }
 
 void read_lighting(Pass& pass, const Lighting& lighting) {
@@ -60,7 +63,7 @@ void read_lighting(Pass& pass, const Lighting& lighting) {
     read_shadow_maps(pass, lighting.lights.shadows);
     if (lighting.shadow_rays) read_tracing(pass, *lighting.shadow_rays);
     if (lighting.vpls) read_vpl_light(pass, *lighting.vpls);
-    if (lighting.indirect) pass.read(*lighting.indirect, {Usage::sampled, UNIT_INDIRECT});
+    if (lighting.indirect) read_gathered(pass, *lighting.indirect);
     if (lighting.lists) read_light_lists(pass, *lighting.lists);
 }
 

@@ -10,6 +10,7 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include "renderer/gpu/gpu.hpp"
+#include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"
@@ -22,12 +23,12 @@ struct Lighting {
     std::optional<Tracing> shadow_rays{};  ///< none: lights have no shadows
     /// VPLs that are evaluated while shading; none: no indirect light, or it was gathered before.
     std::optional<VplLight> vpls{};
-    std::optional<TextureHandle> indirect{};  ///< irradiance gathered before: see GatheredVpls, IndirectLight
+    std::optional<GatheredLight> indirect{};  ///< from all VPLs, gathered before
     std::optional<LightLists> lists{};        ///< none: every surface evaluates every light
     /// Most VPLs that a surface evaluates. If there are more, every k-th is evaluated and weighted by k.
     std::uint32_t most_vpls = std::numeric_limits<std::uint32_t>::max();
     Show show = Show::total;
-    bool glossy = false;  ///< surfaces reflect light in the mirror direction, too: shaders/shading/gloss.glsl
+    MaterialParts materials{};
     bool mirror_rays = false;  ///< what of that is not from lights is added later: add_mirror_resolve
 };
 

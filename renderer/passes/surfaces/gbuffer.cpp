@@ -6,15 +6,15 @@
 
 namespace candela {
 
-Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view, bool glossy) {
+Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
+                     MaterialParts parts) {
     return graph.add("gbuffer", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =
-            surface_programs(gpu, "surfaces/gbuffer.frag",
-                             glossy ? std::vector<std::string>{"GLOSSY"} : std::vector<std::string>{});
-        const Surfaces out = write_geometry_and_material(graph, pass, view, glossy);
+            surface_programs(gpu, "surfaces/gbuffer.frag", material_variant(parts));
+        const Surfaces out = write_geometry_and_material(graph, pass, view, parts);
         pass.run([=, &gpu](Execution& run) {
             gpu.clear_colour_and_depth();
             draw_surfaces(gpu, run, scene, programs, nearest_surfaces);

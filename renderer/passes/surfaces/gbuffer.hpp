@@ -11,6 +11,6 @@ namespace candela {
 /// Adds node `gbuffer` (raster): all parts of the opaque and masked surfaces, without holes of masks. Depends
 /// on meshes, materials and view.
 [[nodiscard]] Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const ViewData& view,
-                                   bool glossy);
+                                   MaterialParts parts);
 
 }  // namespace candela

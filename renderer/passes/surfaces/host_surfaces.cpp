@@ -28,7 +28,7 @@ Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs&
         pass.read(inputs.description);
         read_view(pass, view);
         const gl::Program& program = gpu.program({"output/fullscreen.vert", "surfaces/host_surfaces.frag"});
-        const Surfaces out = write_geometry_and_material(graph, pass, view, false);
+        const Surfaces out = write_geometry_and_material(graph, pass, view, {});
         pass.run([=, &gpu, &program, description = inputs.description](Execution& run) {
             const HostSurfaces& host = run.value(description);
             for (const GLuint unit : std::array<GLuint, 3>{UNIT_ALBEDO, UNIT_NORMAL, UNIT_DEPTH}) {

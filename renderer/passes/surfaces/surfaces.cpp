@@ -20,17 +20,26 @@ Surfaces write_geometry(FrameGraph& graph, Pass& pass, const ViewData& view) {
             .normal = pass.write(graph.texture("normal", {view.size, Format::rg32f}), Usage::colour_target)};
 }
 
-Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view, bool glossy) {
+Surfaces write_geometry_and_material(FrameGraph& graph, Pass& pass, const ViewData& view,
+                                     MaterialParts parts) {
     const auto write = [&](std::string_view name, Format format) {
         return pass.write(graph.texture(name, {view.size, format}), Usage::colour_target);
     };
     Surfaces out = write_geometry(graph, pass, view);
     out.albedo = write("albedo", Format::rgba16f);
-    if (glossy) {
+    if (parts.glossy) {
         out.mirror = write("mirror", Format::rgba16f);
         out.gloss = write("gloss", Format::rg16f);
     }
+    if (parts.bumpy) out.bumps = write("bumps", Format::rgba32f);
     return out;
+}
+
+std::vector<std::string> material_variant(MaterialParts parts) {
+    std::vector<std::string> words;
+    if (parts.glossy) words.emplace_back("GLOSSY");
+    if (parts.bumpy) words.emplace_back("BUMPY");
+    return words;
 }
 
 std::vector<std::string> surface_variant(const Surfaces& surfaces, std::vector<std::string> others) {
@@ -48,6 +57,7 @@ void read_geometry_and_material(Pass& pass, const Surfaces& surfaces) {
     pass.read(*surfaces.albedo, {Usage::sampled, UNIT_ALBEDO});
     if (surfaces.mirror) pass.read(*surfaces.mirror, {Usage::sampled, UNIT_MIRROR});
     if (surfaces.gloss) pass.read(*surfaces.gloss, {Usage::sampled, UNIT_GLOSS});
+    if (surfaces.bumps) pass.read(*surfaces.bumps, {Usage::sampled, UNIT_BUMPS});
 }
 
 void test_depth(Pass& pass, const Surfaces& surfaces) {
