@@ -31,6 +31,8 @@ constexpr std::array<Choice, all_shows.size()> show_choices{{
     {"irradiance", "light that arrives, in lux / π: the picture if all surfaces were white"},
     {"albedo", "the part of the light that surfaces reflect, 0 to 1"},
     {"normals", "0.5 n + 0.5, in world space"},
+    {"roughness", "of what surfaces reflect in the mirror direction, 0 to 1"},
+    {"metalness", "the share of the surfaces that is metal, 0 to 1"},
 }};
 constexpr std::array<Choice, 2> placement_choices{{{"paths", ""}, {"surfels", ""}}};
 constexpr std::array<Choice, 3> visibility_choices{{{"none", ""}, {"maps", ""}, {"rays", ""}}};

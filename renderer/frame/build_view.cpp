@@ -38,12 +38,20 @@ bool shows_emitters(const SharedFrame& shared) {
     return shared.contents.emitters && shows_sources(shared.configuration.show);
 }
 
-/// What is used of the materials of a view's surfaces. The irradiance is shown as if they were white.
+/// Whether light is shown that glossy surfaces reflect in the mirror direction. The irradiance is shown as if
+/// they were white.
+bool shows_mirrors(const SharedFrame& shared, const ViewHandles& view) {
+    const Show show = shared.configuration.show;
+    return shared.contents.glossy && !view.host && shows_light(show) && show != Show::irradiance;
+}
+
+/// What is used of the materials of a view's surfaces.
 MaterialParts shaded_parts(const SharedFrame& shared, const ViewHandles& view) {
     if (view.host) return {};
     const Show show = shared.configuration.show;
-    return {.glossy = shared.contents.glossy && shows_light(show) && show != Show::irradiance,
-            .bumpy = shared.contents.bumpy && show != Show::albedo};
+    const bool shows_gloss = show == Show::roughness || show == Show::metalness;
+    return {.glossy = shows_mirrors(shared, view) || (shared.contents.glossy && shows_gloss),
+            .bumpy = shared.contents.bumpy && (shows_light(show) || show == Show::normals)};
 }
 
 /// The surfaces as far as they are found before they are shaded. `asked`: parts that passes other than that
@@ -93,12 +101,11 @@ GatheredLight gather_vpls(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
 
 /// What the passes that shade read, all but gathered light.
 Lighting lighting_of(const SharedFrame& shared, const ViewHandles& view) {
-    const MaterialParts materials = shaded_parts(shared, view);
     Lighting lighting{.lights = shared.lit.lights,
                       .lists = view.lists,
                       .show = shared.configuration.show,
-                      .materials = materials,
-                      .mirror_rays = materials.glossy};
+                      .materials = shaded_parts(shared, view),
+                      .mirror_rays = shows_mirrors(shared, view)};
     if (shared.configuration.shadows.enabled && shows_direct(lighting.show)) {
         lighting.shadow_rays = shared.lit.tracing;
     }
@@ -250,8 +257,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
                                          shared.vpls->count > max_vpls_per_invocation(shared.vpls->light));
     const bool estimates = shape.estimate_error && shared.vpls && shared.vpls->other;
     asked.depth |= gathers || estimates;
-    const MaterialParts materials = shaded_parts(shared, out);
-    asked.albedo |= materials.glossy;  // the passes of mirrors read all of the G-buffer
+    const bool mirrors = shows_mirrors(shared, out);
+    asked.albedo |= mirrors;  // the passes of mirrors read all of the G-buffer
 
     const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
                                     : find_surfaces(graph, gpu, shared, seen, view, out, asked);
@@ -267,8 +274,8 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
         parts.list_entries = out.lists->entries;
     }
     if (gathers) {
-        const GatheredLight gathered =
-            gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view, materials.bumpy, out);
+        const GatheredLight gathered = gather_vpls(graph, gpu, surfaces_of(parts), *shared.vpls, view,
+                                                   shaded_parts(shared, out).bumpy, out);
         parts.indirect = gathered.irradiance;
         parts.indirect_flow = gathered.flow;
     }
@@ -282,7 +289,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     if (!out.host && shared.lit.sky && shows_sources(configuration.show)) {
         sky_picture = add_sky_picture(graph, gpu, *shared.lit.sky);
     }
-    if (materials.glossy) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);
+    if (mirrors) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);
     if (!out.host) add_sources(graph, gpu, shared, seen, view, sky_picture, parts);
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {

@@ -34,7 +34,7 @@ void main() {
 #ifdef EMISSION
     emitted = fragment_emission();
 #endif
-#ifdef GLOSSY
+#if defined(GLOSSY) && !defined(SHOW_SURFACES)
     reflected[0] += colour.a * emitted;
 #else
     reflected[0] = colour.a * (reflected[0] + emitted);

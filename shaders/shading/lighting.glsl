@@ -150,13 +150,22 @@ void add_indirect(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], inout Refl
 
 #endif
 
-#if defined(SHOW_ALBEDO) || defined(SHOW_NORMALS)
+#if defined(SHOW_ALBEDO) || defined(SHOW_NORMALS) || defined(SHOW_ROUGHNESS) || defined(SHOW_METALNESS)
 
-// What the surfaces are, instead of their light.
+// What the surfaces are, instead of their light. In a scene without glossy ones, all are as rough as can be.
+#define SHOW_SURFACES
 void reflect_radiance(Surface surfaces[SURFACES], uvec2 pixels[SURFACES], out vec3 radiance[SURFACES]) {
     for (int s = 0; s < SURFACES; ++s) {
 #ifdef SHOW_ALBEDO
         radiance[s] = surfaces[s].albedo;
+#elif defined(SHOW_ROUGHNESS) && defined(GLOSSY)
+        radiance[s] = vec3(surfaces[s].roughness);
+#elif defined(SHOW_ROUGHNESS)
+        radiance[s] = vec3(1.0);
+#elif defined(SHOW_METALNESS) && defined(GLOSSY)
+        radiance[s] = vec3(surfaces[s].metalness);
+#elif defined(SHOW_METALNESS)
+        radiance[s] = vec3(0.0);
 #else
         radiance[s] = 0.5 * shading_normal(surfaces[s]) + 0.5;
 #endif

@@ -12,6 +12,9 @@ struct Surface {
     // Then `albedo` is that of the diffuse part.
     vec4 mirror;      // reflectance in the mirror direction: where the surface faces the viewer, and (alpha) grazing
     float roughness;  // square root of GGX's α
+#ifdef SHOW_METALNESS
+    float metalness;
+#endif
 #endif
 #ifdef BUMPY
     vec3 turned_normal;  // to be read through shading_normal
@@ -63,6 +66,9 @@ void set_gloss(inout Surface surface, PackedGloss stored) {
     surface.mirror = mix(stored.mirror, vec4(surface.albedo, 1.0), metalness);
     surface.albedo *= 1.0 - metalness;
     surface.roughness = stored.gloss.x;
+#ifdef SHOW_METALNESS
+    surface.metalness = metalness;
+#endif
 }
 
 #endif

@@ -130,7 +130,7 @@ TEST_SUITE("configuration") {
     }
 
     TEST_CASE("everything that can be shown has a name") {
-        CHECK(all_shows.size() == 6);
+        CHECK(all_shows.size() == 8);
         for (std::size_t i = 0; i < all_shows.size(); ++i) {
             CHECK(static_cast<std::size_t>(all_shows.at(i)) == i);
         }
@@ -142,6 +142,8 @@ TEST_SUITE("configuration") {
         CHECK(to_string(Show::irradiance) == "irradiance");
         CHECK(to_string(Show::albedo) == "albedo");
         CHECK(to_string(Show::normals) == "normals");
+        CHECK(to_string(Show::roughness) == "roughness");
+        CHECK(to_string(Show::metalness) == "metalness");
     }
 
     TEST_CASE("members that are left out keep the values of the base") {

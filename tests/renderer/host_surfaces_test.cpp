@@ -119,8 +119,14 @@ TEST_SUITE("host surfaces") {
             CAPTURE(to_string(show));
             configuration.show = show;
             const Picture expected = usual();
+            const Picture found = from(own_surfaces());
+            if (show == Show::metalness) {  // there is none
+                CHECK(mean(expected) == 0.0);
+                CHECK(mean(found) == 0.0);
+                continue;
+            }
             CHECK(mean(expected) > 0.005);
-            CHECK(relative_mean_square(from(own_surfaces()), expected) < rounding);
+            CHECK(relative_mean_square(found, expected) < rounding);
         }
     }
 

@@ -125,6 +125,14 @@ TEST_SUITE("second compiler") {
         const RenderTarget target(device, {1, 1});
         renderer.render(world, camera, target.target());
         configure_each(VplPlacement::surfels, Show::total);
+        // A glossy surface.
+        Material metal;
+        metal.metalness = 1.0F;
+        add(world, Transform{}, MeshInstance{square(1.0F, std::make_shared<const Material>(metal))});
+        renderer.render(world, camera, target.target());
+        for (const Show show : {Show::roughness, Show::metalness, Show::total}) {
+            configure_each(VplPlacement::surfels, show);
+        }
         // Inspection of textures, of integers and of light lists, and the difference of two pictures.
         Extension integers{.name = "integers", .place = ExtensionPlace::after_surfaces};
         integers.declare = [](FrameGraph& graph, ViewFrame&) {

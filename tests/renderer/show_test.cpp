@@ -51,6 +51,21 @@ class ShowTests : public PathFixture {
     }
 };
 
+std::shared_ptr<const Material> glossy(float roughness, float metalness) {
+    Material material;
+    material.roughness = roughness;
+    material.metalness = metalness;
+    return std::make_shared<const Material>(std::move(material));
+}
+
+/// The same, with these values in the channels of a texture, and factors of a half.
+std::shared_ptr<const Material> glossy_texture(std::uint8_t green, std::uint8_t blue) {
+    Image image{.width = 1, .height = 1, .texels = {{0, green, blue, 0}}, .encoding = Encoding::linear};
+    Material material = *glossy(0.5F, 0.5F);
+    material.metal_roughness_texture = std::make_shared<const Image>(std::move(image));
+    return std::make_shared<const Material>(std::move(material));
+}
+
 /// The picture times a factor.
 Picture scaled(Picture picture, float factor) {
     for (glm::vec3& pixel : picture.pixels) pixel *= factor;
@@ -253,6 +268,40 @@ TEST_SUITE("views of light and surfaces") {
         CHECK(mean(picture(scene, showing(Show::normals, ShadingPath::deferred))) == 0.0);
     }
 
+    TEST_CASE_FIXTURE(ShowTests, "roughness and metalness of materials, as they are") {
+        Scene scene = ground();
+        scene.world.set(scene.camera, looking({0.0F, 3.0F, 0.0F}, {0, 0, 0}, {0.0F, 0.0F, -1.0F}));
+        add(scene.world, at({-0.6F, 0.5F, 0.0F}), MeshInstance{square(0.5F, glossy(0.3F, 0.75F))});
+        add(scene.world, at({0.6F, 0.5F, 0.0F}), MeshInstance{square(0.5F, glossy_texture(51, 204))});
+        for (const ShadingPath path : all_shading_paths) {
+            for (const bool tone_map : {false, true}) {
+                CAPTURE(to_string(path));
+                CAPTURE(tone_map);
+                Configuration configuration = showing(Show::roughness, path);
+                configuration.tone_map = {.enabled = tone_map, .exposure_ev = 2.0F};
+                const Picture roughness = picture(scene, configuration);
+                configuration.show = Show::metalness;
+                const Picture metalness = picture(scene, configuration);
+                const auto check_at = [&](std::uint32_t x, float rough, float metal) {
+                    // Half floats: 2⁻¹¹.
+                    CHECK(glm::distance(roughness.at(x, 18), glm::vec3(rough)) < 1e-3F);
+                    CHECK(glm::distance(metalness.at(x, 18), glm::vec3(metal)) < 1e-3F);
+                };
+                check_at(16, 0.3F, 0.75F);
+                check_at(24, 1.0F, 0.0F);  // the Lambertian ground
+                check_at(32, 0.5F * 51.0F / 255.0F, 0.5F * 204.0F / 255.0F);
+            }
+        }
+    }
+
+    TEST_CASE_FIXTURE(ShowTests, "without glossy surfaces all is rough, and nothing is metal") {
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            CHECK(mean(picture(ground(), showing(Show::roughness, path))) == 1.0);
+            CHECK(mean(picture(ground(), showing(Show::metalness, path))) == 0.0);
+        }
+    }
+
     TEST_CASE_FIXTURE(ShowTests, "a double-sided surface has the normal of the side that is seen") {
         Scene scene;
         add(scene.world, Transform{}, MeshInstance{square(9.0F, diffuse(glm::vec3(0.5F), true))});
@@ -268,7 +317,7 @@ TEST_SUITE("views of light and surfaces") {
     }
 
     TEST_CASE_FIXTURE(ShowTests, "blended surfaces are mixed with what is behind them") {
-        Material pane;
+        Material pane = *glossy(0.2F, 0.5F);
         pane.base_colour = {0.9F, 0.1F, 0.5F, 0.25F};
         pane.alpha_mode = AlphaMode::blend;
         Scene scene = lit_ground({0.4F, 1.0F, -0.2F});
@@ -284,21 +333,27 @@ TEST_SUITE("views of light and surfaces") {
             // Both face upwards.
             const glm::vec3 normal = picture(scene, showing(Show::normals, path)).at(24, 18);
             CHECK(glm::distance(normal, glm::vec3(0.5F, 1.0F, 0.5F)) < 1e-5F);
+            // Over the ground's roughness of 1.
+            const glm::vec3 roughness = picture(scene, showing(Show::roughness, path)).at(24, 18);
+            CHECK(glm::distance(roughness, glm::vec3(0.25F * 0.2F + 0.75F)) < 1e-3F);
+            const glm::vec3 metalness = picture(scene, showing(Show::metalness, path)).at(24, 18);
+            CHECK(glm::distance(metalness, glm::vec3(0.25F * 0.5F)) < 1e-3F);
         }
     }
 
-    TEST_CASE_FIXTURE(ShowTests, "albedo and normals need neither shadow maps, VPLs nor light lists") {
+    TEST_CASE_FIXTURE(ShowTests, "what surfaces are needs neither shadow maps, VPLs, light lists nor rays") {
         Scene scene = cornell_box();
+        add(scene.world, at({0, 0.01F, 0}), MeshInstance{square(0.9F, glossy(0.1F, 1.0F))});
         add(scene.world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
         add(scene.world, looking({0, 5, 0}, {0, 0, 0}, {0, 0, -1}), DirectionalLight{});
         for (const ShadingPath path : all_shading_paths) {
-            for (const Show show : {Show::albedo, Show::normals}) {
+            for (const Show show : {Show::albedo, Show::normals, Show::roughness, Show::metalness}) {
                 CAPTURE(to_string(path));
                 CAPTURE(to_string(show));
                 CHECK(mean(picture(scene, showing(show, path))) > 0.05);
                 for (const std::string_view pass :
                      {"shadow-maps", "light-upload", "surfels", "surfel-light", "vpl-gather", "light-tiles",
-                      "light-clusters", "emission", "background"}) {
+                      "light-clusters", "mirror-rays", "mirror-resolve", "emission", "background"}) {
                     CAPTURE(pass);
                     CHECK_FALSE(has_pass(pass));
                 }

@@ -88,8 +88,8 @@ TEST_SUITE("panels") {
         AppState state;
         const ReferenceView none(nullptr);
         Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
-        for (const Show show :
-             {Show::direct, Show::albedo, Show::indirect, Show::irradiance, Show::normals, Show::total}) {
+        for (const Show show : {Show::direct, Show::albedo, Show::indirect, Show::irradiance, Show::normals,
+                                Show::roughness, Show::metalness, Show::total}) {
             CHECK(state.configuration.show != show);
             screen.click(to_string(show));
             CHECK(state.configuration.show == show);

@@ -21,15 +21,18 @@ enum class Show : std::uint8_t {
     /// The irradiance E of the visible surfaces, as the radiance E/π of white ones; without the view of the
     /// sky and of what surfaces emit.
     irradiance,
-    albedo,  ///< linear, from 0 to 1; displayed without exposure and tone curve
-    normals  ///< (0.5 n + 0.5) in world space; displayed as they are
+    albedo,   ///< linear, from 0 to 1; displayed without exposure and tone curve
+    normals,  ///< (0.5 n + 0.5) in world space; displayed as they are
+    /// Material::roughness × its texture, displayed as it is; 1 in a scene without glossy surfaces.
+    roughness,
+    metalness  ///< the same of Material::metalness; 0 in a scene without glossy surfaces
 };
-inline constexpr std::array all_shows{Show::total,      Show::direct, Show::indirect,
-                                      Show::irradiance, Show::albedo, Show::normals};
+inline constexpr std::array all_shows{Show::total,  Show::direct,  Show::indirect,  Show::irradiance,
+                                      Show::albedo, Show::normals, Show::roughness, Show::metalness};
 
 /// Whether lights and VPLs are evaluated for the picture at all.
 [[nodiscard]] constexpr bool shows_light(Show show) {
-    return show != Show::albedo && show != Show::normals;
+    return show <= Show::irradiance;
 }
 
 /// How VPLs are placed.

@@ -12,7 +12,7 @@ Display display_of(const Configuration& configuration) {
     const bool light = shows_light(configuration.show);
     return {.exposure = light ? std::exp2(settings.exposure_ev) : 1.0F,
             .curve = settings.enabled && light,
-            .encoded = settings.enabled && configuration.show != Show::normals,
+            .encoded = settings.enabled && (light || configuration.show == Show::albedo),
             .opaque = settings.enabled};
 }
 

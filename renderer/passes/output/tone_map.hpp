@@ -16,7 +16,7 @@ struct Display {
     bool opaque = false;    ///< alpha is 1; otherwise, that of the picture
     bool operator==(const Display&) const = default;
 };
-/// Radiance is exposed and goes through the curve; albedo is encoded only, and normals are as they are.
+/// Radiance is exposed and goes through the curve; albedo is encoded only, and all else is as it is.
 /// Without tone mapping, all are linear.
 [[nodiscard]] Display display_of(const Configuration& configuration);
 

@@ -36,6 +36,10 @@ std::vector<std::string> lighting_variant(const Lighting& lighting) {
         words.emplace_back("SHOW_ALBEDO");
     } else if (lighting.show == Show::normals) {
         words.emplace_back("SHOW_NORMALS");
+    } else if (lighting.show == Show::roughness) {
+        words.emplace_back("SHOW_ROUGHNESS");
+    } else if (lighting.show == Show::metalness) {
+        words.emplace_back("SHOW_METALNESS");
     }
     for (std::string& word : material_variant(lighting.materials)) words.push_back(std::move(word));
     if (lighting.vpls && lighting.materials.bumpy) words.emplace_back("DIRECTED");
