@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
+#include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -191,6 +192,41 @@ void draw_fields(Document& document, Entity entity) {
     if (!ImGui::IsAnyItemActive()) history.end_of_gesture();
 }
 
+/// Returns whether the user has changed anything.
+bool draw_material(Material& material) {
+    glm::vec3 base_colour(material.base_colour);
+    bool changed = colour("base colour", base_colour, "linear RGB; multiplies the texture, if there is one");
+    base_colour = glm::clamp(base_colour, 0.0F, 1.0F);
+    material.base_colour = glm::vec4(base_colour, material.base_colour.a);
+    changed |= slide("metalness", material.metalness, 0.0F, 1.0F,
+                     "the share that is metal; multiplies the texture, if there is one");
+    changed |= slide("roughness", material.roughness, 0.0F, 1.0F,
+                     "0: a mirror, 1: matt; multiplies the texture, if there is one");
+    changed |= slide("specular", material.specular, 0.0F, 1.0F,
+                     "what is not metal reflects in the mirror direction: 0: nothing, 1: as varnish does");
+    const float strongest = std::max({material.emissive.r, material.emissive.g, material.emissive.b});
+    changed |= drag("emission, cd/m²", material.emissive, 0.05F + 0.01F * strongest, 0.0F, any,
+                    "radiance that it emits, linear RGB; multiplies the texture, if there is one");
+    return changed;
+}
+
+/// The materials of the entity's mesh. They are shared: what changes, changes on all objects.
+void draw_materials(Document& document, Entity entity) {
+    const auto* const instance = document.scene.world.find<MeshInstance>(entity);
+    if (instance == nullptr) return;
+    const auto materials = materials_of(*instance->mesh);
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const std::string& name = materials[i]->name;
+        const std::string label = name.empty() ? fmt::format("material {}", i + 1) : name;
+        ImGui::PushID(static_cast<int>(i));
+        if (header((label + "###material").c_str(), materials.size() == 1)) {
+            Material material = document.material_edit.shown(materials[i]);
+            if (draw_material(material)) document.material_edit.change(materials[i], std::move(material));
+        }
+        ImGui::PopID();
+    }
+}
+
 void draw_selected(Document& document, std::vector<Action>& wanted) {
     Interaction& interaction = document.interaction;
     if (!interaction.selected) return;
@@ -201,6 +237,7 @@ void draw_selected(Document& document, std::vector<Action>& wanted) {
         wanted.push_back(Action::record_drag);
     }
     draw_fields(document, *interaction.selected);
+    draw_materials(document, *interaction.selected);
 }
 
 void draw_sky(Document& document) {
@@ -274,6 +311,8 @@ std::vector<Action> draw_scene_panel(Document& document, const AppState& state, 
     draw_lights_to_add(document.interaction);
     draw_selection(world, document.interaction.selected);
     draw_selected(document, wanted);
+    document.material_edit.apply(document.scene.world, document.interaction.history(),
+                                 !ImGui::IsAnyItemActive());
     ImGui::Separator();
     draw_sky(document);
     if (document.playback && header("Animation", true)) draw_playback(*document.playback);

@@ -7,6 +7,7 @@
 #include "sandbox/animation/playback.hpp"
 #include "sandbox/command_line/options.hpp"
 #include "sandbox/editing/interaction.hpp"
+#include "sandbox/editing/materials.hpp"
 #include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
@@ -16,6 +17,7 @@ struct Document {
     Scene scene;
     Interaction interaction;
     std::optional<Playback> playback;
+    MaterialEdit material_edit;            ///< of a control that is held
     std::optional<DragRecorder> recorder;  ///< while the motion of an entity is recorded
 
     /// `camera` names the camera to start from, as in Options; `aspect`: width / height of the picture.

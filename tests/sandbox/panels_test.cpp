@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <tuple>
 
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/panels/graph_panel.hpp"
 #include "sandbox/panels/open_panel.hpp"
 #include "sandbox/panels/quality_panel.hpp"
+#include "sandbox/panels/scene_panel.hpp"
 #include "sandbox/panels/view_panel.hpp"
 
 namespace candela::sandbox {
@@ -94,6 +96,32 @@ TEST_SUITE("panels") {
             screen.click(to_string(show));
             CHECK(state.configuration.show == show);
         }
+    }
+
+    TEST_CASE("a click on a slider changes the material of the selected object, and undo takes it back") {
+        Document document(load_scene(shipped_file("scenes", "cornell.gltf")), std::nullopt, 1.0F);
+        const World& world = document.scene.world;
+        const AppState state;
+        Screen screen(in_panel([&] { (void)draw_scene_panel(document, state, nullptr); }));
+        CHECK_FALSE(screen.has("metalness"));
+        const auto first = world.view<MeshInstance>().begin();
+        const Entity entity = std::get<0>(*first);
+        const auto mesh = world.get<MeshInstance>(entity).mesh;
+        REQUIRE(materials_of(*mesh).size() == 1);
+        document.interaction.selected = entity;
+        const auto material = [&] { return *world.get<MeshInstance>(entity).mesh->primitives[0].material; };
+        screen.click("metalness");
+        CHECK(material().metalness > 0.1F);
+        CHECK(material().roughness == 1.0F);
+        screen.click("roughness");
+        CHECK(material().roughness < 0.9F);
+        screen.click("specular");
+        CHECK(material().specular > 0.1F);
+        const History& history = document.interaction.history();
+        CHECK(history.undo_count() == 3);
+        for (int step = 0; step < 3; ++step) screen.click("undo");
+        CHECK(history.undo_count() == 0);
+        CHECK(world.get<MeshInstance>(entity).mesh == mesh);
     }
 
     TEST_CASE("the error of VPLs is estimated after a click") {
