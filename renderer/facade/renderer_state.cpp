@@ -61,6 +61,11 @@ bool same_radiance(Configuration a, const Configuration& b) {
     return a == b;
 }
 
+/// Whether the host has drawn the view's surfaces with their material.
+bool has_material(const RenderView& view) {
+    return view.surfaces && view.surfaces->material != 0;
+}
+
 }  // namespace
 
 Renderer::State::State(const gl::GetProc& get_proc, const RendererOptions& options)
@@ -141,6 +146,7 @@ void Renderer::State::require_views(std::span<const RenderView> views) const {
             require_texture(device, view.surfaces->depth, "the host's depth");
             require_texture(device, view.surfaces->normal, "the host's normals");
             require_texture(device, view.surfaces->albedo, "the host's albedo");
+            if (has_material(view)) require_texture(device, view.surfaces->material, "the host's material");
         }
     }
 }
@@ -155,6 +161,7 @@ void Renderer::State::set_view(const ViewHandles& handles, const RenderView& vie
         runtime_.bind(handles.host->depth, view.surfaces->depth, {});
         runtime_.bind(handles.host->normal, view.surfaces->normal, {});
         runtime_.bind(handles.host->albedo, view.surfaces->albedo, {});
+        if (handles.host->material) runtime_.bind(*handles.host->material, view.surfaces->material, {});
     }
 }
 
@@ -165,7 +172,11 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     std::vector<ViewRequest> requests;
     std::vector<ViewRequest> without_jitter;
     for (const RenderView& view : views) {
-        shape.views.push_back({view.target.size, view.surfaces.has_value(), view.keep, view.estimate_error});
+        shape.views.push_back({.target = view.target.size,
+                               .host_surfaces = view.surfaces.has_value(),
+                               .host_material = has_material(view),
+                               .keep = view.keep,
+                               .estimate_error = view.estimate_error});
         requests.push_back({view.camera, view.target.size, view.jitter});
         without_jitter.push_back({view.camera, view.target.size});
     }

@@ -39,7 +39,7 @@ ViewHandles import_view(FrameGraph& graph, const ViewShape& shape) {
     view.request = graph.import_value<ViewRequest>("view request");
     view.target = graph.import_value<Target>("target");
     view.picture = graph.texture("target", {shape.target, Format::rgba8}, Lifetime::imported);
-    if (shape.host_surfaces) view.host = import_host_surfaces(graph);
+    if (shape.host_surfaces) view.host = import_host_surfaces(graph, shape.host_material);
     return view;
 }
 

@@ -57,6 +57,7 @@ struct FrameHandles {
 struct ViewShape {
     glm::uvec2 target{1};         ///< of the target, pixels
     bool host_surfaces = false;   ///< the host has drawn the surfaces
+    bool host_material = false;   ///< and their material: HostSurfaces::material
     FrameParts keep{};            ///< see RenderView::keep
     bool estimate_error = false;  ///< see RenderView::estimate_error
     bool operator==(const ViewShape&) const = default;

@@ -38,20 +38,25 @@ bool shows_emitters(const SharedFrame& shared) {
     return shared.contents.emitters && shows_sources(shared.configuration.show);
 }
 
+/// Whether the surfaces of a view may be glossy.
+bool has_gloss(const SharedFrame& shared, const ViewHandles& view) {
+    return view.host ? view.host->material.has_value() : shared.contents.glossy;
+}
+
 /// Whether light is shown that glossy surfaces reflect in the mirror direction. The irradiance is shown as if
 /// they were white.
 bool shows_mirrors(const SharedFrame& shared, const ViewHandles& view) {
     const Show show = shared.configuration.show;
-    return shared.contents.glossy && !view.host && shows_light(show) && show != Show::irradiance;
+    return has_gloss(shared, view) && shows_light(show) && show != Show::irradiance;
 }
 
 /// What is used of the materials of a view's surfaces.
 MaterialParts shaded_parts(const SharedFrame& shared, const ViewHandles& view) {
-    if (view.host) return {};
     const Show show = shared.configuration.show;
     const bool shows_gloss = show == Show::roughness || show == Show::metalness;
-    return {.glossy = shows_mirrors(shared, view) || (shared.contents.glossy && shows_gloss),
-            .bumpy = shared.contents.bumpy && (shows_light(show) || show == Show::normals)};
+    const bool shows_bumps = shows_light(show) || show == Show::normals;
+    return {.glossy = shows_mirrors(shared, view) || (has_gloss(shared, view) && shows_gloss),
+            .bumpy = shared.contents.bumpy && !view.host && shows_bumps};
 }
 
 /// The surfaces as far as they are found before they are shaded. `asked`: parts that passes other than that
@@ -260,8 +265,9 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     const bool mirrors = shows_mirrors(shared, out);
     asked.albedo |= mirrors;  // the passes of mirrors read all of the G-buffer
 
-    const Surfaces found = out.host ? add_host_surfaces(graph, gpu, *out.host, view)
-                                    : find_surfaces(graph, gpu, shared, seen, view, out, asked);
+    const Surfaces found =
+        out.host ? add_host_surfaces(graph, gpu, *out.host, view, shaded_parts(shared, out).glossy)
+                 : find_surfaces(graph, gpu, shared, seen, view, out, asked);
     ViewFrame parts = first_parts(shared, index, view, found);
     extend(graph, shared, ExtensionPlace::after_surfaces, parts);
 
@@ -286,7 +292,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
 
     shade(graph, gpu, shared, seen, view, out, parts);
     std::optional<TextureHandle> sky_picture;
-    if (!out.host && shared.lit.sky && shows_sources(configuration.show)) {
+    if ((!out.host || mirrors) && shared.lit.sky && shows_sources(configuration.show)) {
         sky_picture = add_sky_picture(graph, gpu, *shared.lit.sky);
     }
     if (mirrors) add_mirrored(graph, gpu, shared, view, out, sky_picture, parts);

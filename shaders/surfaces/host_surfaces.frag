@@ -6,6 +6,9 @@
 layout(binding = UNIT_ALBEDO) uniform sampler2D host_albedo;
 layout(binding = UNIT_NORMAL) uniform sampler2D host_normal;
 layout(binding = UNIT_DEPTH) uniform sampler2D host_depth;
+#ifdef GLOSSY
+layout(binding = UNIT_GLOSS) uniform sampler2D host_material;
+#endif
 
 uniform mat4 view_from_host_clip;
 uniform bool clip_depth_from_0;
@@ -15,6 +18,10 @@ uniform mat3 world_from_normal;
 
 layout(location = 0) out vec2 packed_normal;
 layout(location = 1) out vec4 albedo;
+#ifdef GLOSSY
+layout(location = 2) out vec4 mirror;
+layout(location = 3) out vec2 gloss;
+#endif
 
 vec3 decoded_normal(vec3 stored) {
     if (normal_encoding == 2u) return octahedral_decode(stored.xy);
@@ -36,4 +43,8 @@ void main() {
     gl_FragDepth = window_depth(on_view.z / on_view.w);
     albedo = vec4(texelFetch(host_albedo, at, 0).rgb, 1.0);
     packed_normal = octahedral_encode(world_from_normal * decoded_normal(texelFetch(host_normal, at, 0).xyz));
+#ifdef GLOSSY
+    mirror = vec4(vec3(0.04), 1.0);  // of an interface of index of refraction 1.5, by Fresnel
+    gloss = texelFetch(host_material, at, 0).rg;
+#endif
 }

@@ -11,6 +11,7 @@
 #include "renderer/facade/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
+#include "tests/throws.hpp"
 
 using namespace candela;
 
@@ -48,6 +49,25 @@ class HostTexture {
     gl::Texture texture_;
 };
 
+/// The world with all its surfaces glossy, of different roughness, each third one of metal.
+void make_glossy(World& world) {
+    std::vector<Entity> entities;
+    for (const auto& [entity, instance] : world.view<MeshInstance>()) entities.push_back(entity);
+    std::uint32_t number = 0;
+    for (const Entity entity : entities) {
+        Mesh mesh = *world.get<MeshInstance>(entity).mesh;
+        for (Primitive& primitive : mesh.primitives) {
+            Material material = *primitive.material;
+            material.specular = 1.0F;
+            material.roughness = 0.15F + 0.2F * static_cast<float>(number % 5);
+            material.metalness = number % 3 == 0 ? 1.0F : 0.0F;
+            primitive.material = std::make_shared<const Material>(std::move(material));
+            ++number;
+        }
+        world.set(entity, MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
+    }
+}
+
 class HostSurfaceTests : public RenderFixture {
  protected:
     HostSurfaceTests() {
@@ -75,6 +95,21 @@ class HostSurfaceTests : public RenderFixture {
                 .clip_depth_from_0 = true,
                 .empty_depth = 0.0F,
                 .normal_encoding = NormalEncoding::octahedral};
+    }
+
+    /// Roughness and metalness of the usual frame, as texels.
+    std::vector<glm::vec4> own_material() {
+        const Show shown = configuration.show;
+        configuration.show = Show::roughness;
+        const Picture roughness = usual();
+        configuration.show = Show::metalness;
+        const Picture metalness = usual();
+        configuration.show = shown;
+        std::vector<glm::vec4> texels;
+        for (std::size_t i = 0; i < roughness.pixels.size(); ++i) {
+            texels.emplace_back(roughness.pixels[i].r, metalness.pixels[i].r, 0.0F, 0.0F);
+        }
+        return texels;
     }
 
     /// A frame by another renderer from surfaces of the host's.
@@ -128,6 +163,49 @@ TEST_SUITE("host surfaces") {
             CHECK(mean(expected) > 0.005);
             CHECK(relative_mean_square(found, expected) < rounding);
         }
+    }
+
+    TEST_CASE_FIXTURE(HostSurfaceTests, "with a material, surfaces are as glossy as Candela's own") {
+        make_glossy(scene.world);
+        add(scene.world, Environment{.radiance = glm::vec3(0.5F), .picture = nullptr});
+        // Inside the box, so that there is no pixel in which the sky is seen but in mirrors.
+        scene.world.set(scene.camera, looking({0, 1, 0.7F}, {0.1F, 0.7F, -1}));
+        const HostTexture material(device, own_material(), Format::rgba32f);
+        for (const Show show : all_shows) {
+            CAPTURE(to_string(show));
+            configuration.show = show;
+            const Picture expected = usual();
+            CHECK(mean(expected) > 0.005);
+            HostSurfaces surfaces = own_surfaces();
+            surfaces.material = material.name();
+            CHECK(relative_mean_square(from(surfaces), expected) < rounding);
+            if (show != Show::total) continue;
+            surfaces.material = 0;
+            CHECK(relative_mean_square(from(surfaces), expected) > 100.0 * rounding);
+        }
+    }
+
+    TEST_CASE_FIXTURE(HostSurfaceTests, "a material comes and goes from frame to frame") {
+        const HostTexture mirror(device, std::vector(std::size_t{size.x} * size.y, glm::vec4(0, 1, 0, 0)),
+                                 Format::rgba32f);
+        (void)usual();
+        HostSurfaces surfaces = own_surfaces();
+        TestedRenderer other(context->get_proc());
+        REQUIRE(other.configure(configuration).empty());
+        const RenderTarget to(device, size);
+        const auto picture_with = [&](std::uint32_t material) {
+            surfaces.material = material;
+            const RenderView view{.camera = scene.camera, .target = to.target(), .surfaces = surfaces};
+            other.render(scene.world, {&view, 1});
+            return to.read();
+        };
+        const Picture lambertian = picture_with(0);
+        const Picture mirrors = picture_with(mirror.name());
+        CHECK(relative_mean_square(mirrors, lambertian) > 100.0 * rounding);
+        CHECK(picture_with(0) == lambertian);
+        CHECK(throws<gl::GlError>([&] { (void)picture_with(4711); },
+                                  "the host's material, texture 4711, does not exist"));
+        CHECK(picture_with(mirror.name()) == mirrors);
     }
 
     TEST_CASE_FIXTURE(HostSurfaceTests, "surfaces in the conventions of other engines") {

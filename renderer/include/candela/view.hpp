@@ -63,7 +63,11 @@ enum class NormalEncoding : std::uint8_t {
 struct HostSurfaces {
     std::uint32_t depth = 0;   ///< GL name; window depth in [0, 1]: a depth format, or red
     std::uint32_t normal = 0;  ///< GL name
-    std::uint32_t albedo = 0;  ///< GL name; sampled as linear RGB
+    std::uint32_t albedo = 0;  ///< GL name; sampled as linear RGB: the base colour, if there is a material
+    /// GL name; red: roughness, green: metalness, as in Material, linear and in [0, 1]. What is not metal
+    /// then reflects like glTF's materials by default: like an interface of index of refraction 1.5. 0: none,
+    /// and the surfaces are Lambertian.
+    std::uint32_t material = 0;
     /// The projection that `depth` was drawn with, of a camera as in CameraView. Its near and far planes need
     /// not be those of the Camera, but no surface may be nearer than Camera::near_plane.
     glm::mat4 clip_from_view{1.0F};

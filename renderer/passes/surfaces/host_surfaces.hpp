@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <candela/graph/frame_graph.hpp>
 #include <candela/view.hpp>
 #include "renderer/gpu/gpu.hpp"
@@ -13,13 +15,15 @@ struct HostSurfaceInputs {
     TextureHandle depth;  ///< imported, as are the others
     TextureHandle normal;
     TextureHandle albedo;
+    std::optional<TextureHandle> material;  ///< none: the surfaces are Lambertian
     ValueHandle<HostSurfaces> description;  ///< imported
 };
-[[nodiscard]] HostSurfaceInputs import_host_surfaces(FrameGraph& graph);
+[[nodiscard]] HostSurfaceInputs import_host_surfaces(FrameGraph& graph, bool material);
 
 /// Adds node `host-surfaces` (raster): all parts of the surfaces that the host has drawn. Each pixel takes
-/// the texel of the host's at its centre. Depends on the host's textures and the view.
+/// the texel of the host's at its centre. Depends on the host's textures and the view. `glossy`: also what
+/// makes them so; the host must have a material.
 [[nodiscard]] Surfaces add_host_surfaces(FrameGraph& graph, Gpu& gpu, const HostSurfaceInputs& inputs,
-                                         const ViewData& view);
+                                         const ViewData& view, bool glossy);
 
 }  // namespace candela
