@@ -87,7 +87,8 @@ struct Material {
     glm::vec3 specular_colour{1.0F};  ///< linear, >= 0
     float ior = 1.5F;  ///< index of refraction, >= 1; 0: reflects all light (KHR_materials_ior)
     /// Normals in the space of the vertices' tangents, from 0 to 1 for -1 to 1; linear, null: none. They turn
-    /// what the surface reflects, but cast no shadows. x and y are multiplied by `normal_scale`.
+    /// what the surface reflects, but cast no shadows. x and y are multiplied by `normal_scale`. All vertices
+    /// need tangents then, as derive_tangents of tangents.hpp makes them.
     std::shared_ptr<const Image> normal_texture;
     float normal_scale = 1.0F;
     /// The red channel is the share of indirect light that reaches the surface; linear, null: 1. Only
