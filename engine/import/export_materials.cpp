@@ -92,6 +92,12 @@ void write_emission(const glm::vec3& emissive, Json& material, Draft& draft) {
     draft.use_extension(emissive_strength_extension);
 }
 
+/// A textureInfo with a factor, unless that is the default of 1.
+Json with_factor(Json info, const char* name, float factor) {
+    if (factor != 1.0F) info[name] = to_json(factor);
+    return info;
+}
+
 }  // namespace
 
 std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& material) {
@@ -115,6 +121,14 @@ Json MaterialWriter::describe(const Material& material) {
     }
     if (emits(material)) write_emission(material.emissive, json, draft_);
     if (material.emissive_texture) json["emissiveTexture"] = texture_info(material.emissive_texture);
+    if (material.normal_texture) {
+        json["normalTexture"] =
+            with_factor(texture_info(material.normal_texture), "scale", material.normal_scale);
+    }
+    if (material.occlusion_texture) {
+        json["occlusionTexture"] =
+            with_factor(texture_info(material.occlusion_texture), "strength", material.occlusion_strength);
+    }
     if (material.double_sided) json["doubleSided"] = true;
     if (material.alpha_mode != AlphaMode::opaque) json["alphaMode"] = name_of(material.alpha_mode);
     if (material.alpha_cutoff != Material{}.alpha_cutoff) {

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <candela/scene/tangents.hpp>
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
@@ -18,9 +19,11 @@ namespace candela::gltf {
 
 namespace {
 
-// Vertices are written as memory holds them, interleaved, so that every bit is kept.
+// All but the tangents of vertices, which glTF has as floats, is written as memory holds it, interleaved, so
+// that every bit is kept.
 static_assert(offsetof(Vertex, normal) == 12 && offsetof(Vertex, uv) == 24 && offsetof(Vertex, colour) == 32);
-static_assert(sizeof(Vertex) == 48);
+static_assert(offsetof(Vertex, tangent) == 40);
+constexpr std::size_t before_tangent = offsetof(Vertex, tangent);
 
 struct Attribute {
     const char* name;
@@ -33,6 +36,7 @@ constexpr Attribute position{"POSITION", offsetof(Vertex, position), floating_po
 constexpr Attribute normal{"NORMAL", offsetof(Vertex, normal), floating_point, "VEC3"};
 constexpr Attribute uv{"TEXCOORD_0", offsetof(Vertex, uv), floating_point, "VEC2"};
 constexpr Attribute colour{"COLOR_0", offsetof(Vertex, colour), unsigned_short, "VEC4"};
+constexpr Attribute tangent{"TANGENT", before_tangent, floating_point, "VEC4"};
 
 /// glTF requires the bounds of positions.
 void add_bounds(Json& accessor, const std::vector<Vertex>& vertices) {
@@ -51,10 +55,31 @@ bool has_colours(const std::vector<Vertex>& vertices) {
                                [](const Vertex& vertex) { return vertex.colour != glm::u16vec4(65535); });
 }
 
+bool has_tangents(const std::vector<Vertex>& vertices) {
+    return std::ranges::any_of(vertices,
+                               [](const Vertex& vertex) { return vertex.tangent != glm::i16vec4(0); });
+}
+
+/// The bytes of the vertices, each followed by its tangent if these are wanted.
+std::vector<std::byte> interleaved(const std::vector<Vertex>& vertices, bool with_tangents) {
+    std::vector<std::byte> bytes;
+    const auto append = [&](std::span<const std::byte> more) {
+        bytes.insert(bytes.end(), more.begin(), more.end());
+    };
+    for (const Vertex& vertex : vertices) {
+        append(std::as_bytes(std::span(&vertex, 1)).first(before_tangent));
+        const glm::vec4 along = unpacked_tangent(vertex.tangent);
+        if (with_tangents) append(std::as_bytes(std::span(&along, 1)));
+    }
+    return bytes;
+}
+
 /// The accessors of the attributes.
 Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
-    const std::size_t view = draft.add_view(std::as_bytes(std::span(vertices)),
-                                            {{"byteStride", sizeof(Vertex)}, {"target", vertices_target}});
+    const bool with_tangents = has_tangents(vertices);
+    const std::size_t stride = before_tangent + (with_tangents ? sizeof(glm::vec4) : 0);
+    const std::size_t view = draft.add_view(interleaved(vertices, with_tangents),
+                                            {{"byteStride", stride}, {"target", vertices_target}});
     Json attributes;
     const auto add = [&](const Attribute& attribute, Json accessor) {
         accessor.update({{"bufferView", view},
@@ -70,6 +95,7 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
     add(normal, Json::object());
     add(uv, Json::object());
     if (has_colours(vertices)) add(colour, {{"normalized", true}});
+    if (with_tangents) add(tangent, Json::object());
     return attributes;
 }
 

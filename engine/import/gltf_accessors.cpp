@@ -262,6 +262,16 @@ std::vector<glm::vec3> read_vectors(const Document& document, int index, const S
     return vectors;
 }
 
+std::vector<glm::vec4> read_tangents(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 4 || accessor.source.component_type != floating_point) {
+        throw SceneError(fmt::format("accessor {} holds tangents, but is not VEC4 of FLOAT", index));
+    }
+    auto tangents = read<glm::vec4>(document, index, selection, load_floats<glm::vec4>);
+    check_finite(tangents, index, selection);
+    return tangents;
+}
+
 std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
                                                 const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);

@@ -46,6 +46,10 @@ class Selection {
 [[nodiscard]] std::vector<glm::vec3> read_vectors(const Document& document, int accessor,
                                                   const Selection& selection);
 
+/// Tangents: VEC4 of finite FLOAT.
+[[nodiscard]] std::vector<glm::vec4> read_tangents(const Document& document, int accessor,
+                                                   const Selection& selection);
+
 /// Texture coordinates: VEC2 of finite FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
 [[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const Document& document, int accessor,
                                                               const Selection& selection);

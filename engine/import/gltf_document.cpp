@@ -155,10 +155,6 @@ std::vector<std::string> omissions(const Json& document) {
             warnings.push_back(fmt::format("{}s of {} are ignored", texture, specular_extension));
         }
     }
-    if (any_material(document, "normalTexture")) warnings.emplace_back("normal maps are ignored");
-    if (any_material(document, "occlusionTexture")) {
-        warnings.emplace_back("occlusion textures are ignored");
-    }
     return warnings;
 }
 

@@ -187,6 +187,15 @@ class TextureReader {
     std::optional<Use> first_;
 };
 
+/// Normal and occlusion textures.
+void read_bumps(const Json& source, TextureReader& textures, Material& material) {
+    material.normal_texture = textures.read(source.find("normalTexture"), Encoding::linear, "normal texture");
+    material.normal_scale = number_in(source, "normalTexture/scale", 1.0F);
+    material.occlusion_texture =
+        textures.read(source.find("occlusionTexture"), Encoding::linear, "occlusion texture");
+    material.occlusion_strength = number_in(source, "occlusionTexture/strength", 1.0F);
+}
+
 ReadMaterial read_material(const Json& source, const std::string& label, ImageReader& images) {
     Material material;
     TextureReader textures(images, label);
@@ -206,6 +215,7 @@ ReadMaterial read_material(const Json& source, const std::string& label, ImageRe
         material.metal_roughness_texture =
             textures.read(source.find_path("pbrMetallicRoughness/metallicRoughnessTexture"), Encoding::linear,
                           "metallic-roughness texture");
+        read_bumps(source, textures, material);
     }
     material.double_sided = flag_in(source, "doubleSided", false);
     material.alpha_mode = to_alpha_mode(text_in(source, "alphaMode"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -12,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/scene_error.hpp>
+#include <candela/scene/tangents.hpp>
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
@@ -64,6 +66,17 @@ void set_normal(Vertex& vertex, const glm::vec3& normal) {
     if (length > 0.0) {
         vertex.normal = is_unit_length(length) ? normal : glm::vec3(glm::dvec3(normal) / length);
     }
+}
+
+/// Leaves a tangent without length as it is: zero.
+void set_tangent(Vertex& vertex, const glm::vec4& tangent) {
+    const glm::dvec3 along(tangent);
+    const double length = glm::length(along);
+    if (!(length > 0.0)) return;
+    // Those that an export has written, which were rounded to 16 bits, must stay the same.
+    constexpr double tolerance = 1e-4;
+    const glm::dvec3 unit = std::abs(length - 1.0) <= tolerance ? along : along / length;
+    vertex.tangent = packed_tangent(glm::vec4(glm::vec3(unit), tangent.w < 0.0F ? -1.0F : 1.0F));
 }
 
 /// The selected vertices. A missing normal is zero until the faces provide one.
@@ -191,8 +204,25 @@ void count_triangles(const Document& document, const Json& source, ImportBudget&
     if (!find_attribute(source, "NORMAL")) budget.add_memory(triangles * 3 * sizeof(Vertex));
 }
 
+/// Whether the file's tangents may be used: by glTF, those without normals are to be ignored. Tangents belong
+/// to the file's texture coordinates; a transform may turn these.
+bool has_tangents(const Json& source, const ReadMaterial& material) {
+    return find_attribute(source, "TANGENT") && find_attribute(source, "NORMAL") &&
+           material.uv_transform == glm::mat3(1.0F);
+}
+
+/// Derives what tangents a normal texture needs and the file does not have.
+void complete_tangents(Primitive& primitive, ImportBudget& budget) {
+    const auto is_missing = [](const Vertex& vertex) { return vertex.tangent == glm::i16vec4(0); };
+    if (std::ranges::none_of(primitive.vertices, is_missing)) return;
+    // Each vertex may be split; sums and indices by vertex take about as much again.
+    budget.add_memory(primitive.vertices.size() * 3 * sizeof(Vertex));
+    derive_tangents(primitive);
+}
+
 /// Without indices if no triangle has an area.
-Primitive read_primitive(const Document& document, const Json& source, ImportBudget& budget) {
+Primitive read_primitive(const Document& document, const Json& source, const ReadMaterial& material,
+                         ImportBudget& budget) {
     const std::size_t vertex_count = element_count(document, *find_attribute(source, "POSITION"));
     count_triangles(document, source, budget);
     std::vector<std::uint32_t> order = read_order(document, source, vertex_count);
@@ -203,7 +233,13 @@ Primitive read_primitive(const Document& document, const Json& source, ImportBud
     budget.add_memory(selection.count() * sizeof(Vertex));
 
     Primitive primitive;
+    primitive.material = material.material;
     primitive.vertices = read_vertices(document, source, selection);
+    const bool needs_tangents = material.material->normal_texture != nullptr;
+    if (needs_tangents && has_tangents(source, material)) {
+        read_attribute(document, source, "TANGENT", "tangents", selection, primitive.vertices, read_tangents,
+                       set_tangent);
+    }
     std::vector<Corners> triangles = assemble(order, mode_of(source));
     std::erase_if(triangles, [&](const Corners& corners) {
         return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
@@ -214,6 +250,10 @@ Primitive read_primitive(const Document& document, const Json& source, ImportBud
     for (const Corners& corners : triangles) {
         primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
     }
+    for (Vertex& vertex : primitive.vertices) {
+        vertex.uv = glm::vec2(material.uv_transform * glm::vec3(vertex.uv, 1.0F));
+    }
+    if (needs_tangents && !triangles.empty()) complete_tangents(primitive, budget);
     return primitive;
 }
 
@@ -223,16 +263,11 @@ Mesh read_mesh(const Document& document, const Json& source, const std::vector<R
     mesh.name = text_in(source, "name");
     for (const Json& part : source.at("primitives").items()) {
         if (!is_drawn(part, omissions)) continue;
-        Primitive primitive = read_primitive(document, part, budget);
-        if (primitive.indices.empty()) continue;
-        const int material = index_in(part, "material");
-        const ReadMaterial& read =
-            material < 0 ? materials.back() : materials[static_cast<std::size_t>(material)];
-        primitive.material = read.material;
-        for (Vertex& vertex : primitive.vertices) {
-            vertex.uv = glm::vec2(read.uv_transform * glm::vec3(vertex.uv, 1.0F));
-        }
-        mesh.primitives.push_back(std::move(primitive));
+        const int index = index_in(part, "material");
+        const ReadMaterial& material =
+            index < 0 ? materials.back() : materials[static_cast<std::size_t>(index)];
+        Primitive primitive = read_primitive(document, part, material, budget);
+        if (!primitive.indices.empty()) mesh.primitives.push_back(std::move(primitive));
     }
     return mesh;
 }

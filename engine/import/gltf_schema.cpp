@@ -231,6 +231,8 @@ std::vector<Rule> rules() {
         {"materials.[].alphaMode", one_of({"OPAQUE", "MASK", "BLEND"})},
         {"materials.[].alphaCutoff", number(not_negative)},
         {"materials.[].emissiveFactor", numbers(3, not_negative)},
+        {"materials.[].normalTexture.scale", number(any)},
+        {"materials.[].occlusionTexture.strength", number(unit)},
         {"materials.[].pbrMetallicRoughness.baseColorFactor", numbers(4, unit)},
         {"materials.[].pbrMetallicRoughness.metallicFactor", number(unit)},
         {"materials.[].pbrMetallicRoughness.roughnessFactor", number(unit)},

@@ -127,6 +127,14 @@ Fault fault_of_gloss(const Material& material) {
     return {};
 }
 
+/// Of what makes a material bumpy.
+Fault fault_of_bumps(const Material& material) {
+    if (!std::isfinite(material.normal_scale)) return "the scale of the normal texture is not finite";
+    if (!is_share(material.occlusion_strength)) return "the strength of occlusion is not between 0 and 1";
+    if (Fault fault = fault_of(material.normal_texture, Encoding::linear, "the normal texture")) return fault;
+    return fault_of(material.occlusion_texture, Encoding::linear, "the occlusion texture");
+}
+
 Fault fault_of(const Material& material) {
     if (!is_amount(glm::vec3(material.base_colour)) || !is_amount(material.base_colour.a)) {
         return negative_or_infinite("the base colour");
@@ -136,6 +144,7 @@ Fault fault_of(const Material& material) {
         return "the alpha cutoff is negative or not a number";
     }
     if (Fault fault = fault_of_gloss(material)) return fault;
+    if (Fault fault = fault_of_bumps(material)) return fault;
     if (Fault fault = fault_of(material.base_colour_texture, Encoding::srgb, "the base colour texture")) {
         return fault;
     }
@@ -169,6 +178,15 @@ Fault fault_of(const std::vector<Vertex>& vertices, Strictness strictness) {
     return {};
 }
 
+/// Of vertices with this material.
+Fault fault_of_tangents(const std::vector<Vertex>& vertices, const Material& material) {
+    if (!material.normal_texture) return {};
+    const auto without = std::ranges::find(vertices, glm::i16vec4(0), &Vertex::tangent);
+    if (without == vertices.end()) return {};
+    return fmt::format("vertex {} has no tangent, which its normal texture needs: see derive_tangents",
+                       without - vertices.begin());
+}
+
 Fault fault_of(const Primitive& primitive, Strictness strictness) {
     if (!primitive.material) return "it has no material";
     if (const Fault fault = fault_of(*primitive.material)) {
@@ -181,7 +199,8 @@ Fault fault_of(const Primitive& primitive, Strictness strictness) {
     if (largest != primitive.indices.end() && *largest >= primitive.vertices.size()) {
         return fmt::format("index {}, but there are {} vertices", *largest, primitive.vertices.size());
     }
-    return fault_of(primitive.vertices, strictness);
+    if (Fault fault = fault_of(primitive.vertices, strictness)) return fault;
+    return fault_of_tangents(primitive.vertices, *primitive.material);
 }
 
 Fault fault_of_lens(const Camera& camera) {
@@ -258,10 +277,13 @@ Fault fault_of_fit(const DeformedMesh& deformed, const Mesh& mesh) {
                            deformed.vertices->size(), readable(mesh.name), mesh.primitives.size());
     }
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-        const std::size_t count = (*deformed.vertices)[i].size();
-        if (count != mesh.primitives[i].vertices.size()) {
-            return fmt::format("{} vertices, but primitive {} of mesh \"{}\" has {}", count, i,
+        const std::vector<Vertex>& vertices = (*deformed.vertices)[i];
+        if (vertices.size() != mesh.primitives[i].vertices.size()) {
+            return fmt::format("{} vertices, but primitive {} of mesh \"{}\" has {}", vertices.size(), i,
                                readable(mesh.name), mesh.primitives[i].vertices.size());
+        }
+        if (const Fault fault = fault_of_tangents(vertices, *mesh.primitives[i].material)) {
+            return fmt::format("primitive {}: {}", i, *fault);
         }
     }
     return {};

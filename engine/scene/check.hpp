@@ -25,7 +25,7 @@ enum class Strictness : std::uint8_t {
 [[nodiscard]] Fault fault_of(const Mesh& mesh, Strictness strictness);
 /// Reads all vertices.
 [[nodiscard]] Fault fault_of(const DeformedMesh::Vertices& vertices, Strictness strictness);
-/// Whether there are as many vertices as `mesh` has.
+/// Whether there are as many vertices as `mesh` has, with tangents where its materials need them.
 [[nodiscard]] Fault fault_of_fit(const DeformedMesh& deformed, const Mesh& mesh);
 /// Reads all texels.
 [[nodiscard]] Fault fault_of(const SkyPicture& picture);

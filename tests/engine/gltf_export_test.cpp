@@ -24,6 +24,7 @@
 #include <candela/scene/components.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
+#include <candela/scene/tangents.hpp>
 #include "tests/engine/gltf_builder.hpp"
 #include "tests/engine/world_difference.hpp"
 
@@ -250,6 +251,10 @@ Material any_material(const Stock& stock) {
     material.metalness = any_fraction();
     material.roughness = any_fraction();
     material.metal_roughness_texture = any_of(stock.linear_images);
+    material.normal_texture = any_of(stock.linear_images);
+    if (material.normal_texture && any_bool()) material.normal_scale = any_float();
+    material.occlusion_texture = any_of(stock.linear_images);
+    if (material.occlusion_texture && any_bool()) material.occlusion_strength = any_fraction();
     material.specular = any_fraction();
     if (any_bool()) material.specular_colour = glm::vec3(any_amount(), any_amount(), any_positive());
     if (any_bool()) material.ior = any_bool() ? 0.0F : 1.0F + any_amount();
@@ -259,12 +264,16 @@ Material any_material(const Stock& stock) {
     return material;
 }
 
-Vertex any_vertex(bool is_white) {
+/// Only materials with a normal texture have tangents.
+Vertex any_vertex(bool is_white, bool has_tangent) {
     Vertex vertex{{any_amount(), any_amount(), -any_amount()}, any_direction(), {any_float(), any_float()}};
     if (!is_white) {
         vertex.colour =
             glm::u16vec4(*rc::gen::arbitrary<std::uint16_t>(), *rc::gen::arbitrary<std::uint16_t>(),
                          *rc::gen::arbitrary<std::uint16_t>(), *rc::gen::arbitrary<std::uint16_t>());
+    }
+    if (has_tangent) {
+        vertex.tangent = packed_tangent(glm::vec4(any_direction(), any_bool() ? 1.0F : -1.0F));
     }
     return vertex;
 }
@@ -272,18 +281,19 @@ Vertex any_vertex(bool is_white) {
 /// Its triangles have areas, because the import drops those that have none.
 Primitive any_primitive(const Stock& stock) {
     Primitive primitive;
+    primitive.material = any_of(stock.materials);
+    const bool has_tangents = primitive.material->normal_texture != nullptr;
     const bool is_white = any_bool();
     const auto triangles = *rc::gen::inRange<std::uint32_t>(1, 4);
     for (std::uint32_t corner = 0; corner < 3 * triangles; ++corner) {
-        primitive.vertices.push_back(any_vertex(is_white));
+        primitive.vertices.push_back(any_vertex(is_white, has_tangents));
         primitive.vertices.back().position[static_cast<int>(corner % 3)] += 1e13F;
         primitive.indices.push_back(corner);
     }
-    primitive.vertices.push_back(any_vertex(is_white));  // one that no triangle uses
+    primitive.vertices.push_back(any_vertex(is_white, has_tangents));  // one that no triangle uses
     for (Vertex& vertex : primitive.vertices) {
         vertex.position *= 1e-6F;  // at most 1e9 metres
     }
-    primitive.material = any_of(stock.materials);
     return primitive;
 }
 
@@ -412,6 +422,39 @@ TEST_SUITE("glTF export") {
             file.primitive()["material"] = 0;
             CHECK(difference_after(Imported(file).world) == "");
         }
+    }
+
+    TEST_CASE("derived tangents are kept, factors of 1 are not written, and other meshes have no tangents") {
+        const TemporaryDirectory folder;
+        Image bumps = *image(2, 2, 1, Wrap::repeat, Wrap::repeat);
+        bumps.encoding = Encoding::linear;
+        Material material;
+        material.normal_texture = std::make_shared<const Image>(bumps);
+        material.occlusion_texture = material.normal_texture;
+        Mesh mesh = *triangle(std::make_shared<const Material>(material));
+        mesh.primitives[0].vertices[0].normal = glm::normalize(glm::vec3(0.3F, -0.2F, 1.0F));
+        derive_tangents(mesh.primitives[0]);
+        World world;
+        world.set(add(world, "bumpy"), MeshInstance{std::make_shared<const Mesh>(mesh)});
+        world.set(add(world, "flat"), MeshInstance{triangle(std::make_shared<const Material>())});
+        CHECK(difference_after(world) == "");
+        static_cast<void>(export_gltf(world, folder / "a.gltf"));
+        const Json document = Json::parse(contents(folder / "a.gltf"));
+        CHECK(document["meshes"][0]["primitives"][0]["attributes"].contains("TANGENT"));
+        CHECK_FALSE(document["meshes"][1]["primitives"][0]["attributes"].contains("TANGENT"));
+        CHECK(document["materials"][0]["normalTexture"].dump() == R"({"index":0})");
+        CHECK(document["materials"][0]["occlusionTexture"].dump() == R"({"index":0})");
+        CHECK_FALSE(document["materials"][1].contains("normalTexture"));
+    }
+
+    TEST_CASE("a mesh without the tangents that its normal texture needs is not written") {
+        Image bumps = *image(2, 2, 1, Wrap::repeat, Wrap::repeat);
+        bumps.encoding = Encoding::linear;
+        Material material;
+        material.normal_texture = std::make_shared<const Image>(bumps);
+        const TemporaryDirectory folder;
+        CHECK(error_of_export(with_material(material), folder / "a.gltf").find("vertex 0 has no tangent") !=
+              std::string::npos);
     }
 
     TEST_CASE("numbers are written with as few digits as they need") {

@@ -93,7 +93,8 @@ TEST_SUITE("import limits") {
         const Bytes file = complete_scene().gltf();
         check_limit(file, &ImportLimits::bytes, file.size(), "bytes");
         check_limit(file, &ImportLimits::image_pixels, 2, "image_pixels");
-        check_limit(file, &ImportLimits::pixels, 2, "pixels");
+        // One picture of two pixels, once as colours and once as normals.
+        check_limit(file, &ImportLimits::pixels, 2 + 2, "pixels");
         check_limit(file, &ImportLimits::nodes, 3, "nodes");
         check_limit(file, &ImportLimits::depth, 2, "depth");
         check_limit(file, &ImportLimits::triangles, 1, "triangles");
@@ -104,11 +105,11 @@ TEST_SUITE("import limits") {
         file.document["images"] = {{{"uri", sixteen_bit_png}}, {{"uri", three_pixels}}};
         file.document["textures"] = {{{"source", 0}}, {{"source", 1}}};
         file.document["materials"][0]["emissiveTexture"]["index"] = 1;
-        check_limit(file.gltf(), &ImportLimits::pixels, 2 + 3, "pixels");
+        check_limit(file.gltf(), &ImportLimits::pixels, 2 + 2 + 3, "pixels");
     }
 
     TEST_CASE("memory may be 64 MiB, or a multiple of the bytes of the files") {
-        // Quads without normals that share accessors: 3 · 40 bytes for the vertices of each triangle alone.
+        // Quads without normals that share accessors: 3 · 48 bytes for the vertices of each triangle alone.
         GltfBuilder file;
         file.add_primitive(std::vector<float>(9 * 20'000, 0.5F));
         const Json primitive = file.primitive();
@@ -122,6 +123,19 @@ TEST_SUITE("import limits") {
         CHECK(outcome(bytes, options) == "imported");
         options.limits.growth = 0;
         CHECK(outcome(complete_scene().gltf(), options) == "imported");
+    }
+
+    TEST_CASE("memory for tangents that are to be derived counts") {
+        // 200 primitives share 3,000 vertices: 29 MB as they are, and more than 64 MiB if each may be split.
+        GltfBuilder file = complete_scene();
+        std::vector<float> positions(3 * 3000, 0.5F);
+        positions[3] = positions[7] = 1.5F;  // a triangle that has an area
+        Json primitive = file.add_primitive(positions);
+        primitive["attributes"]["NORMAL"] = file.add_vectors(std::vector<float>(3 * 3000, 1.0F));
+        file.document["meshes"][0]["primitives"] = std::vector<Json>(200, primitive);
+        CHECK(outcome(file.glb(), {}) == "imported");
+        for (Json& each : file.document["meshes"][0]["primitives"]) each["material"] = 0;
+        CHECK(outcome(file.glb(), {}).ends_with("(growth)"));
     }
 
     TEST_CASE("8,000 buffers that name one file read it once") {
@@ -185,6 +199,7 @@ TEST_SUITE("import limits") {
         file.document["images"] = {{{"uri", "two.png"}}, {{"uri", "./two.png"}}};
         file.document["textures"] = {{{"source", 0}}, {{"source", 1}}};
         file.document["materials"][0]["emissiveTexture"]["index"] = 1;
+        file.document["materials"][0].erase("normalTexture");  // which is decoded as other values
         ImportOptions options;
         options.limits.pixels = 2;
         World world;

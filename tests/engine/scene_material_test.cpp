@@ -2,10 +2,12 @@
 #include <stb/stb_image_write.h>
 
 #include <cstdlib>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "tests/engine/gltf_builder.hpp"
+#include "tests/engine/malformed_gltf.hpp"
 
 using namespace candela;
 using namespace candela::test;
@@ -48,6 +50,26 @@ Json data_uri(const Bytes& image) {
 bool is_rough_metal(const Material& material) {
     return material.metalness == 1.0F && material.roughness == 1.0F && material.specular == 1.0F &&
            material.ior == 1.5F;
+}
+
+/// A triangle that faces +Z, with normals, texture coordinates whose u grows along +X and whose v grows along
+/// -Y, and a normal texture.
+GltfBuilder bumpy() {
+    GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+    Json attributes = file.primitive()["attributes"];
+    attributes["NORMAL"] = file.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, 1});
+    attributes["TEXCOORD_0"] = file.add_accessor(std::vector<float>{0, 1, 1, 1, 0, 0}, 5126, "VEC2", 2);
+    file.primitive()["attributes"] = std::move(attributes);
+    file.document["materials"] = Json::parse(R"([{"normalTexture": {"index": 0}}])");
+    return file;
+}
+
+std::vector<glm::i16vec4> tangents_of(const Imported& imported) {
+    std::vector<glm::i16vec4> tangents;
+    for (const Vertex& vertex : imported.primitive().vertices) {
+        tangents.push_back(vertex.tangent);
+    }
+    return tangents;
 }
 
 const Image& texture_of(const Imported& imported) {
@@ -167,13 +189,11 @@ TEST_SUITE("glTF materials") {
         file.document["textures"] = Json::parse(R"([{"source": 0}])");
         file.document["extensionsUsed"] = {"KHR_materials_specular"};
         file.document["materials"] = Json::parse(R"([
-            {"normalTexture": {"index": 0}},
-            {"normalTexture": {"index": 0}, "occlusionTexture": {"index": 0}, "extensions": {"KHR_materials_specular":
-             {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 0}}}}])");
+            {},
+            {"extensions": {"KHR_materials_specular": {"specularTexture": {"index": 0}, "specularColorTexture": {"index": 0}}}}])");
         CHECK(Imported(file).report.warnings ==
               std::vector<std::string>{"specularTextures of KHR_materials_specular are ignored",
-                                       "specularColorTextures of KHR_materials_specular are ignored",
-                                       "normal maps are ignored", "occlusion textures are ignored"});
+                                       "specularColorTextures of KHR_materials_specular are ignored"});
     }
 
     TEST_CASE("metalness, roughness and specular reflection") {
@@ -205,6 +225,102 @@ TEST_SUITE("glTF materials") {
         CHECK(material.base_colour_texture->encoding == Encoding::srgb);
         CHECK(material.metal_roughness_texture->texels == material.base_colour_texture->texels);
         CHECK(imported.report.warnings.empty());
+    }
+
+    TEST_CASE("normal and occlusion textures") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        CHECK_FALSE(is_bumpy(Imported(file).mesh()));
+        file.document["materials"][0]["normalTexture"] = {{"index", 0}};
+        file.document["materials"][0]["occlusionTexture"] = {{"index", 0}};
+        const Imported plain(file);
+        CHECK(is_bumpy(plain.mesh()));
+        CHECK(plain.report.warnings.empty());
+        CHECK(plain.primitive().material->normal_scale == 1.0F);
+        CHECK(plain.primitive().material->occlusion_strength == 1.0F);
+
+        file.document["materials"][0]["normalTexture"]["scale"] = -2.5;
+        file.document["materials"][0]["occlusionTexture"]["strength"] = 0.25;
+        const Imported scaled(file);
+        const Material& material = *scaled.primitive().material;
+        CHECK(material.normal_scale == -2.5F);
+        CHECK(material.occlusion_strength == 0.25F);
+        REQUIRE(material.normal_texture != nullptr);
+        CHECK(material.normal_texture->encoding == Encoding::linear);
+        CHECK(material.normal_texture->texels == four_colours);
+        CHECK(material.occlusion_texture == material.normal_texture);
+    }
+
+    TEST_CASE("an unlit material has no bumps") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        file.document["extensionsUsed"] = {"KHR_materials_unlit"};
+        file.document["materials"][0]["extensions"]["KHR_materials_unlit"] = Json::object();
+        file.document["materials"][0]["normalTexture"] = {{"index", 0}};
+        file.document["materials"][0]["occlusionTexture"] = {{"index", 0}};
+        CHECK_FALSE(is_bumpy(Imported(file).mesh()));
+    }
+
+    TEST_CASE("tangents of the file are normalised, and those that are missing are derived") {
+        GltfBuilder file = bumpy();
+        Json& attributes = file.primitive()["attributes"];
+        // u grows along +X, v along -Y.
+        CHECK(tangents_of(Imported(file)) == std::vector<glm::i16vec4>(3, {32767, 0, 0, 32767}));
+
+        attributes["TANGENT"] = file.add_accessor(
+            std::vector<float>{0, 1, 0, -1, 0, 0.5F, 0, 1, -3e30F, 0, 4e30F, 1}, 5126, "VEC4", 4);
+        CHECK(tangents_of(Imported(file)) == std::vector<glm::i16vec4>{{0, 32767, 0, -32767},
+                                                                       {0, 32767, 0, 32767},
+                                                                       {-19660, 0, 26214, 32767}});
+        SUBCASE("without normals, glTF ignores tangents") {
+            attributes.erase("NORMAL");
+            CHECK(tangents_of(Imported(file)) == std::vector<glm::i16vec4>(3, {32767, 0, 0, 32767}));
+        }
+        SUBCASE("one of them has no length") {
+            attributes["TANGENT"] =
+                file.add_accessor(std::vector<float>{0, 1, 0, -1, 0, 0, 0, 1, 0, 1, 0, 1}, 5126, "VEC4", 4);
+            CHECK(tangents_of(Imported(file)) == std::vector<glm::i16vec4>(3, {32767, 0, 0, 32767}));
+        }
+        SUBCASE("texture coordinates are turned by a quarter: u grows downwards") {
+            file.document["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"] = {
+                {"rotation", 1.5707963267948966}};
+            CHECK(tangents_of(Imported(file)) == std::vector<glm::i16vec4>(3, {0, -32767, 0, 32767}));
+        }
+        SUBCASE("without a normal texture, there are no tangents, and those of the file are not read") {
+            file.document["materials"][0].erase("normalTexture");
+            file.document["accessors"].back()["type"] = "VEC2";
+            CHECK(tangents_of(Imported(file)) == std::vector<glm::i16vec4>(3, glm::i16vec4(0)));
+        }
+    }
+
+    TEST_CASE("tangents that are malformed, and factors out of range") {
+        const auto with_tangents = [](const std::vector<float>& values, const char* type,
+                                      std::size_t components) {
+            GltfBuilder file = bumpy();
+            file.primitive()["attributes"]["TANGENT"] = file.add_accessor(values, 5126, type, components);
+            return error_of(file);
+        };
+        CHECK(with_tangents(std::vector<float>(8, 1.0F), "VEC4", 4) ==
+              "mesh 0: it has 3 positions, but 2 tangents");
+        CHECK(with_tangents(std::vector<float>(9, 1.0F), "VEC3", 3) ==
+              "mesh 0: accessor 3 holds tangents, but is not VEC4 of FLOAT");
+        std::vector<float> infinite(12, 1.0F);
+        infinite[6] = std::numeric_limits<float>::infinity();
+        CHECK(with_tangents(infinite, "VEC4", 4) == "mesh 0: accessor 3 has a NaN or infinity in element 1");
+
+        const auto with_material = [](const char* member, const char* json) {
+            GltfBuilder file = bumpy();
+            file.document["materials"][0][member] = Json::parse(json);
+            return error_of(file);
+        };
+        CHECK(with_material("normalTexture", R"({"index": 0, "scale": "1"})") ==
+              "materials[0].normalTexture.scale is not a number");
+        CHECK(with_material("normalTexture", R"({"index": 0, "scale": 1e39})") ==
+              "materials[0].normalTexture.scale is 1e+39, which is out of range");
+        CHECK(with_material("occlusionTexture", R"({"index": 0, "strength": 1.5})") ==
+              "materials[0].occlusionTexture.strength is 1.5, which is out of range");
+        CHECK(with_material("occlusionTexture", R"({"index": 0, "strength": -0.5})") ==
+              "materials[0].occlusionTexture.strength is -0.5, which is out of range");
+        CHECK(with_material("occlusionTexture", R"({"index": 1})") ==
+              "materials[0].occlusionTexture.index is 1, but there are 1 textures");
     }
 
     TEST_CASE("alpha modes and their cutoff") {
@@ -302,9 +418,9 @@ TEST_SUITE("glTF materials") {
         }
     }
 
-    TEST_CASE("an image that no base colour uses is not loaded") {
+    TEST_CASE("an image of an emission that is zero is not loaded") {
         GltfBuilder file = textured({{"uri", "nowhere.png"}});
-        file.document["materials"][0] = Json::parse(R"({"normalTexture": {"index": 0}})");
+        file.document["materials"][0] = Json::parse(R"({"emissiveTexture": {"index": 0}})");
         CHECK(Imported(file).report.triangles == 1);
     }
 }

@@ -148,10 +148,14 @@ class WorldComparison {
         expect(a.metalness == b.metalness && a.roughness == b.roughness, "its metalness and roughness");
         expect(a.specular == b.specular && a.specular_colour == b.specular_colour, "its specular colour");
         expect(a.ior == b.ior, "its index of refraction");
+        expect(a.normal_scale == b.normal_scale, "the scale of its normal texture");
+        expect(a.occlusion_strength == b.occlusion_strength, "the strength of its occlusion");
         compare_shared(a.base_colour_texture, b.base_colour_texture, images_, "its texture");
         compare_shared(a.metal_roughness_texture, b.metal_roughness_texture, images_,
                        "its metal-roughness texture");
         compare_shared(a.emissive_texture, b.emissive_texture, images_, "its emissive texture");
+        compare_shared(a.normal_texture, b.normal_texture, images_, "its normal texture");
+        compare_shared(a.occlusion_texture, b.occlusion_texture, images_, "its occlusion texture");
     }
 
     void compare(const Image& a, const Image& b) {
