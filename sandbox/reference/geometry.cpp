@@ -11,6 +11,7 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
+#include <candela/scene/tangents.hpp>
 
 #include "sandbox/reference/constants.hpp"
 
@@ -48,6 +49,19 @@ std::array<Triangle::Corner, 3> placed_corners(const Primitive& primitive, std::
     }
     if (glm::determinant(glm::mat3(to_world)) < 0.0F) std::swap(corners[1], corners[2]);
     return corners;
+}
+
+/// In the order of placed_corners. In a mirrored mesh, normal and tangent have the other bitangent.
+Tangents placed_tangents(const Primitive& primitive, std::size_t first, const glm::mat4& to_world) {
+    const glm::mat3 placement(to_world);
+    const bool is_mirrored = glm::determinant(placement) < 0.0F;
+    Tangents tangents{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::vec4 tangent = unpacked_tangent(primitive.vertices[primitive.indices[first + i]].tangent);
+        tangents[i] = glm::vec4(placement * glm::vec3(tangent), is_mirrored ? -tangent.w : tangent.w);
+    }
+    if (is_mirrored) std::swap(tangents[1], tangents[2]);
+    return tangents;
 }
 
 std::size_t group_of(AlphaMode mode) {
@@ -124,7 +138,11 @@ void Geometry::add(const Primitive& primitive, const glm::mat4& to_world, std::u
         const glm::vec3 across =
             glm::cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position);
         const float twice_area = glm::length(across);
-        if (twice_area > 0.0F) triangles_.push_back({corners, across / twice_area, material, part});
+        if (twice_area <= 0.0F) continue;
+        triangles_.push_back({corners, across / twice_area, material, part, 0});
+        if (!primitive.material->normal_texture) continue;
+        triangles_.back().tangents = static_cast<std::uint32_t>(tangents_.size());
+        tangents_.push_back(placed_tangents(primitive, i, to_world));
     }
 }
 
@@ -255,6 +273,11 @@ glm::vec3 position_at(const Triangle& triangle, glm::vec2 weights) {
 glm::vec3 normal_at(const Triangle& triangle, glm::vec2 weights) {
     const auto& [a, b, c] = triangle.corners;
     return a.normal + weights.x * (b.normal - a.normal) + weights.y * (c.normal - a.normal);
+}
+
+glm::vec4 tangent_at(const Tangents& tangents, glm::vec2 weights) {
+    const auto& [a, b, c] = tangents;
+    return a + weights.x * (b - a) + weights.y * (c - a);
 }
 
 glm::vec2 uv_at(const Triangle& triangle, glm::vec2 weights) {

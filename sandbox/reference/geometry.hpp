@@ -27,7 +27,11 @@ struct Triangle {
     glm::vec3 front;         ///< unit normal of the plane
     std::uint32_t material;  ///< index
     std::uint32_t part;      ///< one number per primitive of each placed mesh
+    std::uint32_t tangents;  ///< index; only if the material has a normal texture
 };
+
+/// Tangents of a triangle's corners in world space, not of unit length; w as in Vertex::tangent.
+using Tangents = std::array<glm::vec4, 3>;
 
 struct Ray {
     glm::vec3 origin;
@@ -77,6 +81,10 @@ class Geometry {
     [[nodiscard]] const SurfaceMaterial& material(const Triangle& triangle) const {
         return materials_[triangle.material];
     }
+    /// Of a triangle whose material has a normal texture.
+    [[nodiscard]] const Tangents& tangents(const Triangle& triangle) const {
+        return tangents_[triangle.tangents];
+    }
     /// The distance in metres at which rays start above a surface: about 100 times the rounding of positions.
     [[nodiscard]] float ray_offset() const { return 1e-5F * bounds_.radius; }
     [[nodiscard]] const Sphere& bounds() const { return bounds_; }
@@ -111,6 +119,7 @@ class Geometry {
 
     std::vector<SurfaceMaterial> materials_;
     std::vector<Triangle> triangles_;
+    std::vector<Tangents> tangents_;
     std::array<Group, 3> groups_{};  // opaque, masked, blended
     Sphere bounds_;
     Device device_;
@@ -121,6 +130,7 @@ class Geometry {
 /// The position in metres; `weights` are those of the second and third corner.
 [[nodiscard]] glm::vec3 position_at(const Triangle& triangle, glm::vec2 weights);
 [[nodiscard]] glm::vec3 normal_at(const Triangle& triangle, glm::vec2 weights);
+[[nodiscard]] glm::vec4 tangent_at(const Tangents& tangents, glm::vec2 weights);
 [[nodiscard]] glm::vec2 uv_at(const Triangle& triangle, glm::vec2 weights);
 /// Linear colour and alpha of the surface.
 [[nodiscard]] glm::vec4 colour_at(const Triangle& triangle, const SurfaceMaterial& material,

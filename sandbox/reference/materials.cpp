@@ -71,6 +71,15 @@ Gloss SurfaceMaterial::gloss(glm::vec3 colour, glm::vec2 uv) const {
             .alpha = rough * rough};
 }
 
+glm::vec3 SurfaceMaterial::bump(glm::vec2 uv) const {
+    const glm::vec3 stored = 2.0F * glm::vec3(normal_texture->at(uv)) - 1.0F;
+    return {normal_scale * stored.x, normal_scale * stored.y, stored.z};
+}
+
+float SurfaceMaterial::openness(glm::vec2 uv) const {
+    return occlusion_texture ? glm::mix(1.0F, occlusion_texture->at(uv).r, occlusion_strength) : 1.0F;
+}
+
 std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& material) {
     const auto [found, is_new] =
         index_.try_emplace(material.get(), static_cast<std::uint32_t>(materials_.size()));
@@ -87,7 +96,11 @@ std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& mate
                               .roughness = material->roughness,
                               .dielectric_f0 = dielectric_f0(*material),
                               .specular = material->specular,
-                              .metal_roughness_texture = texture_of(material->metal_roughness_texture)});
+                              .metal_roughness_texture = texture_of(material->metal_roughness_texture),
+                              .normal_texture = texture_of(material->normal_texture),
+                              .normal_scale = material->normal_scale,
+                              .occlusion_texture = texture_of(material->occlusion_texture),
+                              .occlusion_strength = material->occlusion_strength});
     }
     return found->second;
 }

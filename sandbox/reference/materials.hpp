@@ -45,6 +45,10 @@ struct SurfaceMaterial {
     glm::vec3 dielectric_f0;  ///< reflectance of what is not metal for light along the normal
     float specular;           ///< the same for light that grazes it
     std::shared_ptr<const Texture> metal_roughness_texture;  ///< null: none
+    std::shared_ptr<const Texture> normal_texture;           ///< null: none
+    float normal_scale;
+    std::shared_ptr<const Texture> occlusion_texture;  ///< null: none
+    float occlusion_strength;
 
     /// Linear RGB, with alpha.
     [[nodiscard]] glm::vec4 colour(glm::vec2 uv) const {
@@ -56,6 +60,10 @@ struct SurfaceMaterial {
     }
     /// What it looks like where its base colour is `colour`.
     [[nodiscard]] Gloss gloss(glm::vec3 colour, glm::vec2 uv) const;
+    /// Normal in the space of tangent, bitangent and normal, not of unit length. There must be a texture.
+    [[nodiscard]] glm::vec3 bump(glm::vec2 uv) const;
+    /// The share of the light from emitters, the sky and other surfaces that reaches it.
+    [[nodiscard]] float openness(glm::vec2 uv) const;
     [[nodiscard]] bool is_hole(glm::vec4 colour) const {
         return alpha_mode == AlphaMode::mask && colour.a < alpha_cutoff;
     }

@@ -60,21 +60,24 @@ glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen
     for (const SeenSurface& layer : seen) {
         for (std::uint32_t i = 0; i < samples; ++i) {
             sampler.start(trace.settings.first_sample / 2 + i);
-            sum += layer.weight * indirect_light(trace.scene, layer.surface, sampler, trace.settings);
+            sum += layer.weight * layer.openness *
+                   indirect_light(trace.scene, layer.surface, sampler, trace.settings);
         }
     }
     return sum / static_cast<double>(samples);
 }
 
 /// What a surface emits, and what it reflects of the light of emitters and of the sky.
-glm::vec3 sampled_light(const Trace& trace, const Surface& surface, Sampler& sampler) {
+glm::vec3 sampled_light(const Trace& trace, const SeenSurface& seen, Sampler& sampler) {
+    const Surface& surface = seen.surface;
     glm::dvec3 sum(0.0);
     for (std::uint32_t i = 0; i < trace.settings.samples; ++i) {
         sampler.start(trace.settings.first_sample + i);
         if (trace.scene.emitters.any()) sum += light_of_emitters(trace.scene, surface, sampler);
         if (trace.scene.sky.any()) sum += light_of_sky(trace.scene, surface, sampler);
     }
-    return surface.emission + surface.albedo * glm::vec3(sum / static_cast<double>(trace.settings.samples));
+    const glm::vec3 mean(sum / static_cast<double>(trace.settings.samples));
+    return surface.emission + seen.openness * surface.albedo * mean;
 }
 
 /// Sums the direct light of all layers, and records what distinguishes the pixel from its neighbours.
@@ -85,7 +88,7 @@ glm::vec3 add_direct(const Trace& trace, const std::vector<SeenSurface>& seen, S
         Direct direct = direct_light(trace.scene, layer.surface, trace.settings.defect);
         sum += layer.weight * direct.radiance;
         if (trace.scene.emitters.any() || trace.scene.sky.any()) {
-            sum += layer.weight * sampled_light(trace, layer.surface, sampler);
+            sum += layer.weight * sampled_light(trace, layer, sampler);
         }
         trait.layers.push_back(
             {layer.surface.position, layer.surface.face, layer.part, std::move(direct.states)});

@@ -59,9 +59,10 @@ inline constexpr int edge_radius = 2;
 /// Traces what the camera sees through the centres of its pixels, or points beside them. Direct light: every
 /// light at the first surface, with a shadow ray. Indirect light: unclamped paths that continue from there,
 /// and that sample the light by looking around and by looking from the lights (see lighting.hpp). Russian
-/// roulette ends paths without bias. Throws std::invalid_argument if the number of samples is odd or 0 or if
-/// the picture is empty, and SceneError if `camera` is not a camera of the scene. Once `stop` is requested,
-/// it returns within the time of a pixel, and what it returns is incomplete.
+/// roulette ends paths without bias. Normal and occlusion textures count at the first surface: occlusion dims
+/// all of its light but that of points and directions. Throws std::invalid_argument if the number of samples
+/// is odd or 0 or if the picture is empty, and SceneError if `camera` is not a camera of the scene. Once
+/// `stop` is requested, it returns within the time of a pixel, and what it returns is incomplete.
 ///
 /// Differences from the renderer: a triangle that faces away from a light is never lit, whatever the normals
 /// of the mesh; images are sampled at these points, without mip maps; blended surfaces are sorted per

@@ -14,6 +14,20 @@ void add_gloss(Surface& surface, const Gloss& gloss, glm::vec3 direction) {
     surface.bsdf = Bsdf(gloss, surface.normal, -glm::normalize(direction));
 }
 
+/// Unit normal of the front, turned by the normal texture: glTF 2.0, section 3.9.3.
+glm::vec3 bumpy_normal(const Geometry& geometry, const Triangle& triangle, glm::vec2 weights) {
+    const SurfaceMaterial& material = geometry.material(triangle);
+    const glm::vec3 normal = glm::normalize(normal_at(triangle, weights));
+    if (!material.normal_texture) return normal;
+    const glm::vec4 tangent = tangent_at(geometry.tangents(triangle), weights);
+    const glm::vec3 along = glm::normalize(glm::vec3(tangent));
+    const glm::vec3 upwards = tangent.w * glm::cross(normal, along);
+    const glm::vec3 bump = material.bump(uv_at(triangle, weights));
+    const glm::vec3 turned = bump.x * along + bump.y * upwards + bump.z * normal;
+    const float length = glm::length(turned);
+    return length > 0.0F ? turned / length : normal;  // where texels cancel each other, there is no direction
+}
+
 SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction, float light_through) {
     const Triangle& triangle = geometry.triangle(hit.triangle);
     const SurfaceMaterial& material = geometry.material(triangle);
@@ -23,11 +37,12 @@ SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 dir
     const float cover = material.alpha_mode == AlphaMode::blend ? colour.a : 1.0F;
     SeenSurface seen{.surface = {.position = position_at(triangle, hit.weights),
                                  .face = side * triangle.front,
-                                 .normal = side * glm::normalize(normal_at(triangle, hit.weights)),
+                                 .normal = side * bumpy_normal(geometry, triangle, hit.weights),
                                  .albedo = glm::vec3(colour),
                                  .emission = material.emission(uv)},
                      .weight = light_through * cover,
-                     .part = triangle.part};
+                     .part = triangle.part,
+                     .openness = material.openness(uv)};
     if (material.is_glossy) add_gloss(seen.surface, material.gloss(glm::vec3(colour), uv), direction);
     return seen;
 }

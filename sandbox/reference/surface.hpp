@@ -27,14 +27,17 @@ struct SeenSurface {
     Surface surface;
     float weight;        ///< share of the pixel that shows it
     std::uint32_t part;  ///< of the geometry
+    float openness;      ///< share of the light from emitters, the sky and other surfaces that reaches it
 };
 
 /// The surfaces seen along a ray, nearest first: blended surfaces, each weighted by the transparency of those
-/// in front of it, then the solid one. They are shaded with the normals of the mesh.
+/// in front of it, then the solid one. They are shaded with the normals of the mesh, turned by normal
+/// textures.
 [[nodiscard]] std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray);
 
-/// A surface for bounced light, with the flat normal of its triangle, that a ray from the viewer has hit. The
-/// back of a single-sided surface is black. If not `as_it_is`, it is Lambertian, of equal albedo.
+/// A surface for bounced light that a ray from the viewer has hit, with the flat normal of its triangle:
+/// normal and occlusion textures do not count. The back of a single-sided surface is black. If not
+/// `as_it_is`, it is Lambertian, of equal albedo.
 [[nodiscard]] Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction,
                                      bool as_it_is = true);
 
