@@ -19,6 +19,7 @@ from fields import boxes, plane
 from glass import glass
 from gloss import bath, metals
 from halls import fins, hall
+from helmet import helmet
 from house import house, street
 from rooms import apartment, cornell, corner, furnace, lamp, neon, rooms, two_rooms
 
@@ -38,6 +39,7 @@ SHIPPED = {
     "apartment": apartment,
     "metals": metals,
     "bath": bath,
+    "helmet": helmet,
     "rooms-12": lambda: rooms(12),
     "boxes": boxes,
 }

@@ -7,6 +7,7 @@ import struct
 
 FLOAT, UNSIGNED_INT = 5126, 5125
 VERTICES, INDICES = 34962, 34963
+CLAMP_TO_EDGE = 33071
 
 
 class Scene:
@@ -81,12 +82,15 @@ class Scene:
         uri = "data:application/octet-stream;base64," + base64.b64encode(hdr).decode()
         self.document["scenes"][0]["extensions"] = {"CANDELA_environment": {"uri": uri}}
 
-    def texture(self, name, png):
-        """A texture that repeats."""
+    def texture(self, name, png, repeats=True):
+        """A texture that repeats, or whose edges go on beyond it."""
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(png)}
         self.data += png + bytes(-len(png) % 4)  # floats that follow stay aligned
         image = {"name": name, "mimeType": "image/png", "bufferView": self.add("bufferViews", view)}
-        return self.add("textures", {"source": self.add("images", image)})
+        texture = {"source": self.add("images", image)}
+        if not repeats:
+            texture["sampler"] = self.add("samplers", {"wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE})
+        return self.add("textures", texture)
 
     def mesh(self, name, surface, material):
         """`surface` is a Surface of shapes.py; its texture coordinates are optional."""

@@ -191,6 +191,7 @@ TEST_SUITE("shipped scenes") {
              {50.4F, 2.8F, 2.2F},
              {"room-2", "room-3", "room-6", "room-12"}},
             {"metals", 9626, 1, 0, 1, {-5, 0, -2.6F}, {5, 3.2F, 5}},
+            {"helmet", 2900, 1, 0, 1, {-4, 0, -2}, {4, 2.6F, 4}},
             {"bath", 292, 0, 0, 0, {-1.5F, 0, -1.5F}, {1.5F, 2.5F, 1.5F}},
             // The highest point is the top of a box that will fall.
             {"boxes", 24002, 0, 0, 1, {-20, 0, -20}, {20, 5.2F, 20}},
