@@ -71,7 +71,8 @@
 #define UNIT_MEAN 8
 #define UNIT_INDIRECT 9
 #define UNIT_BUMPS 10
-#define UNIT_LAST 10
+#define UNIT_MIRRORED_ALBEDO 11
+#define UNIT_LAST 11
 // Passes that draw meshes read no G-buffer.
 #define UNIT_EMISSION UNIT_ALBEDO
 #define UNIT_SKY UNIT_INDIRECT

@@ -226,7 +226,8 @@ void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const 
         add_mirror_rays(graph, gpu, surfaces, shared.lit.tracing, sources, view, out.averaged);
     const auto reflected =
         shade_mirrored(graph, gpu, shared, view, out, mirrored.surfaces, parts.indirect.has_value());
-    parts.radiance = add_mirror_resolve(graph, gpu, surfaces, mirrored, reflected, view, *parts.radiance);
+    parts.radiance =
+        add_mirror_resolve(graph, gpu, surfaces, sources, mirrored, reflected, view, *parts.radiance);
     graph.append_to_names(view_ending(parts.index));
 }
 

@@ -1,7 +1,10 @@
 """Scenes with metals, plastics and mirrors."""
 
+import math
+
 from gltf_writer import Scene
 from hdr_writer import direction, hdr
+from png_writer import opaque_png
 from shapes import aim, ball, block, box, cylinder, flat, ground, looking, pane, room, turn
 
 SKY_WIDTH, SKY_HEIGHT = 32, 16
@@ -39,13 +42,37 @@ def metals():
     return scene
 
 
+TILE_TEXELS, EDGE_TEXELS = 32, 3
+
+
+def tile_normal(x, y):
+    """Of a tile with rounded edges, in a texel: x to the right, y up."""
+    def slope(i):
+        before, behind = EDGE_TEXELS - i, i - (TILE_TEXELS - 1 - EDGE_TEXELS)
+        return 0.25 * (max(behind, 0) - max(before, 0))
+
+    normal = (slope(x), -slope(y), 1.0)
+    length = math.sqrt(sum(part * part for part in normal))
+    return tuple(round(127.5 + 127.5 * part / length) for part in normal)
+
+
+def tiled(surface, width):
+    """The surface with a texture that repeats after so many metres, upright on walls."""
+    for (x, y, z), normal in zip(surface.positions, surface.normals):
+        along = z if abs(normal[0]) > 0.5 else x
+        down = z if abs(normal[1]) > 0.5 else -y
+        surface.uvs.append([along / width, down / width])
+    return surface
+
+
 def bath():
     """A bathroom of 3 m x 3 m with glossy tiles, a tub, a chrome pipe and a mirror on the wall. Its only light is a panel
     at the ceiling."""
     scene = Scene()
     plaster = scene.material("plaster", [0.75, 0.74, 0.7])
-    tiles = scene.glossy("tiles", [0.25, 0.45, 0.5], 0.15)
-    slabs = scene.glossy("slabs", [0.3, 0.28, 0.26], 0.3)
+    edges = {"normalTexture": {"index": scene.texture("tile", opaque_png(TILE_TEXELS, TILE_TEXELS, tile_normal))}}
+    tiles = scene.glossy("tiles", [0.25, 0.45, 0.5], 0.15, **edges)
+    slabs = scene.glossy("slabs", [0.3, 0.28, 0.26], 0.3, **edges)
     enamel = scene.glossy("enamel", [0.8, 0.8, 0.78], 0.1)
     silver = scene.glossy("silver", [0.93, 0.93, 0.92], 0.0, 1.0)
     chrome = scene.glossy("chrome", CHROME, 0.08, 1.0)
@@ -53,9 +80,9 @@ def bath():
 
     north, south, east, west, ceiling, floor = (flat([quad]) for quad in room((-1.5, 0, -1.5), (1.5, 2.5, 1.5)))
     for name, surface in (("first wall", north), ("second wall", south), ("third wall", east), ("fourth wall", west)):
-        scene.place(name, surface, tiles)
+        scene.place(name, tiled(surface, 0.25), tiles)
     scene.place("ceiling", ceiling, plaster)
-    scene.place("floor", floor, slabs)
+    scene.place("floor", tiled(floor, 0.5), slabs)
     scene.place("mirror", pane(1.2, 1.0), silver, translation=[0.4, 1.05, -1.495])
     scene.place("cabinet", flat(box(1.0, 0.75, 0.45)), wood, translation=[0.4, 0.0, -1.27])
     sides = block((-1.45, 0, -1.2), (-0.7, 0.1, 1.0)) + block((-1.45, 0.1, -1.2), (-0.7, 0.55, -1.1))

@@ -15,6 +15,7 @@ uniform float ray_offset;  // metres above the surface, where rays start
 
 layout(location = 0) out vec4 width_and_position;    // metres: of a pixel there, 0 without a surface; position
 layout(location = 1) out vec4 normal_and_direction;  // octahedral; from the surface towards the glossy one
+// Alpha: radiance of an emitter that the ray was sent to, negative if it did not get there; 0: it was sent to none.
 layout(location = 2) out vec4 albedo;
 layout(location = 3) out vec4 radiance_and_density;  // of surface or sky; of the direction, 1/sr, 0: no ray
 
@@ -25,23 +26,39 @@ vec2 point_of(uvec2 pixel, uint pair) {
     return sample_2d(16u * ray_round + in_block, pair, block);
 }
 
-// A direction, and its density in 1/sr; 0: no ray.
-vec4 sampled_ray(Surface surface, uvec2 pixel) {
+struct SampledRay {
+    vec3 direction;
+    float density;  // 1/sr; 0: no ray
+#ifdef EMITTERS
+    Aim aim;
+#endif
+};
+
+SampledRay sampled_ray(Surface surface, uvec2 pixel) {
     Facets facets = facets_of(surface);
     vec2 point = point_of(pixel, 0u);
-    vec3 direction = sampled_direction(facets, point);
+    SampledRay ray;
+    ray.direction = sampled_direction(facets, point);
 #ifdef EMITTERS
     Choices choices = choices_at(hash_combine(hash_combine(pixel.x, pixel.y), ray_round));
     float share = share_to_emitters(surface);
     vec2 kind = point_of(pixel, 1u);
-    if (kind.x < share) direction = direction_to_emitter(choices, surface.position, kind.y, point);
-    float by_lobe = lobe_towards(direction, facets).sampled;
-    float density = mix(by_lobe, emitter_density(choices, surface.position, direction), share);
-    return vec4(direction, by_lobe > 0.0 ? density : 0.0);
+    if (kind.x < share) ray.direction = direction_to_emitter(choices, surface.position, kind.y, point);
+    ray.aim = aim_along(choices, surface.position, ray.direction);
+    float by_lobe = lobe_towards(ray.direction, facets).sampled;
+    ray.density = by_lobe > 0.0 ? mix(by_lobe, ray.aim.density, share) : 0.0;
 #else
-    return vec4(direction, lobe_towards(direction, facets).sampled);
+    ray.density = lobe_towards(ray.direction, facets).sampled;
 #endif
+    return ray;
 }
+
+#ifdef EMITTERS
+float aimed_radiance(Aim aim, Hit hit) {
+    bool arrives = hit.triangle == NO_TRIANGLE || hit.t > 0.98 * aim.distance;
+    return arrives ? aim.radiance : -aim.radiance;
+}
+#endif
 
 #ifdef SKY
 vec3 light_of_sky(vec3 direction) { return sky_light(direction); }
@@ -62,7 +79,6 @@ void meet(Hit hit, vec3 direction) {
     bool from_front = dot(front, direction) < 0.0;
     width_and_position.yzw = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
     normal_and_direction = vec4(octahedral_encode(from_front ? front : -front), octahedral_encode(-direction));
-    albedo = vec4(0.0);
     radiance_and_density.rgb = vec3(0.0);
     if (!from_front && !is_double_sided(triangle.material)) return;
     Material material = materials[triangle.material];
@@ -77,16 +93,18 @@ void main() {
     if (gl_HelperInvocation || !is_surface(at)) discard;
     Surface surface = glossy_surface(at);
     if (share_by_rays(surface) == 0.0) discard;
-    vec4 ray = sampled_ray(surface, uvec2(at));
-    vec3 direction = ray.xyz;
-    float density = ray.w;
-    if (density <= 0.0 || dot(direction, face_normal(surface)) <= 0.0) discard;
+    SampledRay ray = sampled_ray(surface, uvec2(at));
+    vec3 direction = ray.direction;
+    if (ray.density <= 0.0 || dot(direction, face_normal(surface)) <= 0.0) discard;
     vec3 origin = visible_position(surface, ray_offset) + ray_offset * face_normal(surface);
     Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
     width_and_position = vec4(0.0);
     normal_and_direction = vec4(0.0, 0.0, octahedral_encode(-direction));
     albedo = vec4(0.0);
-    radiance_and_density = vec4(light_of_sky(direction), density);
+    radiance_and_density = vec4(light_of_sky(direction), ray.density);
+#ifdef EMITTERS
+    albedo.a = aimed_radiance(ray.aim, hit);
+#endif
     if (hit.triangle == NO_TRIANGLE) return;
     meet(hit, direction);
     width_and_position.x = width_behind(surface, hit.t);

@@ -20,6 +20,15 @@ std::optional<BufferHandle<gpu::LitEmitter>> emitters_of(const MirroredSources& 
     return lit != nullptr ? lit->emitters : std::nullopt;
 }
 
+/// Whether there are emitting surfels for the pass to read.
+bool read_emitters(Pass& pass, const MirroredSources& sources) {
+    const auto emitters = emitters_of(sources);
+    if (!emitters) return false;
+    pass.read(*emitters, {Usage::storage, BINDING_LIT_EMITTERS});
+    read_vpl_constants(pass, sources.vpls->common);
+    return true;
+}
+
 }  // namespace
 
 MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
@@ -32,11 +41,7 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         read_view(pass, view);
         std::vector<std::string> variant = material_variant(parts_of(surfaces));
         if (sources.emitters) variant.emplace_back("EMISSION");
-        if (const auto emitters = emitters_of(sources)) {
-            pass.read(*emitters, {Usage::storage, BINDING_LIT_EMITTERS});
-            read_vpl_constants(pass, sources.vpls->common);
-            variant.emplace_back("EMITTERS");
-        }
+        if (read_emitters(pass, sources)) variant.emplace_back("EMITTERS");
         if (sources.environment) {
             pass.read(*sources.environment);
             pass.read(*sources.sky_picture, {Usage::sampled, UNIT_SKY});
@@ -69,8 +74,9 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
 }
 
 TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
-                                 const MirroredSurfaces& mirrored, std::optional<TextureHandle> reflected,
-                                 const ViewData& view, TextureHandle radiance) {
+                                 const MirroredSources& sources, const MirroredSurfaces& mirrored,
+                                 std::optional<TextureHandle> reflected, const ViewData& view,
+                                 TextureHandle radiance) {
     return graph.add("mirror-resolve", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         read_geometry_and_material(pass, surfaces);
@@ -80,6 +86,10 @@ TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         pass.read(mirrored.source, {Usage::sampled, UNIT_MIRRORED_SOURCE});
         std::vector<std::string> variant = material_variant(parts_of(surfaces));
         if (mirrored.round) pass.read(*mirrored.round);
+        if (read_emitters(pass, sources)) {
+            pass.read(*mirrored.surfaces.albedo, {Usage::sampled, UNIT_MIRRORED_ALBEDO});
+            variant.emplace_back("EMITTERS");
+        }
         if (reflected) {
             pass.read(*reflected, {Usage::sampled, UNIT_INDIRECT});
             variant.emplace_back("REFLECTED");

@@ -16,7 +16,7 @@ namespace candela {
 /// What emits light that is to be seen in mirrors.
 struct MirroredSources {
     bool emitters = false;
-    /// Whose emitting surfels rays of rough surfaces are sent to, too; none: rays find them by chance.
+    /// Whose emitting surfels light rough surfaces; none: rays find what emits light.
     std::optional<VplLight> vpls{};
     std::optional<ValueHandle<Environment>> environment{};  ///< none: no sky
     std::optional<TextureHandle> sky_picture{};             ///< likewise; see add_sky_picture
@@ -26,7 +26,8 @@ struct MirroredSources {
 struct MirroredSurfaces {
     /// As passes that shade read them: `depth` is rgba32f, the width of a pixel there in metres, 0 where
     /// there is no surface, and the position; `normal` is rgba32f, the face normal and the unit direction
-    /// towards the glossy surface, octahedral. The albedo is that of a Lambertian surface.
+    /// towards the glossy surface, octahedral. The albedo is that of a Lambertian surface; alpha is the
+    /// radiance of an emitter that the ray was sent to, negative if it did not arrive, 0 if to none.
     Surfaces surfaces;
     /// rgba32f: radiance that they emit, or of the sky; and the density of the ray's direction in 1/sr, 0
     /// where there is no ray.
@@ -45,9 +46,11 @@ struct MirroredSurfaces {
                                                std::optional<ValueHandle<std::uint32_t>> round);
 
 /// Adds node `mirror-resolve` (raster): adds what glossy surfaces show in the mirror direction to `radiance`,
-/// from the rays of a pixel and its neighbours. `reflected`: rgba32f, radiance that the mirrored surfaces
+/// from the rays of a pixel and its neighbours. In rough ones, the light of emitting surfels is a sum, of
+/// which the rays tell how much is hidden. `reflected`: rgba32f, radiance that the mirrored surfaces
 /// reflect; none: only what they emit is shown. Returns the radiance, modified in place.
 [[nodiscard]] TextureHandle add_mirror_resolve(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
+                                               const MirroredSources& sources,
                                                const MirroredSurfaces& mirrored,
                                                std::optional<TextureHandle> reflected, const ViewData& view,
                                                TextureHandle radiance);
