@@ -129,10 +129,10 @@ def placement_table(rows: Sequence[Row], levers: dict[str, str]) -> list[Row]:
     return table
 
 
-def emitter_table(rows: Sequence[Row]) -> list[Row]:
-    """For each scene that only surfaces or the sky light, errors of direct, indirect and all light."""
+def light_table(rows: Sequence[Row], suite: str) -> list[Row]:
+    """For each scene of a suite, errors of direct, indirect and all light."""
     columns = ("direct_rel_mse", "indirect_rel_mse", "total_rel_mse", "total_bias", "reference_noise")
-    lit = select(rows, suite="emitters")
+    lit = select(rows, suite=suite)
     return [{"scene": row["scene"], "vpls": row["vpls"], **{name: row[name] for name in columns}} for row in lit]
 
 

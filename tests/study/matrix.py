@@ -79,11 +79,13 @@ class Point:
 
 @dataclass(frozen=True)
 class Reference:
-    """`bounces`: indirect bounces; None: unlimited."""
+    """`bounces`: indirect bounces; None: unlimited. `caustics`: light that glossy surfaces throw on others as they are,
+    rather than as Lambertian ones of equal albedo, as the renderer has it."""
 
     samples: int
     bounces: int | None = None
     seed: int = 1
+    caustics: bool = True
 
 
 @dataclass(frozen=True)
@@ -233,6 +235,7 @@ def rays() -> list[Point]:
 
 OPEN = ("plates", "sphere", "corner", "furnace")  # scenes without occlusion
 EMITTERS = ("lamp", "neon", "court")  # scenes that only surfaces or the sky light
+GLOSSY = ("metals", "bath", "helmet")  # scenes of metal, plastic and mirrors
 HIDDEN = ("cornell", "two-rooms")  # scenes in which walls and blocks occlude light
 
 
@@ -295,6 +298,12 @@ def emitter_groups() -> list[Group]:
     """Scenes that only surfaces or the sky light."""
     points = tuple(point(vpls, lever="surfels") for vpls in (256, 512, 1024))
     return [Group("emitters", scene, SQUARE, Reference(samples=2048), 0, points) for scene in EMITTERS]
+
+
+def gloss_groups() -> list[Group]:
+    """Scenes with glossy surfaces, one frame with the app's defaults."""
+    reference = Reference(samples=512, caustics=False)
+    return [Group("gloss", scene, LARGE, reference, 0, (as_app(512),)) for scene in GLOSSY]
 
 
 WORLDS = (

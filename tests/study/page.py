@@ -191,13 +191,13 @@ def placement(table_rows: Sequence[Row]) -> str:
     return element("h2", "Paths and surfels") + element("p", note) + table(columns, table_rows)
 
 
-def emitters(table_rows: Sequence[Row]) -> str:
+def lights_of(title: str, table_rows: Sequence[Row]) -> str:
     if not table_rows:
         return ""
     columns = {"scene": "", "vpls": "surfels", "direct_rel_mse": "relMSE, direct", "indirect_rel_mse": "relMSE, indirect",
                "total_rel_mse": "relMSE, total", "total_bias": "bias, total",
                "reference_noise": "the reference's own noise, relMSE"}
-    return element("h2", "Scenes lit by surfaces or by the sky") + table(columns, table_rows)
+    return element("h2", title) + table(columns, table_rows)
 
 
 def worlds(table_rows: Sequence[Row], walks: Sequence[Row]) -> str:
@@ -263,6 +263,7 @@ class Findings:
     camera: Sequence[Row]
     placement: Sequence[Row]
     emitters: Sequence[Row]
+    gloss: Sequence[Row]
     worlds: Sequence[Row]
     walks: Sequence[Row]
 
@@ -284,7 +285,8 @@ def write(
         default_choice(found.best),
         charts(found.charts),
         placement(found.placement),
-        emitters(found.emitters),
+        lights_of("Scenes lit by surfaces or by the sky", found.emitters),
+        lights_of("Scenes of metal, plastic and mirrors", found.gloss),
         worlds(found.worlds, found.walks),
         gathering(found.gathering, found.camera),
         flicker(found.flicker),

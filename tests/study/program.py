@@ -74,6 +74,7 @@ def make_reference(program: str, scene: pathlib.Path, group: Group, folder: path
     bounces = [] if wanted.bounces is None else ["--bounces", str(wanted.bounces)]
     size = f"{group.size[0]}x{group.size[1]}"
     options = ["--size", size, "--samples", str(wanted.samples), "--seed", str(wanted.seed), *bounces]
+    options += [] if wanted.caustics else ["--no-caustics"]
     folder.parent.mkdir(parents=True, exist_ok=True)
     end = stream([program, "reference", str(scene), *options, "--out", str(folder)], lambda line: None)
     if end.error:

@@ -26,7 +26,7 @@ from motion import Motion
 from measuring import measure
 from session import ANIMATIONS, BUILD, SCENES, STUDY, Study
 
-SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "worlds", "surfels", "estimate", "motion"]
+SUITES = ["matrix", "table", "growth", "gather", "placement", "emitters", "gloss", "worlds", "surfels", "estimate", "motion"]
 GATHER_SCENES = ["cornell", "two-rooms", "glass", "fins", "atrium"]
 PROGRAM_PARTS = ["graph", "shading", "gather", "paths", "moves", "edits", "scale"]
 
@@ -69,6 +69,7 @@ def planned(quick: bool, parts: list[str] | None, only: list[str] | None) -> lis
         "gather": matrix.gather_groups(),
         "placement": matrix.placement_groups(),
         "emitters": matrix.emitter_groups(),
+        "gloss": matrix.gloss_groups(),
         "worlds": matrix.world_groups(),
         "surfels": matrix.surfel_groups(),
         "estimate": matrix.estimate_groups(),
@@ -138,16 +139,18 @@ def report(study: Study, groups: list[Group], motions: list[Motion], lights: lis
     gathering, camera = analysis.gather_table(rows, tracer), analysis.camera_flicker(played)
     extra = {"tracer": tracer, "lights": lights, "best": best, "flicker": flicker, "visibility": costs}
     placement = analysis.placement_table(rows, matrix.PLACEMENTS)
-    emitters = analysis.emitter_table(rows)
+    emitters, gloss = analysis.light_table(rows, "emitters"), analysis.light_table(rows, "gloss")
     worlds, walks = analysis.world_table(rows), analysis.world_motion_table(played)
     extra |= {"worlds": worlds, "walks": walks}
-    extra |= {"placement": placement, "gathering": gathering, "camera": camera, "emitters": emitters}
+    extra |= {"placement": placement, "gathering": gathering, "camera": camera, "emitters": emitters, "gloss": gloss}
     results.write_results(study, groups, rows, {**results.rounded(extra), "motions": results.rounded(played)})
     made = charts.draw(rows, tracer, lights, best["id"] if best else None, study.out)
     made |= motion_charts.draw(played, study.out)
-    found = page.Findings(made, best, flicker, costs, gathering, camera, placement, emitters, worlds, walks)
+    found = page.Findings(made, best, flicker, costs, gathering, camera, placement, emitters, gloss, worlds,
+                          walks)
     page.write(study.out, rows, found, study.machine, machine.provenance(STUDY))
-    printed = {"gathering": gathering + camera, "placement": placement, "emitters": emitters, "worlds": worlds + walks}
+    printed = {"gathering": gathering + camera, "placement": placement, "emitters": emitters, "gloss": gloss}
+    printed |= {"worlds": worlds + walks}
     for part, lines in printed.items():
         for line in lines:
             print(f"study: {part},", ", ".join(f"{name} {page.number(value)}" for name, value in line.items()))
