@@ -14,6 +14,7 @@
 
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/scene_error.hpp>
+#include <candela/scene/tangents.hpp>
 #include "renderer/passes/scene/scene_check.hpp"
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/throws.hpp"
@@ -71,6 +72,12 @@ std::shared_ptr<const Image> image(std::uint32_t width, std::uint32_t height, st
         Image{.width = width, .height = height, .texels = std::vector(texels, glm::u8vec4(255))});
 }
 
+/// A normal texture.
+std::shared_ptr<const Image> flat_normals() {
+    return std::make_shared<const Image>(
+        Image{.width = 1, .height = 1, .texels = {{128, 128, 255, 255}}, .encoding = Encoding::linear});
+}
+
 std::vector<FaultCase> mesh_faults() {
     const auto primitive = [](std::string words, const std::function<void(Primitive&)>& change) {
         return FaultCase{std::move(words), spoils_primitive(change), sets(square_instance())};
@@ -118,12 +125,14 @@ std::vector<FaultCase> mesh_faults() {
         material("the metal-roughness texture is not encoded as linear values",
                  [](Material& m) { m.metal_roughness_texture = image(2, 3, 6); }),
         material("the emissive texture has 7 texels for 2 × 3",
-                 [](Material& m) { m.emissive_texture = image(2, 3, 7); })};
+                 [](Material& m) { m.emissive_texture = image(2, 3, 7); }),
+        material("vertex 0 has no tangent, which its normal texture needs: see derive_tangents",
+                 [](Material& m) { m.normal_texture = flat_normals(); })};
 }
 
 std::vector<FaultCase> deformation_faults() {
-    const MeshInstance instance = square_instance();
-    const auto deformed = [&](std::string words, const std::function<void(DeformedMesh::Vertices&)>& change) {
+    const auto deformed = [](const MeshInstance& instance, std::string words,
+                             const std::function<void(DeformedMesh::Vertices&)>& change) {
         const DeformedMesh::Vertices good{instance.mesh->primitives.at(0).vertices};
         DeformedMesh::Vertices bad = good;
         change(bad);
@@ -135,16 +144,27 @@ std::vector<FaultCase> deformation_faults() {
                          },
                          sets(DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(good)})};
     };
-    FaultCase none = deformed("DeformedMesh: left out, because there are no vertices", [](auto&) {});
+    const MeshInstance plain = square_instance();
+    FaultCase none = deformed(plain, "DeformedMesh: left out, because there are no vertices", [](auto&) {});
     none.spoil = [=](World& world, Entity entity) {
-        world.set(entity, instance);
+        world.set(entity, plain);
         world.set(entity, DeformedMesh{});
     };
+    Material bumpy = *diffuse({0.9F, 0.1F, 0.2F});
+    bumpy.normal_texture = flat_normals();
+    Mesh with_tangents = *square(0.3F, std::make_shared<const Material>(std::move(bumpy)));
+    derive_tangents(with_tangents.primitives[0]);
+    const MeshInstance bumpy_instance{std::make_shared<const Mesh>(std::move(with_tangents))};
     return {
         none,
-        deformed("2 lists of vertices, but mesh \"\" has 1 primitives", [](auto& all) { all.push_back({}); }),
-        deformed("3 vertices, but primitive 0 of mesh \"\" has 4", [](auto& all) { all[0].pop_back(); }),
-        deformed("DeformedMesh: left out, because primitive 0: vertex 1: its position is not finite",
+        deformed(bumpy_instance,
+                 "primitive 0: vertex 3 has no tangent, which its normal texture needs: see derive_tangents",
+                 [](auto& all) { all[0][3].tangent = glm::i16vec4(0); }),
+        deformed(plain, "2 lists of vertices, but mesh \"\" has 1 primitives",
+                 [](auto& all) { all.push_back({}); }),
+        deformed(plain, "3 vertices, but primitive 0 of mesh \"\" has 4",
+                 [](auto& all) { all[0].pop_back(); }),
+        deformed(plain, "DeformedMesh: left out, because primitive 0: vertex 1: its position is not finite",
                  [](auto& all) { all[0][1].position.z = not_a_number; })};
 }
 

@@ -110,15 +110,20 @@ TEST_SUITE("bumps") {
     TEST_CASE_FIXTURE(RenderFixture, "a tilted normal under a sky that is the same everywhere") {
         // The ground hides the lower half. Light from the hemisphere around n on a surface of normal m: the
         // share (1 + n·m)/2 of what n receives.
-        configure(linear_configuration());
-        for (const glm::u8vec3 stored : {glm::u8vec3(200, 128, 210), glm::u8vec3(128, 230, 190)}) {
-            Scene scene = seen(square_with_tangents(4.0F, bumpy(glm::vec3(0.5F), stored)));
-            add(scene.world, sky_of(2.0F));
-            const double tilted = 0.5 + 0.5 * normal_of(stored).z;
-            REQUIRE(tilted < 0.92);
-            // Patches of the sky near the horizon count as if they were 3° above it: LEAST_FACING. Their sum
-            // is right to 1 %.
-            CHECK(at_middle(render(scene, few)) == doctest::Approx(0.5 * 2.0 * tilted).epsilon(0.02));
+        for (const Interleave interleave : {Interleave::one, Interleave::four}) {
+            CAPTURE(to_string(interleave));
+            Configuration configuration = linear_configuration();
+            configuration.interleave = interleave;
+            configure(configuration);
+            for (const glm::u8vec3 stored : {glm::u8vec3(200, 128, 210), glm::u8vec3(128, 230, 190)}) {
+                Scene scene = seen(square_with_tangents(4.0F, bumpy(glm::vec3(0.5F), stored)));
+                add(scene.world, sky_of(2.0F));
+                const double tilted = 0.5 + 0.5 * normal_of(stored).z;
+                REQUIRE(tilted < 0.92);
+                // Patches of the sky near the horizon count as if they were 3° above it: LEAST_FACING. Their
+                // sum is right to 1 %.
+                CHECK(at_middle(render(scene, few)) == doctest::Approx(0.5 * 2.0 * tilted).epsilon(0.02));
+            }
         }
     }
 

@@ -2,13 +2,18 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <candela/graph/execute.hpp>
+#include <candela/scene/tangents.hpp>
 #include "renderer/facade/device_of.hpp"
 #include "renderer/gl/program.hpp"
 #include "tests/renderer/path_fixture.hpp"
@@ -81,6 +86,21 @@ class ExtensionTests : public RenderFixture {
 
     Scene scene = cornell_box();
 };
+
+/// Covers the floor of the Cornell box; its normal texture tilts all normals, and 51/255 of indirect light
+/// reaches it.
+MeshInstance bumpy_floor() {
+    const auto texel = [](glm::u8vec4 value) {
+        return std::make_shared<const Image>(
+            Image{.width = 1, .height = 1, .texels = {value}, .encoding = Encoding::linear});
+    };
+    Material material = *diffuse(glm::vec3(0.5F));
+    material.normal_texture = texel({180, 140, 220, 255});
+    material.occlusion_texture = texel({51, 0, 0, 255});
+    Mesh mesh = *square(0.9F, std::make_shared<const Material>(std::move(material)));
+    derive_tangents(mesh.primitives[0]);
+    return {std::make_shared<const Mesh>(std::move(mesh))};
+}
 
 Picture operator*(float factor, Picture picture) {
     for (glm::vec3& pixel : picture.pixels) {
@@ -195,6 +215,63 @@ TEST_SUITE("extensions") {
             CHECK(seen[1].list_count.has_value() == (info_of(path).lights != LightList::all));
         }
         CHECK(mean(frame()) > 0.01);
+    }
+
+    TEST_CASE_FIXTURE(ExtensionTests,
+                      "extensions get what normal and occlusion textures do to surfaces, on every path") {
+        struct Seen {
+            TextureDesc desc;
+            std::vector<glm::vec4> texels;
+        };
+        // Keeps what a part of the frame holds when the extension runs.
+        const auto look = [&](std::string name, std::optional<TextureHandle> ViewFrame::*part, Seen& seen) {
+            Extension extension{.name = name, .place = ExtensionPlace::before_tone_map};
+            extension.needs = {.albedo = true, .indirect = true};
+            extension.declare = [=, this, &seen](FrameGraph& graph, ViewFrame& frame) {
+                const std::optional<TextureHandle> texture = frame.*part;
+                if (!texture) return;
+                graph.add(name, [&](Pass& pass) {
+                    pass.side_effect();
+                    pass.read(*texture, Usage::copy);
+                    pass.run([=, this, &seen](Execution& run) {
+                        seen.desc = run.desc(*texture);
+                        seen.texels = texels(device.gl(), {run.object(*texture), glm::uvec2(seen.desc.size)});
+                    });
+                });
+            };
+            return extension;
+        };
+        Seen bumps, flow;
+        REQUIRE(renderer.extend(look("bumps", &ViewFrame::bumps, bumps)).empty());
+        REQUIRE(renderer.extend(look("flow", &ViewFrame::indirect_flow, flow)).empty());
+        static_cast<void>(frame());
+        CHECK(bumps.texels.empty());  // nothing is bumpy
+        CHECK(flow.texels.empty());
+        add(scene.world, at({0, 0.01F, 0}), bumpy_floor());
+        for (const ShadingPath path : all_shading_paths) {
+            CAPTURE(to_string(path));
+            Configuration configuration = renderer.configuration();
+            configuration.path = path;
+            configure(configuration);
+            bumps = flow = {};
+            static_cast<void>(frame());
+            CHECK(bumps.desc.format == Format::rgba32f);
+            CHECK(flow.desc.format == Format::rgba32f);
+            REQUIRE(bumps.texels.size() == std::size_t{size.x} * size.y);
+            REQUIRE(flow.texels.size() == bumps.texels.size());
+            const auto pixels_with = [&](float share) {
+                return std::ranges::count_if(
+                    bumps.texels, [=](glm::vec4 texel) { return std::abs(texel.z - share) < 1e-6F; });
+            };
+            // The floor, and all else.
+            CHECK(pixels_with(0.2F) > 10);
+            CHECK(pixels_with(1.0F) > 10);
+            // A sum of vectors is no longer than the sum of their lengths; both are rounded.
+            CHECK(std::ranges::all_of(flow.texels, [](glm::vec4 texel) {
+                return glm::length(glm::vec3(texel)) <= 1.0001F * texel.w;
+            }));
+            CHECK(std::ranges::any_of(flow.texels, [](glm::vec4 texel) { return texel.w > 0.0F; }));
+        }
     }
 
     TEST_CASE_FIXTURE(ExtensionTests, "a faulty extension is refused by name and changes nothing") {

@@ -92,6 +92,34 @@ Scene seen_ground(std::shared_ptr<const Material> material) {
     return scene;
 }
 
+/// Transform of a square that faces the origin from there.
+Transform facing_origin(glm::vec3 from) {
+    Transform pose = looking(from, {0, 0, 0}, {0, 0, 1});
+    pose.rotation = pose.rotation * glm::angleAxis(-0.5F * std::numbers::pi_v<float>, glm::vec3(1, 0, 0));
+    return pose;
+}
+
+/// Radiance towards `viewer` of a ground that reflects all light in the mirror direction, at the origin,
+/// under a square of radiance 1 that faces it: the integral over the square.
+double ground_under_square(const glm::dvec3& from, double half, const glm::dvec3& viewer, double alpha) {
+    constexpr int steps = 64;
+    const glm::dvec3 normal(0, 1, 0), front = -glm::normalize(from);
+    const glm::dvec3 across = glm::normalize(glm::cross(front, glm::dvec3(0, 0, 1)));
+    const glm::dvec3 along = glm::cross(front, across);
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i) {
+        for (int j = 0; j < steps; ++j) {
+            const double x = half * (2.0 * (i + 0.5) / steps - 1.0);
+            const double y = half * (2.0 * (j + 0.5) / steps - 1.0);
+            const glm::dvec3 point = from + x * across + y * along;
+            const glm::dvec3 light = glm::normalize(point);
+            const double solid_angle = -glm::dot(front, light) / glm::dot(point, point);
+            sum += facets_towards(light, viewer, normal, alpha) * light.y * solid_angle;
+        }
+    }
+    return sum * 4.0 * half * half / (steps * steps);
+}
+
 glm::quat turned(float half_turns, glm::vec3 axis) {
     return glm::angleAxis(half_turns * std::numbers::pi_v<float>, axis);
 }
@@ -185,6 +213,28 @@ TEST_SUITE("gloss") {
                 2.0 * furnace(std::sqrt(0.5), std::max(static_cast<double>(roughness), 0.01), 0.6, 1.0);
             // Rays, or the irradiance of patches of the sky, whose sum is right to 1 %.
             CHECK(relative_error(luminance_at_middle(render(scene, few)), expected) < 0.01);
+        }
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "rough metal under a small lamp shows the integral over the lamp") {
+        const glm::dvec3 viewer = glm::normalize(glm::dvec3(2, 2, 0));
+        constexpr float half = 0.1F;
+        configure(linear_configuration());
+        for (const float roughness : {0.3F, 0.4F, 0.5F}) {
+            // Where mirrors would show it, and aside.
+            for (const glm::vec3 from : {glm::vec3(-1.5F, 1.5F, 0), glm::vec3(-1, 2, 0.4F)}) {
+                CAPTURE(roughness);
+                CAPTURE(from.x);
+                Scene scene = seen_ground(metal(glm::vec3(1.0F), roughness));
+                add(scene.world, facing_origin(from), MeshInstance{square(half, emitter(glm::vec3(10.0F)))});
+                const double alpha = static_cast<double>(roughness) * static_cast<double>(roughness);
+                const double expected =
+                    10.0 * ground_under_square(glm::dvec3(from), static_cast<double>(half), viewer, alpha);
+                // A pixel is the weighted mean of 25 rays. As half of all rays follow the lobe, weights are
+                // at most 2, if 1 is their mean, and have a variance of at most 1: such a mean is off by 2/25
+                // at most. The pixels' own errors even out.
+                CHECK(relative_error(mean(render(scene, {48, 48})), expected) < 0.1);
+            }
         }
     }
 

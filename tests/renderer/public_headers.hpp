@@ -19,5 +19,6 @@
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include <candela/scene/sky_picture.hpp>
+#include <candela/scene/tangents.hpp>
 #include <candela/settings.hpp>
 #include <candela/workload.hpp>

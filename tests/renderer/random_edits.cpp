@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <candela/scene/deformed_mesh.hpp>
+#include <candela/scene/tangents.hpp>
 
 namespace candela {
 namespace {
@@ -19,21 +20,46 @@ Entity last_mesh(const World& world) {
     return last;
 }
 
-/// A material with an image of random texels, some of them holes; some are glossy.
-std::shared_ptr<const Material> textured(std::uint32_t texture_size, std::uint32_t seed) {
-    std::mt19937 random(seed);
-    Image image{.width = texture_size, .height = texture_size, .texels = {}};
-    for (std::uint32_t i = 0; i < texture_size * texture_size; ++i) {
+/// Random texels.
+Image noise(std::uint32_t side, std::mt19937& random) {
+    Image image{.width = side, .height = side, .texels = {}};
+    for (std::uint32_t i = 0; i < side * side; ++i) {
         const auto texel = static_cast<std::uint32_t>(random());
         image.texels.emplace_back(texel & 255U, texel >> 8U & 255U, texel >> 16U & 255U, texel >> 24U);
     }
+    return image;
+}
+
+/// The same for values that are not colours.
+std::shared_ptr<const Image> linear_noise(std::uint32_t side, std::mt19937& random) {
+    Image image = noise(side, random);
+    image.encoding = Encoding::linear;
+    return std::make_shared<const Image>(std::move(image));
+}
+
+/// A material with an image of random texels, some of them holes; some are glossy, some have normal or
+/// occlusion textures.
+std::shared_ptr<const Material> textured(std::uint32_t texture_size, std::uint32_t seed) {
+    std::mt19937 random(seed);
     Material material;
-    material.base_colour_texture = std::make_shared<const Image>(std::move(image));
+    material.base_colour_texture = std::make_shared<const Image>(noise(texture_size, random));
+    if (seed % 2 == 1) {
+        material.normal_texture = linear_noise(texture_size, random);
+        material.normal_scale = 0.5F;
+    }
+    if (seed % 5 < 2) material.occlusion_texture = linear_noise(texture_size, random);
     material.double_sided = true;
     material.roughness = 0.3F;
     material.metalness = seed % 3 == 0 ? 0.5F : 0.0F;
     material.alpha_mode = seed % 4 == 0 ? AlphaMode::mask : AlphaMode::opaque;
     return std::make_shared<const Material>(std::move(material));
+}
+
+/// A square as `square`, with the tangents that normal textures need.
+std::shared_ptr<const Mesh> square_with_tangents(float half, std::shared_ptr<const Material> material) {
+    Mesh mesh = *square(half, std::move(material));
+    derive_tangents(mesh.primitives[0]);
+    return std::make_shared<const Mesh>(std::move(mesh));
 }
 
 /// A sky with a bright side.
@@ -51,7 +77,7 @@ RandomEdits::RandomEdits(Scene edited, const Configuration& rendered, unsigned s
       random_(seed),
       block_(last_mesh(scene.world)),
       shared_(textured(16, 1)),
-      shared_mesh_(square(0.15F, shared_)) {
+      shared_mesh_(square_with_tangents(0.15F, shared_)) {
     parent_ = add(scene.world, Transform{.translation = {0.0F, 1.0F, 0.0F}, .scale = {-1.0F, 0.8F, 1.2F}});
     add(scene.world, Transform{.translation = {0.4F, 0.1F, 0.2F}, .parent = parent_},
         MeshInstance{square(0.2F, diffuse({0.2F, 0.5F, 0.9F}))});
@@ -153,11 +179,11 @@ std::shared_ptr<const Mesh> RandomEdits::any_mesh() {
         case 1:
             return box_inwards(0.15F, colour);
         case 2:  // shares its material with others
-            return square(0.2F, shared_);
+            return square_with_tangents(0.2F, shared_);
         case 3:  // shares all with others
             return shared_mesh_;
         case 4:
-            return square(0.2F, textured(4U << draw(5), draw(1000)));
+            return square_with_tangents(0.2F, textured(4U << draw(5), draw(1000)));
         default:
             return square(0.2F, colour);
     }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <candela/inspection.hpp>
+#include <candela/scene/tangents.hpp>
 #include "shaders/bindings.glsl"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
@@ -74,6 +75,27 @@ gl::GetProc noting(const gl::GetProc& get_proc) {
     };
 }
 
+/// Whether a shader with all these macros was passed to the driver.
+bool has_variant(const std::vector<std::string>& macros) {
+    return std::ranges::any_of(sources, [&](const auto& source) {
+        return std::ranges::all_of(macros, [&](const std::string& macro) {
+            return source.second.find("#define " + macro + " ") != std::string::npos;
+        });
+    });
+}
+
+/// A square with a normal texture.
+MeshInstance bumpy_square(AlphaMode mode) {
+    Material material;
+    material.alpha_mode = mode;
+    material.base_colour.a = 0.5F;
+    material.normal_texture = std::make_shared<const Image>(
+        Image{.width = 1, .height = 1, .texels = {{128, 128, 255, 255}}, .encoding = Encoding::linear});
+    Mesh mesh = *square(1.0F, std::make_shared<const Material>(std::move(material)));
+    derive_tangents(mesh.primitives[0]);
+    return {std::make_shared<const Mesh>(std::move(mesh))};
+}
+
 /// The file extension by which glslang recognises the stage.
 std::string ending(GLenum stage) {
     switch (stage) {
@@ -125,7 +147,14 @@ TEST_SUITE("second compiler") {
         const RenderTarget target(device, {1, 1});
         renderer.render(world, camera, target.target());
         configure_each(VplPlacement::surfels, Show::total);
-        // A glossy surface.
+        // Surfaces with normal textures, without glossy ones.
+        for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
+            add(world, Transform{}, bumpy_square(mode));
+        }
+        renderer.render(world, camera, target.target());
+        configure_each(VplPlacement::surfels, Show::total);
+        configure_each(VplPlacement::surfels, Show::normals);
+        // And with one.
         Material metal;
         metal.metalness = 1.0F;
         add(world, Transform{}, MeshInstance{square(1.0F, std::make_shared<const Material>(metal))});
@@ -150,6 +179,19 @@ TEST_SUITE("second compiler") {
         const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
         draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
         CHECK(sources.size() > 40);
+        for (const auto& variant : std::vector<std::vector<std::string>>{{"BUMPY"},
+                                                                         {"BUMPY", "MASKED"},
+                                                                         {"BUMPY", "GLOSSY"},
+                                                                         {"BUMPY", "DIRECTED"},
+                                                                         {"DIRECTED", "COLUMNS"},
+                                                                         {"DIRECTED", "GLOSSY"},
+                                                                         {"MIRRORED"},
+                                                                         {"EMITTERS", "EMISSION", "SKY"},
+                                                                         {"EMITTERS", "BUMPY"}}) {
+            CAPTURE(variant.front());
+            CAPTURE(variant.back());
+            CHECK(has_variant(variant));
+        }
 
         // A driver that offers fewer storage blocks than the largest program needs is refused at once.
         std::uint32_t most = 0;
