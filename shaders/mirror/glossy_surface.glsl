@@ -80,10 +80,9 @@ Lobe lobe_towards(vec3 direction, Facets facets) {
     vec3 in_space = vec3(dot(direction, facets.tangent), dot(direction, facets.bitangent), cosine);
     vec3 middle = normalize(in_space + facets.viewer);
     float alpha2 = facets.alpha * facets.alpha;
-    float spread = dot(middle.xy, middle.xy) + alpha2 * middle.z * middle.z;
-    float density = alpha2 / (PI * spread * spread);
-    float of_viewer = sqrt(mix(facets.viewer.z * facets.viewer.z, 1.0, alpha2));
-    float of_light = sqrt(mix(cosine * cosine, 1.0, alpha2));
+    float density = facets_along(middle.z, dot(middle.xy, middle.xy), alpha2);
+    float of_viewer = masked_cosine(facets.viewer.z, alpha2);
+    float of_light = masked_cosine(cosine, alpha2);
     float sampled = 0.5 * density / (facets.viewer.z + of_viewer);
     float reflected = 0.5 * density * cosine / (cosine * of_viewer + facets.viewer.z * of_light);
     return Lobe(sampled, reflected);

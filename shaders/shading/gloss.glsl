@@ -22,6 +22,15 @@ struct Response {
     float diffuse;  // share of the irradiance that the diffuse part reflects
 };
 
+// GGX distribution of microfacets, 1/sr. `aside2`: squared sine of the half vector to the normal.
+float facets_along(float cos_middle, float aside2, float alpha2) {
+    float spread = aside2 + alpha2 * cos_middle * cos_middle;
+    return alpha2 / (PI * spread * spread);
+}
+
+// Cosine times (1 + 2 Λ), by Smith's Λ of the heights of microfacets.
+float masked_cosine(float cosine, float alpha2) { return sqrt(mix(cosine * cosine, 1.0, alpha2)); }
+
 float cosine_to_viewer(Surface surface) { return max(dot(shading_normal(surface), surface.to_viewer), LEAST_COSINE); }
 
 // Light from the unit direction `to_light`, in front of the surface.
@@ -34,10 +43,9 @@ Response response_to(vec3 to_light, Surface surface) {
     float cos_light = dot(normal, to_light);
     float cos_middle = dot(normal, middle);
     vec3 aside = cross(normal, middle);
-    float spread = dot(aside, aside) + alpha2 * cos_middle * cos_middle;
-    float facets = alpha2 / (PI * spread * spread);
-    float unmasked = 0.5 / (cos_light * sqrt(mix(cos_viewer * cos_viewer, 1.0, alpha2)) +
-                            cos_viewer * sqrt(mix(cos_light * cos_light, 1.0, alpha2)));
+    float facets = facets_along(cos_middle, dot(aside, aside), alpha2);
+    float unmasked =
+        0.5 / (cos_light * masked_cosine(cos_viewer, alpha2) + cos_viewer * masked_cosine(cos_light, alpha2));
     float grazing = pow(1.0 - clamp(dot(surface.to_viewer, middle), 0.0, 1.0), 5.0);
     vec3 fresnel = mix(surface.mirror.rgb, vec3(surface.mirror.a), grazing);
     return Response(facets * unmasked * fresnel, 1.0 - largest(fresnel));
