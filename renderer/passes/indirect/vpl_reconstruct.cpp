@@ -38,8 +38,7 @@ GatheredLight add_rows(FrameGraph& graph, Gpu& gpu, const Pixels& pixels, const 
         read_gathered(pass, gathered);
         const gl::Program& program = gpu.program(
             {"indirect/vpl_reconstruct.comp"}, gathered_variant(gathered, surface_variant(pixels.surfaces)));
-        const GatheredLight out =
-            write_gathered(graph, pass, "row", pixels.size, gathered.flow.has_value());
+        const GatheredLight out = write_gathered(graph, pass, "row", pixels.size, gathered.flow.has_value());
         pass.run([=, &gpu, &program](Execution&) { reconstruct(gpu, program, pixels); });
         return out;
     });

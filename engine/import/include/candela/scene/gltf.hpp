@@ -62,8 +62,8 @@ struct ImportOptions {
 /// Name and Transform and, if the node has them, MeshInstance, one of the lights, and Camera. Meshes,
 /// materials and images are shared between instances. Buffers and images may be embedded or in files relative
 /// to this one, within `options.root`; images are PNG or JPEG, reduced to 8 bits per channel. Meshes,
-/// materials and images that the scene does not use are not read. Tangents that a normal texture needs and the
-/// file lacks are derived, as are all of a primitive whose texture coordinates are transformed.
+/// materials and images that the scene does not use are not read. Tangents that a normal texture needs and
+/// the file lacks are derived, as are all of a primitive whose texture coordinates are transformed.
 ///
 /// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
 /// surface emits its base colour, without that of its vertices), KHR_texture_transform, and
