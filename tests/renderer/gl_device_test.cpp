@@ -112,7 +112,7 @@ TEST_SUITE("gl device") {
             gl::GlError);
         limits = device.limits();
         limits.texture_units = 4;
-        CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 10",
+        CHECK_THROWS_WITH_AS(require_limits(limits), "the driver offers 4 texture units; Candela needs 12",
                              gl::GlError);
     }
 
