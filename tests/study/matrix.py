@@ -302,8 +302,8 @@ def emitter_groups() -> list[Group]:
 
 def gloss_groups() -> list[Group]:
     """Scenes with glossy surfaces, one frame with the app's defaults."""
-    reference = Reference(samples=512, caustics=False)
-    return [Group("gloss", scene, LARGE, reference, 0, (as_app(512),)) for scene in GLOSSY]
+    reference = Reference(samples=256, caustics=False)
+    return [Group("gloss", scene, (256, 256), reference, 0, (as_app(512),)) for scene in GLOSSY]
 
 
 WORLDS = (
