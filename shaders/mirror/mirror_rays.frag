@@ -54,9 +54,12 @@ SampledRay sampled_ray(Surface surface, uvec2 pixel) {
 }
 
 #ifdef EMITTERS
+// Weights emitters among each other; within what a half float holds.
 float aimed_radiance(Aim aim, Hit hit) {
+    if (aim.radiance <= 0.0) return 0.0;
+    float radiance = clamp(aim.radiance, 1e-4, 6e4);
     bool arrives = hit.triangle == NO_TRIANGLE || hit.t > 0.98 * aim.distance;
-    return arrives ? aim.radiance : -aim.radiance;
+    return arrives ? radiance : -radiance;
 }
 #endif
 

@@ -241,9 +241,9 @@ TEST_SUITE("gloss") {
         const glm::vec3 from(-1.5F, 1.5F, 0);
         configure(linear_configuration());
         // A black square half-way to the lamp, so much aside; it is as large as the lamp.
-        const auto shown_behind = [&](float aside) {
+        const auto shown_behind = [&](float aside, float radiance = 10.0F) {
             Scene scene = seen_ground(metal(glm::vec3(1.0F), 0.4F));
-            add(scene.world, facing_origin(from), MeshInstance{square(0.1F, emitter(glm::vec3(10.0F)))});
+            add(scene.world, facing_origin(from), MeshInstance{square(0.1F, emitter(glm::vec3(radiance)))});
             Transform pose = facing_origin(0.5F * from);
             pose.translation.z += aside;
             add(scene.world, pose, MeshInstance{square(0.1F, diffuse(glm::vec3(0.0F), true))});
@@ -252,6 +252,12 @@ TEST_SUITE("gloss") {
         const double open = shown_behind(1.0F);
         REQUIRE(open > 0.0);
         CHECK(shown_behind(0.0F) < 0.001 * open);
+        // Half floats end at 65,504, and at 6e-8.
+        for (const float radiance : {1e6F, 1e-9F}) {
+            const double scale = static_cast<double>(radiance) / 10.0;
+            CHECK(shown_behind(1.0F, radiance) == doctest::Approx(scale * open).epsilon(0.001));
+            CHECK(shown_behind(0.0F, radiance) < 0.001 * scale * open);
+        }
         // Its edge is in the middle of the lamp. A quarter of 25 rays tell how much is hidden: 0.2.
         CHECK(std::abs(shown_behind(0.1F) / open - 0.5) < 0.3);
     }
