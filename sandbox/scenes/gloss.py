@@ -3,21 +3,12 @@
 import math
 
 from gltf_writer import Scene
-from hdr_writer import direction, hdr
+from hdr_writer import daylight
 from png_writer import opaque_png
 from shapes import aim, ball, block, box, cylinder, flat, ground, looking, pane, room, turn
 
-SKY_WIDTH, SKY_HEIGHT = 32, 16
 GOLD, COPPER, CHROME = [1.0, 0.77, 0.34], [0.95, 0.64, 0.54], [0.55, 0.556, 0.554]
 ROUGHNESSES = (0.05, 0.2, 0.4, 0.7, 1.0)
-
-
-def sky_radiance(x, y):
-    """Blue above, white at the horizon, grey below it."""
-    upwards = direction(x, y, SKY_WIDTH, SKY_HEIGHT)[1]
-    if upwards < 0.0:
-        return [0.12, 0.12, 0.12]
-    return [0.5 - 0.35 * upwards, 0.55 - 0.25 * upwards, 0.6]
 
 
 def metals():
@@ -35,7 +26,7 @@ def metals():
         scene.place(f"metal ball {i}", ball(0.5), metal, translation=[x, 1.1, -1.2])
         plastic = scene.glossy(f"plastic {roughness}", [0.55, 0.06, 0.05], roughness)
         scene.place(f"plastic ball {i}", ball(0.5), plastic, translation=[x, 0.5, 0.4])
-    scene.sky(hdr(SKY_WIDTH, SKY_HEIGHT, sky_radiance))
+    scene.sky(daylight(0.12))
     scene.light("sun", "directional", [1.0, 0.93, 0.8], 3.0, rotation=aim((2.5, 4.0, 3.0), (0.0, 0.0, 0.0)))
     scene.light("lamp", "point", [1.0, 0.8, 0.6], 4.0, translation=[-0.6, 2.2, 0.2])
     scene.camera(42, 0.02, **looking((0.0, 1.9, 6.4), (0.0, 0.8, -0.4)))

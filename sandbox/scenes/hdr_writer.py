@@ -22,3 +22,16 @@ def hdr(width, height, radiance):
             scale = math.ldexp(256.0, -exponent)
             pixels += bytes([*(min(int(channel * scale), 255) for channel in rgb), exponent + 128])
     return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {height} +X {width}\n".encode() + bytes(pixels)
+
+
+def daylight(ground):
+    """A small sky: blue above, white at the horizon, grey of this radiance below it."""
+    width, height = 32, 16
+
+    def radiance(x, y):
+        upwards = direction(x, y, width, height)[1]
+        if upwards < 0.0:
+            return [ground] * 3
+        return [0.5 - 0.35 * upwards, 0.55 - 0.25 * upwards, 0.6]
+
+    return hdr(width, height, radiance)

@@ -3,11 +3,10 @@
 import math
 
 from gltf_writer import Scene
-from hdr_writer import direction, hdr
+from hdr_writer import daylight
 from png_writer import opaque_png
 from shapes import Surface, aim, box, flat, ground, looking, pane, turn
 
-SKY_WIDTH, SKY_HEIGHT = 32, 16
 SIZE = 256  # texels a side; u goes from the front of the helmet to its back, on both sides, v from the top down
 RINGS, SEGMENTS = 28, 52
 SEAMS_DOWN, SEAMS_AROUND = (0.36, 0.8), (0.22, 0.42, 0.68, 0.9)
@@ -153,14 +152,6 @@ def shell():
     return surface
 
 
-def sky_radiance(x, y):
-    """Blue above, white at the horizon, grey below it."""
-    upwards = direction(x, y, SKY_WIDTH, SKY_HEIGHT)[1]
-    if upwards < 0.0:
-        return [0.1, 0.1, 0.1]
-    return [0.5 - 0.35 * upwards, 0.55 - 0.25 * upwards, 0.6]
-
-
 def helmet():
     """The helmet on a plinth, between a red and a green screen in front of a wall. A sun, a sky and a lamp light it."""
     scene = Scene()
@@ -184,7 +175,7 @@ def helmet():
     scene.place("green screen", flat(box(0.1, 1.6, 1.6)), green, translation=[1.6, 0.0, -0.2], rotation=turn(-15))
     scene.place("plinth", flat(box(1.3, 0.4, 1.3)), plaster)
     scene.place("helmet", shell(), steel, translation=[0.0, 0.4, 0.0], rotation=turn(25))
-    scene.sky(hdr(SKY_WIDTH, SKY_HEIGHT, sky_radiance))
+    scene.sky(daylight(0.1))
     scene.light("sun", "directional", [1.0, 0.93, 0.8], 2.5, rotation=aim((2.5, 4.0, 3.0), (0.0, 0.0, 0.0)))
     scene.light("lamp", "point", [1.0, 0.8, 0.6], 3.0, translation=[-0.9, 1.9, 1.0])
     scene.camera(38, 0.02, **looking((0.3, 1.35, 3.2), (0.0, 0.88, 0.0)))
