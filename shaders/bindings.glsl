@@ -86,6 +86,7 @@
 #define UNIT_GLOSS UNIT_RADIANCE
 #define UNIT_MIRROR_SHARES UNIT_MEAN
 // Passes that show what mirrors have found light nothing.
+#define UNIT_SKY_TREE UNIT_VPL_MAPS
 #define UNIT_MIRRORED_PLACE UNIT_SHADOW_CUBES
 #define UNIT_MIRRORED_NORMAL UNIT_SHADOW_MAPS
 #define UNIT_MIRRORED_SOURCE UNIT_VPL_MAPS
@@ -128,6 +129,7 @@
 #define COVER_RAYS 16       // rays that an invocation of surfel_cover.comp casts
 #define COVER_PARTS 16      // invocations of surfel_cover.comp for one surfel
 #define COVER_DIRECTIONS 64   // in which pixels find the share of their hemisphere that surfaces cover: vpl_light.glsl
+#define MOST_SKY_SUNS 4
 #define MOST_SKY_PATCHES 256  // in the uniform block of sky_patch.glsl
 // Distances of a pixel from a group of surfels, in widths of the group: nearer, the surfels are summed one by one; farther,
 // the group as one; between them, both in part. See theory.md, "Groups of surfels".

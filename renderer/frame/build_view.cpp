@@ -217,10 +217,13 @@ std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const S
 /// What glossy surfaces show in the mirror direction.
 void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewData& view,
                   const ViewHandles& out, std::optional<TextureHandle> sky_picture, ViewFrame& parts) {
-    graph.append_to_names(" (mirrored)" + view_ending(parts.index));
-    MirroredSources sources{.emitters = shows_emitters(shared), .sky_picture = sky_picture};
+    MirroredSources sources{.emitters = shows_emitters(shared)};
     if (shared.vpls) sources.vpls = shared.vpls->light;
-    if (sky_picture) sources.environment = shared.lit.sky->environment;
+    if (sky_picture) {
+        const Sky& sky = *shared.lit.sky;
+        sources.sky = {.sky = sky, .picture = *sky_picture, .tree = add_sky_tree(graph, gpu, sky)};
+    }
+    graph.append_to_names(" (mirrored)" + view_ending(parts.index));
     const Surfaces surfaces = surfaces_of(parts);
     const MirroredSurfaces mirrored =
         add_mirror_rays(graph, gpu, surfaces, shared.lit.tracing, sources, view, out.averaged);

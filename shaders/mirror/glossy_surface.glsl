@@ -16,6 +16,15 @@ layout(binding = UNIT_BUMPS) uniform sampler2D gbuffer_bumps;
 
 bool is_surface(ivec2 at) { return texelFetch(surface_depth, at, 0).r > 0.0; }
 
+// As shading_normal gives it for the surface of a pixel.
+vec3 normal_at(ivec2 at) {
+#ifdef BUMPY
+    return octahedral_decode(texelFetch(gbuffer_bumps, at, 0).xy);
+#else
+    return octahedral_decode(texelFetch(surface_normal, at, 0).rg);
+#endif
+}
+
 Surface glossy_surface(ivec2 at) {
     PackedSurface stored = PackedSurface(texelFetch(gbuffer_albedo, at, 0).rgb, texelFetch(surface_normal, at, 0).rg);
     vec3 window = vec3(vec2(at) + 0.5, texelFetch(surface_depth, at, 0).r);

@@ -7,7 +7,7 @@
 #include "sampling.glsl"
 #include "scene/bvh.glsl"
 #ifdef SKY
-#include "sky/sky_picture.glsl"
+#include "mirror/sky_rays.glsl"
 #endif
 
 uniform uint ray_round;    // of rays through the same pixels, from 0
@@ -34,21 +34,46 @@ struct SampledRay {
 #endif
 };
 
+// Rays in a direction of the lobe, or to something bright that it reflects.
+struct Shares {
+    float to_emitters;
+    float to_sky;
+};
+
+Shares shares_of_rays(ivec2 at, Surface surface) {
+    Shares shares = Shares(0.0, 0.0);
+#ifdef EMITTERS
+    shares.to_emitters = share_to_emitters(surface);
+#endif
+#ifdef SKY
+    shares.to_sky = share_to_sky_at(at, surface);
+#endif
+    return shares;
+}
+
 SampledRay sampled_ray(Surface surface, uvec2 pixel) {
     Facets facets = facets_of(surface);
+    Shares shares = shares_of_rays(ivec2(pixel), surface);
     vec2 point = point_of(pixel, 0u);
+    vec2 kind = point_of(pixel, 1u);
     SampledRay ray;
     ray.direction = sampled_direction(facets, point);
+#ifdef SKY
+    if (kind.x >= 1.0 - shares.to_sky) ray.direction = direction_to_sky(facets, point);
+#endif
 #ifdef EMITTERS
     Choices choices = choices_at(hash_combine(hash_combine(pixel.x, pixel.y), ray_round));
-    float share = share_to_emitters(surface);
-    vec2 kind = point_of(pixel, 1u);
-    if (kind.x < share) ray.direction = direction_to_emitter(choices, surface.position, kind.y, point);
+    if (kind.x < shares.to_emitters) ray.direction = direction_to_emitter(choices, surface.position, kind.y, point);
     ray.aim = aim_along(choices, surface.position, ray.direction);
+#endif
     float by_lobe = lobe_towards(ray.direction, facets).sampled;
-    ray.density = by_lobe > 0.0 ? mix(by_lobe, ray.aim.density, share) : 0.0;
-#else
-    ray.density = lobe_towards(ray.direction, facets).sampled;
+    ray.density = (1.0 - shares.to_emitters - shares.to_sky) * by_lobe;
+    if (by_lobe <= 0.0) return ray;
+#ifdef EMITTERS
+    ray.density += shares.to_emitters * ray.aim.density;
+#endif
+#ifdef SKY
+    if (shares.to_sky > 0.0) ray.density += shares.to_sky * density_to_sky(ray.direction, facets);
 #endif
     return ray;
 }
@@ -64,7 +89,7 @@ float aimed_radiance(Aim aim, Hit hit) {
 #endif
 
 #ifdef SKY
-vec3 light_of_sky(vec3 direction) { return sky_light(direction); }
+vec3 light_of_sky(vec3 direction) { return sky_without_suns(direction); }
 #else
 vec3 light_of_sky(vec3 direction) { return vec3(0.0); }
 #endif

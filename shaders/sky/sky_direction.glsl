@@ -8,6 +8,12 @@ vec2 sky_position(vec3 direction) {
     return vec2(azimuth / (2.0 * PI) + 0.5, acos(clamp(direction.y, -1.0, 1.0)) / PI);
 }
 
+vec3 sky_direction(vec2 at) {
+    float azimuth = 2.0 * PI * (at.x - 0.5);
+    float polar = PI * at.y;
+    return vec3(sin(azimuth) * sin(polar), cos(polar), -cos(azimuth) * sin(polar));
+}
+
 // Rotated around +Y, from +Z towards +X; radians.
 vec3 rotate_y(vec3 v, float angle) {
     float c = cos(angle);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/gpu/mirror_shares.hpp"
+#include "tests/renderer/gloss.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
 using namespace candela;
@@ -17,36 +18,6 @@ using namespace candela;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-std::shared_ptr<const Material> metal(glm::vec3 colour, float roughness) {
-    Material material;
-    material.base_colour = glm::vec4(colour, 1.0F);
-    material.metalness = 1.0F;
-    material.roughness = roughness;
-    return std::make_shared<const Material>(std::move(material));
-}
-
-std::shared_ptr<const Material> plastic(glm::vec3 colour, float roughness) {
-    Material material;
-    material.base_colour = glm::vec4(colour, 1.0F);
-    material.roughness = roughness;
-    material.specular = 1.0F;
-    return std::make_shared<const Material>(std::move(material));
-}
-
-/// glTF 2.0, appendix B.3.2: distribution of microfacets times their visibility.
-double facets_towards(const glm::dvec3& light, const glm::dvec3& viewer, const glm::dvec3& normal,
-                      double alpha) {
-    const glm::dvec3 half = glm::normalize(light + viewer);
-    const double a2 = alpha * alpha;
-    const double nh = glm::dot(normal, half), nl = glm::dot(normal, light), nv = glm::dot(normal, viewer);
-    const double d = a2 / (pi * std::pow(nh * nh * (a2 - 1.0) + 1.0, 2.0));
-    // Correlated heights: Heitz, "Understanding the Masking-Shadowing Function", JCGT 2014, eq. 99.
-    const auto lambda = [a2](double cosine) {
-        return 0.5 * (std::sqrt(1.0 + a2 * (1.0 - cosine * cosine) / (cosine * cosine)) - 1.0);
-    };
-    return d / (1.0 + lambda(nl) + lambda(nv)) / (4.0 * nl * nv);
-}
 
 double schlick(double facing, double grazing, double cosine) {
     return facing + (grazing - facing) * std::pow(1.0 - cosine, 5.0);
@@ -81,15 +52,6 @@ double furnace(double cosine, double roughness, double facing, double grazing) {
         }
     }
     return sum / (steps * steps);
-}
-
-/// A ground of this material, seen from 2 m above at 45°, with a tiny view.
-Scene seen_ground(std::shared_ptr<const Material> material) {
-    Scene scene;
-    add(scene.world, Transform{}, MeshInstance{square(4.0F, std::move(material))});
-    scene.light = scene.world.create();
-    scene.camera = add(scene.world, looking({2, 2, 0}, {0, 0, 0}), Camera{.vertical_fov = 0.02F});
-    return scene;
 }
 
 /// Transform of a square that faces the origin from there.
@@ -136,16 +98,6 @@ Scene things_on_ground() {
     scene.light = add(scene.world, at({0.2F, 2.5F, 0.4F}), PointLight{.intensity = 5.0F});
     scene.camera = add(scene.world, Camera{.vertical_fov = 0.5F});
     return scene;
-}
-
-constexpr glm::uvec2 few{9, 9};
-
-double relative_error(double found, double expected) {
-    return std::abs(found / expected - 1.0);
-}
-
-double luminance_at_middle(const Picture& picture) {
-    return static_cast<double>(picture.at(picture.size.x / 2, picture.size.y / 2).g);
 }
 
 }  // namespace

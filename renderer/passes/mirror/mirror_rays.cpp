@@ -29,6 +29,27 @@ bool read_emitters(Pass& pass, const MirroredSources& sources) {
     return true;
 }
 
+void read_sky(Pass& pass, const MirroredSky& sky) {
+    pass.read(sky.sky.environment);
+    pass.read(sky.sky.split);
+    pass.read(sky.picture, {Usage::sampled, UNIT_SKY});
+    pass.read(sky.tree.levels, {Usage::sampled, UNIT_SKY_TREE});
+    pass.read(sky.tree.share);
+}
+
+/// Of shaders/mirror/sky_rays.glsl.
+gl::Uniforms mirrored_sky_uniforms(const Execution& run, const MirroredSky& sky) {
+    constexpr float most_to_sky = 0.5F;  // of the rays
+    const Environment& environment = run.value(sky.sky.environment);
+    std::vector<glm::vec4> suns;
+    for (const SkySun& sun : run.value(sky.sky.split).suns) {
+        suns.emplace_back(rotated_sky(sun.direction, environment.rotation), 0.0F);
+    }
+    suns.resize(MOST_SKY_SUNS, glm::vec4(0.0F));
+    return sky_uniforms(environment) +
+           gl::Uniforms{{"share_to_sky", most_to_sky * run.value(sky.tree.share)}, {"suns", suns}};
+}
+
 }  // namespace
 
 MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
@@ -42,9 +63,8 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         std::vector<std::string> variant = material_variant(parts_of(surfaces));
         if (sources.emitters) variant.emplace_back("EMISSION");
         if (read_emitters(pass, sources)) variant.emplace_back("EMITTERS");
-        if (sources.environment) {
-            pass.read(*sources.environment);
-            pass.read(*sources.sky_picture, {Usage::sampled, UNIT_SKY});
+        if (sources.sky) {
+            read_sky(pass, *sources.sky);
             variant.emplace_back("SKY");
         }
         if (round) pass.read(*round);
@@ -63,9 +83,7 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         pass.run([=, &gpu, &program, metrics = tracing.metrics](Execution& run) {
             gl::Uniforms uniforms{{"ray_offset", run.value(metrics).ray_offset()},
                                   {"ray_round", round ? run.value(*round) : 0U}};
-            if (sources.environment) {
-                uniforms = uniforms + sky_uniforms(run.value(*sources.environment));
-            }
+            if (sources.sky) uniforms = uniforms + mirrored_sky_uniforms(run, *sources.sky);
             gpu.clear_colour();
             gpu.draw_fullscreen(program, uniforms);
         });

@@ -8,18 +8,24 @@
 #include "renderer/passes/indirect/vpl_light.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/sky/sky.hpp"
+#include "renderer/passes/sky/sky_tree.hpp"
 #include "renderer/passes/surfaces/surfaces.hpp"
 #include "renderer/passes/view/view.hpp"
 
 namespace candela {
+
+struct MirroredSky {
+    Sky sky;
+    TextureHandle picture;  ///< see add_sky_picture
+    SkyTreeData tree;
+};
 
 /// What emits light that is to be seen in mirrors.
 struct MirroredSources {
     bool emitters = false;
     /// Whose emitting surfels light rough surfaces; none: rays find what emits light.
     std::optional<VplLight> vpls{};
-    std::optional<ValueHandle<Environment>> environment{};  ///< none: no sky
-    std::optional<TextureHandle> sky_picture{};             ///< likewise; see add_sky_picture
+    std::optional<MirroredSky> sky{};
 };
 
 /// What glossy surfaces show in the mirror direction. Textures of the view's size.
@@ -36,10 +42,10 @@ struct MirroredSurfaces {
 };
 
 /// Adds node `mirror-rays` (raster): one ray from each pixel of a glossy surface, in a random direction that
-/// it reflects to the viewer, or to a surfel that emits light, for surfaces that are smooth enough
-/// (share_of_rays of gloss.glsl). Depends on the surfaces with their material, the scene's triangles and
-/// materials, the sources and the view. `round`:
-/// another value gives other directions. None: always the same.
+/// it reflects to the viewer, or to a surfel that emits light or a bright part of the sky, for surfaces that
+/// are smooth enough (share_of_rays of gloss.glsl). Depends on the surfaces with their material, the scene's
+/// triangles and materials, the sources and the view. `round`: another value gives other directions. None:
+/// always the same.
 [[nodiscard]] MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& surfaces,
                                                const Tracing& tracing, const MirroredSources& sources,
                                                const ViewData& view,

@@ -58,9 +58,31 @@ glm::vec3 radiance_at(const SkyPicture& picture, glm::vec2 at) {
                     share.y);
 }
 
+/// The rotation from the picture's directions to those of the grid.
+glm::quat tilt() {
+    return glm::angleAxis(1.0F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F)));
+}
+
+/// The same light, by cells of the tilted grid.
+SkyGrid tilted(const SkyGrid& grid) {
+    SkyGrid result{grid.size, std::vector<SkyGrid::Cell>(grid.cells.size())};
+    const glm::vec2 most(grid.size - 1U);
+    for (const SkyGrid::Cell& cell : grid.cells) {
+        if (cell.moment == glm::vec3(0.0F)) continue;
+        const glm::vec2 at = sky_position(tilt() * glm::normalize(cell.moment)) * glm::vec2(grid.size);
+        const glm::uvec2 index(glm::clamp(at, glm::vec2(0.0F), most));
+        SkyGrid::Cell& target = result.cells[std::size_t{index.y} * grid.size.x + index.x];
+        target.light += cell.light;
+        target.moment += cell.moment;
+    }
+    return result;
+}
+
+}  // namespace
+
 /// Cells are blocks of texels, or parts of texels where the picture is small: a bright texel must be
 /// divisible.
-SkyGrid grid_of(const SkyPicture& picture) {
+SkyGrid picture_grid(const SkyPicture& picture) {
     const glm::uvec2 texels(picture.width, picture.height);
     const std::uint32_t parts = std::max(least_columns / picture.width, 1U);
     const glm::uvec2 samples = texels * parts;
@@ -85,30 +107,8 @@ SkyGrid grid_of(const SkyPicture& picture) {
     return grid;
 }
 
-/// The rotation from the picture's directions to those of the grid.
-glm::quat tilt() {
-    return glm::angleAxis(1.0F, glm::normalize(glm::vec3(1.0F, 2.0F, 3.0F)));
-}
-
-/// The same light, by cells of the tilted grid.
-SkyGrid tilted(const SkyGrid& grid) {
-    SkyGrid result{grid.size, std::vector<SkyGrid::Cell>(grid.cells.size())};
-    const glm::vec2 most(grid.size - 1U);
-    for (const SkyGrid::Cell& cell : grid.cells) {
-        if (cell.moment == glm::vec3(0.0F)) continue;
-        const glm::vec2 at = sky_position(tilt() * glm::normalize(cell.moment)) * glm::vec2(grid.size);
-        const glm::uvec2 index(glm::clamp(at, glm::vec2(0.0F), most));
-        SkyGrid::Cell& target = result.cells[std::size_t{index.y} * grid.size.x + index.x];
-        target.light += cell.light;
-        target.moment += cell.moment;
-    }
-    return result;
-}
-
-}  // namespace
-
 SkyGrid sky_grid(const SkyPicture& picture) {
-    return tilted(grid_of(picture));
+    return tilted(picture_grid(picture));
 }
 
 glm::vec3 grid_direction(glm::vec2 at) {

@@ -29,7 +29,10 @@ template <class T>
     return rgb.r + rgb.g + rgb.b;
 }
 
-/// The light of a picture, by cells of at most 1,024 × 512. The grid is tilted against the picture, around no
+/// The light of a picture, by cells of at most 1,024 × 512, in its rows and columns.
+[[nodiscard]] SkyGrid picture_grid(const SkyPicture& picture);
+
+/// The same light by cells of another grid. The grid is tilted against the picture, around no
 /// axis of the world: the edges of patches would otherwise be parallel to those of most rooms and be seen as
 /// bands. Moments have the picture's directions.
 [[nodiscard]] SkyGrid sky_grid(const SkyPicture& picture);

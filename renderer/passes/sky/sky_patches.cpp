@@ -44,29 +44,27 @@ ConeLight light_in_cone(const SkyGrid& grid, glm::vec3 axis, float cosine) {
 /// Takes the surroundings of the brightest cell out of the grid if they are a sun: within a radius of 1
 /// degree lie a twentieth of `all` light, and most of what lies within 2 degrees.
 std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
-    constexpr float one_degree = 0.99984770F;  // its cosine
-    constexpr float two_degrees = 0.99939083F;
+    constexpr float two_degrees = 0.99939083F;  // its cosine
     const auto brightest = std::ranges::max_element(
         grid.cells, {}, [](const SkyGrid::Cell& cell) { return sum_of_channels(cell.light); });
     if (brightest->moment == glm::vec3(0.0F)) return std::nullopt;
     // The brightest cell may be at the sun's edge.
     const glm::dvec3 near = light_in_cone(grid, glm::normalize(brightest->moment), two_degrees).moment;
     const glm::vec3 axis(glm::normalize(near));
-    const ConeLight sun = light_in_cone(grid, axis, one_degree);
+    const ConeLight sun = light_in_cone(grid, axis, sun_cosine);
     const double light = sum_of_channels(sun.light);
     const double around = sum_of_channels(light_in_cone(grid, axis, two_degrees).light);
     if (light < 0.05 * all || light < 0.8 * around) return std::nullopt;
     for (SkyGrid::Cell& cell : grid.cells) {
-        if (glm::dot(cell.moment, axis) > one_degree * glm::length(cell.moment)) cell = {};
+        if (glm::dot(cell.moment, axis) > sun_cosine * glm::length(cell.moment)) cell = {};
     }
     return SkySun{glm::vec3(glm::normalize(sun.moment)), glm::vec3(sun.light)};
 }
 
 std::vector<SkySun> take_suns(SkyGrid& grid) {
-    constexpr std::size_t most_suns = 4;
     const double all = sum_of_channels(patch_of(grid, glm::uvec2(0), grid.size).light);
     std::vector<SkySun> suns;
-    while (suns.size() < most_suns) {
+    while (suns.size() < MOST_SKY_SUNS) {
         const std::optional<SkySun> sun = take_sun(grid, all);
         if (!sun) break;
         suns.push_back(*sun);

@@ -22,6 +22,9 @@ struct SkyPatch {
     glm::dvec3 moment{0.0};
 };
 
+/// Cosine of the radius of a sun with its surroundings, 1 degree.
+inline constexpr float sun_cosine = 0.99984770F;
+
 /// A small bright part of the sky.
 struct SkySun {
     glm::vec3 direction{0.0F};  ///< towards it, unit, in the picture's directions
