@@ -33,18 +33,6 @@ vec3 fragment_emission() { return materials[material_index].emissive * texture(e
 
 #endif
 
-#ifdef GLOSSY
-
-layout(binding = UNIT_METAL_ROUGHNESS) uniform sampler2D metal_roughness;
-
-PackedGloss fragment_gloss() {
-    vec2 stored = texture(metal_roughness, uv).gb;
-    Material material = materials[material_index];
-    return pack_gloss(material.mirror, stored * vec2(material.roughness, material.metalness));
-}
-
-#endif
-
 #ifdef BUMPY
 
 layout(binding = UNIT_NORMAL_MAP) uniform sampler2D normal_map;
@@ -66,6 +54,21 @@ PackedBumps fragment_bumps() {
     vec3 turned = mapped_normal(material);
     float open = mix(1.0, texture(occlusion, uv).r, material.occlusion_strength);
     return pack_bumps(gl_FrontFacing ? turned : -turned, open);
+}
+
+#endif
+
+#ifdef GLOSSY
+
+layout(binding = UNIT_METAL_ROUGHNESS) uniform sampler2D metal_roughness;
+
+PackedGloss fragment_gloss() {
+    Material material = materials[material_index];
+    vec2 gloss = texture(metal_roughness, uv).gb * vec2(material.roughness, material.metalness);
+#ifdef BUMPY
+    gloss.x = widened_roughness(gloss.x, material.normal_scale * texture(normal_map, uv).a);
+#endif
+    return pack_gloss(material.mirror, gloss);
 }
 
 #endif

@@ -60,6 +60,14 @@ PackedGloss pack_gloss(vec4 mirror, vec2 gloss) {
     return PackedGloss(vec4(low, high), unpackHalf2x16(packHalf2x16(gloss)));
 }
 
+// Roughness of a surface whose normals differ within a pixel. `slope`: root of the mean square of their slopes against the
+// normal that the pixel has. See theory.md, "Bumps that are too small to be seen".
+float widened_roughness(float roughness, float slope) {
+    if (slope == 0.0) return roughness;
+    float alpha = roughness * roughness;
+    return sqrt(sqrt(min(alpha * alpha + slope * slope, 1.0)));
+}
+
 // Metal reflects its base colour in the mirror direction, and nothing else.
 void set_gloss(inout Surface surface, PackedGloss stored) {
     float metalness = stored.gloss.y;

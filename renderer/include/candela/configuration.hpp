@@ -23,7 +23,8 @@ enum class Show : std::uint8_t {
     irradiance,
     albedo,   ///< linear, from 0 to 1; displayed without exposure and tone curve
     normals,  ///< (0.5 n + 0.5) in world space; displayed as they are
-    /// Material::roughness × its texture, displayed as it is; 1 in a scene without glossy surfaces.
+    /// Material::roughness × its texture, displayed as it is, without what bumps too small to be seen add to
+    /// it; 1 in a scene without glossy surfaces.
     roughness,
     metalness  ///< the same of Material::metalness; 0 in a scene without glossy surfaces
 };

@@ -25,6 +25,7 @@ inline constexpr std::array material_image_slots{
 inline constexpr std::size_t base_colour_slot = 0;
 inline constexpr std::size_t emissive_slot = 1;
 inline constexpr std::size_t metal_roughness_slot = 2;
+inline constexpr std::size_t normal_slot = 3;
 
 /// An image of a material on the GPU, with mip levels; the sampler has its wrap modes.
 struct MaterialTexture {

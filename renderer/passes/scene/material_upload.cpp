@@ -13,6 +13,7 @@
 
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/mirror_shares.hpp"
+#include "renderer/passes/scene/normal_levels.hpp"
 
 namespace candela {
 namespace {
@@ -32,20 +33,35 @@ GLint wrap_mode(Wrap wrap) {
     return GL_REPEAT;
 }
 
-std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& image) {
+/// The image on the GPU, without what its mip levels contain.
+std::shared_ptr<MaterialTexture> make_texture(Gpu& gpu, const Image& image) {
     const TextureDesc desc{
         .size = {image.width, image.height},
         .format = image.encoding == Encoding::srgb ? Format::srgb8_alpha8 : Format::rgba8,
         .mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)))};
     gl::Texture texture(gpu.device(), "material", desc);
-    texture.upload(std::as_bytes(std::span(image.texels)));
-    texture.generate_mips();
     gl::Sampler sampler(gpu.device(), "material",
                         {.min_filter = GL_LINEAR_MIPMAP_LINEAR,
                          .wrap_u = wrap_mode(image.wrap_u),
                          .wrap_v = wrap_mode(image.wrap_v),
                          .anisotropy = 8.0F});
-    return std::make_shared<const MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
+    return std::make_shared<MaterialTexture>(MaterialTexture{std::move(texture), std::move(sampler)});
+}
+
+std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& image) {
+    const std::shared_ptr<MaterialTexture> made = make_texture(gpu, image);
+    made->texture.upload(std::as_bytes(std::span(image.texels)));
+    made->texture.generate_mips();
+    return made;
+}
+
+std::shared_ptr<const MaterialTexture> upload_normals(Gpu& gpu, const Image& image) {
+    const std::shared_ptr<MaterialTexture> made = make_texture(gpu, image);
+    const std::vector<NormalLevel> levels = normal_levels(image);
+    for (std::uint32_t i = 0; i < levels.size(); ++i) {
+        made->texture.upload(std::as_bytes(std::span(levels[i])), i);
+    }
+    return made;
 }
 
 bool is_opaque(const Image& image) {
@@ -109,6 +125,14 @@ glm::vec3 mean_of(const Image& image) {
     return glm::vec3(sum / static_cast<double>(image.texels.size()));
 }
 
+/// Normals are drawn, and have no mean.
+UploadedImage upload_normal_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
+    UploadedImage uploaded;
+    uploaded.image = image;
+    uploaded.texture = upload_normals(gpu, *image);
+    return uploaded;
+}
+
 /// Only colours are for tracing.
 UploadedImage upload_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
     const Image reduced = image->encoding == Encoding::srgb ? reduce(*image) : Image{};
@@ -161,6 +185,7 @@ TracedReflection traced_reflection(const Material& material, float metalness, fl
 void MaterialTable::begin() {
     materials_.begin();
     images_.begin();
+    normals_.begin();
 }
 
 std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& material) {
@@ -169,8 +194,9 @@ std::uint32_t MaterialTable::index_of(const std::shared_ptr<const Material>& mat
         by_index_[taken].material = material;
         return taken;
     })];
-    std::ranges::transform(material_image_slots, by_index_[index].images.begin(),
-                           [&](const MaterialImageSlot& slot) { return number_of((*material).*slot.image); });
+    for (std::size_t slot = 0; slot < material_image_slots.size(); ++slot) {
+        by_index_[index].images[slot] = number_of((*material).*material_image_slots[slot].image, slot);
+    }
     return index;
 }
 
@@ -184,8 +210,21 @@ std::uint32_t MaterialTable::take_index() {
     return index;
 }
 
-std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image) {
-    return image ? images_.use(image.get(), [&] { return upload_image(*gpu_, image); }) + 1 : 0;
+/// The number of the image in a slot of a material. Normals have mip levels of their own, also of an image
+/// that is used for something else, too.
+std::uint32_t MaterialTable::number_of(const std::shared_ptr<const Image>& image, std::size_t slot) {
+    if (!image) return 0;
+    if (slot == normal_slot) {
+        return normals_.use(image.get(), [&] { return upload_normal_image(*gpu_, image); }) + 1;
+    }
+    return images_.use(image.get(), [&] { return upload_image(*gpu_, image); }) + 1;
+}
+
+const UploadedImage& MaterialTable::image_of(const Listed& listed, std::size_t slot) const {
+    static const UploadedImage none{};
+    const std::uint32_t number = listed.images[slot];
+    if (number == 0) return none;
+    return slot == normal_slot ? normals_[number - 1] : images_[number - 1];
 }
 
 glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
@@ -197,19 +236,18 @@ glm::vec3 MaterialTable::mean_albedo(std::uint32_t material) const {
 
 /// Mean of a material's image; 1 if it has none.
 glm::vec3 MaterialTable::mean_of_image(const Listed& listed, std::size_t slot) const {
-    const std::uint32_t image = listed.images[slot];
-    return image == 0 ? glm::vec3(1.0F) : images_[image - 1].mean;
+    return listed.images[slot] == 0 ? glm::vec3(1.0F) : image_of(listed, slot).mean;
 }
 
 MaterialBinding MaterialTable::binding_of(std::uint32_t material) const {
-    const auto& [listed, images] = by_index_[material];
-    MaterialBinding binding{.alpha = listed->alpha_mode,
-                            .double_sided = listed->double_sided,
-                            .emits = emits(*listed),
+    const Listed& listed = by_index_[material];
+    MaterialBinding binding{.alpha = listed.material->alpha_mode,
+                            .double_sided = listed.material->double_sided,
+                            .emits = emits(*listed.material),
                             .textures = {}};
-    std::ranges::transform(images, binding.textures.begin(), [&](std::uint32_t image) {
-        return image == 0 ? nullptr : images_[image - 1].texture;
-    });
+    for (std::size_t slot = 0; slot < binding.textures.size(); ++slot) {
+        binding.textures[slot] = image_of(listed, slot).texture;
+    }
     return binding;
 }
 
@@ -222,14 +260,10 @@ std::vector<std::shared_ptr<const Material>> MaterialTable::materials() const {
 }
 
 gpu::Material MaterialTable::record_of(const Listed& listed) const {
-    static const UploadedImage none{};
     if (!listed.material) return {};
-    const auto image = [&](std::uint32_t number) -> const UploadedImage& {
-        return number == 0 ? none : images_[number - 1];
-    };
     const Material& material = *listed.material;
-    const UploadedImage& colour = image(listed.images[base_colour_slot]);
-    const UploadedImage& emissive = image(listed.images[emissive_slot]);
+    const UploadedImage& colour = image_of(listed, base_colour_slot);
+    const UploadedImage& emissive = image_of(listed, emissive_slot);
     const glm::vec3 gloss = mean_of_image(listed, metal_roughness_slot);
     const TracedReflection traced =
         traced_reflection(material, material.metalness * gloss.b, material.roughness * gloss.g);
@@ -256,6 +290,7 @@ void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials
                            BufferHandle<std::uint32_t> texels) {
     materials_.drop_unused();
     images_.drop_unused();
+    normals_.drop_unused();
     std::vector<bool> used(by_index_.size());
     for (const std::uint32_t* index : materials_.used()) {
         used[*index] = true;

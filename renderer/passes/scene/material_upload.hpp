@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -13,7 +14,7 @@
 namespace candela {
 
 /// By slot: the number of a material's image in the current scene of a MaterialTable, in the order of first
-/// use; 0: no image.
+/// use, normals counted for themselves; 0: no image.
 using MaterialImages = std::array<std::uint32_t, material_image_slots.size()>;
 
 /// An image on the GPU: as a texture for rasterisation, and reduced in the buffer of texels for tracing.
@@ -58,7 +59,8 @@ class MaterialTable {
         MaterialImages images{};
     };
     [[nodiscard]] std::uint32_t take_index();
-    [[nodiscard]] std::uint32_t number_of(const std::shared_ptr<const Image>& image);
+    [[nodiscard]] std::uint32_t number_of(const std::shared_ptr<const Image>& image, std::size_t slot);
+    [[nodiscard]] const UploadedImage& image_of(const Listed& listed, std::size_t slot) const;
     [[nodiscard]] gpu::Material record_of(const Listed& listed) const;
     [[nodiscard]] glm::vec3 mean_of_image(const Listed& listed, std::size_t slot) const;
 
@@ -67,7 +69,8 @@ class MaterialTable {
     std::vector<std::uint32_t> free_;              // indices
     UseCache<Material, std::uint32_t> materials_;  // their indices
     UseCache<Image, UploadedImage> images_;
-    std::uint32_t texels_end_ = 0;  // see place_ranges
+    UseCache<Image, UploadedImage> normals_;  // of normal_slot
+    std::uint32_t texels_end_ = 0;            // see place_ranges
 };
 
 }  // namespace candela
