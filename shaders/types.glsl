@@ -35,12 +35,17 @@ struct Material {
     float roughness DEFAULT(1.0);
     float normal_scale DEFAULT(0.0);  // of the normals' x and y; 0: no normal texture
     float occlusion_strength DEFAULT(0.0);
-    float pad0 DEFAULT(0.0);
+    uint mean_gloss DEFAULT(0u);    // roughness and metalness with the mean of their texture, half floats
+    uint first_normal_texel DEFAULT(0u);  // as first_texel, of its normal texture
+    uint normal_width DEFAULT(0u);
+    uint normal_height DEFAULT(0u);
+    uint pad0 DEFAULT(0u);
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u
 #define MATERIAL_BASE_COLOUR_WRAP_SHIFT 1u  // 2 bits for u, then 2 for v
 #define MATERIAL_EMISSIVE_WRAP_SHIFT 5u
+#define MATERIAL_NORMAL_WRAP_SHIFT 9u
 #define MATERIAL_WRAP_BITS 2u
 #define MATERIAL_WRAP_MASK 3u
 
@@ -307,6 +312,10 @@ struct TraceTriangle {
     vec2 uv_c;
     uint colour_b;
     uint colour_c;
+    uint normal_a;  // of the vertex: octahedral, 16 bits each
+    uint normal_b;
+    uint normal_c;
+    uint pad0 DEFAULT(0u);
 };
 
 #define TRIANGLE_MASKED 0x80000000u

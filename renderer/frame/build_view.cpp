@@ -201,7 +201,7 @@ std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const S
     Lighting lighting = lighting_of(shared, out);
     lighting.show = Show::total;
     lighting.lists.reset();  // they are of what the view sees
-    lighting.materials = {};
+    lighting.materials = parts_of(mirrored);
     lighting.mirror_rays = false;
     if (shared.configuration.shadows.enabled) lighting.shadow_rays = shared.lit.tracing;
     if (gathers) {
@@ -217,7 +217,7 @@ std::optional<TextureHandle> shade_mirrored(FrameGraph& graph, Gpu& gpu, const S
 /// What glossy surfaces show in the mirror direction.
 void add_mirrored(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const ViewData& view,
                   const ViewHandles& out, std::optional<TextureHandle> sky_picture, ViewFrame& parts) {
-    MirroredSources sources{.emitters = shows_emitters(shared)};
+    MirroredSources sources{.emitters = shows_emitters(shared), .bumpy = shared.contents.bumpy};
     if (shared.vpls) sources.vpls = shared.vpls->light;
     if (sky_picture) {
         const Sky& sky = *shared.lit.sky;

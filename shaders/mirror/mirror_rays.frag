@@ -4,6 +4,7 @@
 #ifdef EMITTERS
 #include "mirror/emitter_rays.glsl"
 #endif
+#include "mirror/met_surface.glsl"
 #include "sampling.glsl"
 #include "scene/bvh.glsl"
 #ifdef SKY
@@ -18,6 +19,12 @@ layout(location = 1) out vec4 normal_and_direction;  // octahedral; from the sur
 // Alpha: radiance of an emitter that the ray was sent to, negative if it did not get there; 0: it was sent to none.
 layout(location = 2) out vec4 albedo;
 layout(location = 3) out vec4 radiance_and_density;  // of surface or sky; of the direction, 1/sr, 0: no ray
+// As gbuffer.frag writes them.
+layout(location = 4) out vec4 mirror;
+layout(location = 5) out vec2 gloss;
+#ifdef MIRRORED_BUMPS
+layout(location = 6) out vec4 bumps;
+#endif
 
 // Neighbouring pixels have well distributed points. `pair`: of dimensions.
 vec2 point_of(uvec2 pixel, uint pair) {
@@ -101,16 +108,37 @@ float width_behind(Surface surface, float distance) {
     return surface.pixel * (1.0 + distance / depth);
 }
 
+void put_no_material() {
+    albedo.rgb = vec3(0.0);
+    mirror = vec4(0.0);
+    gloss = vec2(1.0, 0.0);
+#ifdef MIRRORED_BUMPS
+    bumps = vec4(normal_and_direction.xy, 1.0, 0.0);
+#endif
+}
+
 void meet(Hit hit, vec3 direction) {
     TraceTriangle triangle = triangles[hit.triangle];
     vec3 front = normalize(cross(triangle.edge_ab, triangle.edge_ac));
     bool from_front = dot(front, direction) < 0.0;
     width_and_position.yzw = triangle.a + hit.barycentric.x * triangle.edge_ab + hit.barycentric.y * triangle.edge_ac;
-    normal_and_direction = vec4(octahedral_encode(from_front ? front : -front), octahedral_encode(-direction));
+    vec3 across = hit_normal(triangle, hit.barycentric);
+    float side = from_front ? 1.0 : -1.0;
+    normal_and_direction = vec4(octahedral_encode(side * across), octahedral_encode(-direction));
+    put_no_material();
     radiance_and_density.rgb = vec3(0.0);
     if (!from_front && !is_double_sided(triangle.material)) return;
     Material material = materials[triangle.material];
-    albedo.rgb = traced_albedo(material, hit_colour(triangle, hit.barycentric).rgb);
+    albedo.rgb = hit_colour(triangle, hit.barycentric).rgb;
+    float spread = 0.0;
+#ifdef MIRRORED_BUMPS
+    vec3 turned = met_normal(material, triangle, hit.barycentric, across, spread);
+    PackedBumps packed_bumps = pack_bumps(side * turned, 1.0);
+    bumps = vec4(packed_bumps.normal, packed_bumps.open, 0.0);
+#endif
+    PackedGloss packed_gloss = met_gloss(material, spread);
+    mirror = packed_gloss.mirror;
+    gloss = packed_gloss.gloss;
 #ifdef EMISSION
     radiance_and_density.rgb = emission_at(material, hit_uv(triangle, hit.barycentric));
 #endif
@@ -128,7 +156,8 @@ void main() {
     Hit hit = closest_hit(origin, direction, 0.0, 1.0 / 0.0);
     width_and_position = vec4(0.0);
     normal_and_direction = vec4(0.0, 0.0, octahedral_encode(-direction));
-    albedo = vec4(0.0);
+    albedo.a = 0.0;
+    put_no_material();
     radiance_and_density = vec4(light_of_sky(direction), ray.density);
 #ifdef EMITTERS
     albedo.a = aimed_radiance(ray.aim, hit);

@@ -1,11 +1,11 @@
-// Base colour and emission at a ray hit. Images are read from one texel buffer, since a shader cannot select among
+// Base colour, emission and normal at a ray hit. Images are read from one texel buffer, since a shader cannot select among
 // textures by index. They have a reduced resolution, which is enough for diffuse bounces.
 #include "bindings.glsl"
 #include "maths.glsl"
 #include "types.glsl"
 
 layout(std430, binding = BINDING_MATERIALS) readonly restrict buffer Materials { Material materials[]; };
-layout(std430, binding = BINDING_TEXELS) readonly restrict buffer Texels { uint texels[]; };  // sRGB, 8 bits a channel
+layout(std430, binding = BINDING_TEXELS) readonly restrict buffer Texels { uint texels[]; };  // 8 bits a channel
 
 const uint WRAP_REPEAT = 0u;
 const uint WRAP_MIRRORED = 1u;
@@ -26,14 +26,15 @@ struct TexelImage {
     uint first;
     uvec2 size;
     uint wraps;  // of u in the lowest bits, then of v
+    bool is_linear;  // else sRGB
 };
 
-// Texel at `at`, wrapped; linear colour and alpha.
+// Texel at `at`, wrapped; linear, and alpha.
 vec4 texel(TexelImage image, ivec2 at) {
     int x = wrap(at.x, int(image.size.x), image.wraps & MATERIAL_WRAP_MASK);
     int y = wrap(at.y, int(image.size.y), (image.wraps >> MATERIAL_WRAP_BITS) & MATERIAL_WRAP_MASK);
     vec4 stored = unpackUnorm4x8(texels[image.first + uint(y) * image.size.x + uint(x)]);
-    return vec4(srgb_decode(stored.rgb), stored.a);
+    return image.is_linear ? stored : vec4(srgb_decode(stored.rgb), stored.a);
 }
 
 vec4 bilinear_texel(TexelImage image, vec2 uv) {
@@ -48,7 +49,7 @@ vec4 bilinear_texel(TexelImage image, vec2 uv) {
 vec4 colour_at(Material material, vec2 uv) {
     if (material.texel_width == 0u) return material.base_colour;
     TexelImage image = TexelImage(material.first_texel, uvec2(material.texel_width, material.texel_height),
-                                  material.flags >> MATERIAL_BASE_COLOUR_WRAP_SHIFT);
+                                  material.flags >> MATERIAL_BASE_COLOUR_WRAP_SHIFT, false);
     return material.base_colour * bilinear_texel(image, uv);
 }
 
@@ -60,8 +61,16 @@ vec3 emission_at(Material material, vec2 uv) {
     if (material.emissive == vec3(0.0) || material.emissive_width == 0u) return material.emissive;
     uvec2 size = uvec2(material.emissive_width, material.emissive_height);
     TexelImage image =
-        TexelImage(material.first_emissive_texel, size, material.flags >> MATERIAL_EMISSIVE_WRAP_SHIFT);
+        TexelImage(material.first_emissive_texel, size, material.flags >> MATERIAL_EMISSIVE_WRAP_SHIFT, false);
     return material.emissive * bilinear_texel(image, uv).rgb;
+}
+
+// What a material's normal texture stores, and in alpha how far normals spread: normal_levels.hpp. The material has one.
+vec4 stored_normal_at(Material material, vec2 uv) {
+    uvec2 size = uvec2(material.normal_width, material.normal_height);
+    TexelImage image =
+        TexelImage(material.first_normal_texel, size, material.flags >> MATERIAL_NORMAL_WRAP_SHIFT, true);
+    return bilinear_texel(image, uv);
 }
 
 // Linear colour and alpha of a packed vertex colour.
@@ -72,6 +81,14 @@ vec4 vertex_colour(uint colour) {
 
 vec2 hit_uv(TraceTriangle triangle, vec2 barycentric) {
     return triangle.uv_a + barycentric.x * (triangle.uv_b - triangle.uv_a) + barycentric.y * (triangle.uv_c - triangle.uv_a);
+}
+
+// The normal of the vertices, interpolated; unit, on the front.
+vec3 hit_normal(TraceTriangle triangle, vec2 barycentric) {
+    vec3 a = octahedral_decode(unpackSnorm2x16(triangle.normal_a));
+    vec3 b = octahedral_decode(unpackSnorm2x16(triangle.normal_b));
+    vec3 c = octahedral_decode(unpackSnorm2x16(triangle.normal_c));
+    return normalize(a + barycentric.x * (b - a) + barycentric.y * (c - a));
 }
 
 vec4 hit_colour(TraceTriangle triangle, vec2 barycentric) {

@@ -81,8 +81,6 @@ void set_gloss(inout Surface surface, PackedGloss stored) {
 
 #endif
 
-#ifdef BUMPY
-
 // What a material's images of details add, in the G-buffer.
 struct PackedBumps {
     vec2 normal;  // octahedral: the shading normal
@@ -90,6 +88,8 @@ struct PackedBumps {
 };
 
 PackedBumps pack_bumps(vec3 normal, float open) { return PackedBumps(octahedral_encode(normal), open); }
+
+#ifdef BUMPY
 
 void set_bumps(inout Surface surface, PackedBumps stored) {
     surface.turned_normal = octahedral_decode(stored.normal);

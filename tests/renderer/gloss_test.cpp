@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include <candela/scene/tangents.hpp>
 #include "renderer/gpu/mirror_shares.hpp"
 #include "tests/renderer/gloss.hpp"
 #include "tests/renderer/path_fixture.hpp"
@@ -98,6 +99,49 @@ Scene things_on_ground() {
     scene.light = add(scene.world, at({0.2F, 2.5F, 0.4F}), PointLight{.intensity = 5.0F});
     scene.camera = add(scene.world, Camera{.vertical_fov = 0.5F});
     return scene;
+}
+
+/// A ground, seen in a mirror that is still missing: the camera looks at its place. `behind`: the camera is
+/// where the mirror would show it.
+Scene ground_for_mirror(std::shared_ptr<const Mesh> ground, const Transform& pose, bool behind) {
+    Scene scene;
+    add(scene.world, pose, MeshInstance{std::move(ground)});
+    scene.light = add(scene.world, at({2.5F, 2.5F, 0.3F}), PointLight{.intensity = 5.0F});
+    scene.camera = add(scene.world, looking({behind ? -2.3F : 0.3F, 1.6F, 0.1F}, {-1, 0.8F, 0}),
+                       Camera{.vertical_fov = 0.5F});
+    return scene;
+}
+
+/// A mirror that faces +X, at x = -1.
+void add_mirror(Scene& scene) {
+    add(scene.world, Transform{.translation = {-1, 1, 0}, .rotation = turned(-0.5F, {0, 0, 1})},
+        MeshInstance{square(0.9F, metal(glm::vec3(1.0F), 0.0F))});
+}
+
+/// A ground of this material with tangents. `bent`: its normals turn from corner to corner.
+std::shared_ptr<const Mesh> ground_of(Material material, bool bent, bool mirrored_uv) {
+    Mesh mesh = *square(4.0F, std::make_shared<const Material>(std::move(material)));
+    for (Vertex& vertex : mesh.primitives[0].vertices) {
+        if (bent) vertex.normal = glm::normalize(vertex.position * 0.05F + glm::vec3(0, 1, 0));
+        if (mirrored_uv) vertex.uv.x = 1.0F - vertex.uv.x;
+    }
+    derive_tangents(mesh.primitives[0]);
+    return std::make_shared<const Mesh>(std::move(mesh));
+}
+
+/// Relative errors of a picture turned left to right, from the least to the greatest, where the right one has
+/// at least this light.
+std::vector<double> errors_in_mirror(const Picture& shown, const Picture& behind, double least) {
+    std::vector<double> errors;
+    for (std::uint32_t y = 0; y < behind.size.y; ++y) {
+        for (std::uint32_t x = 0; x < behind.size.x; ++x) {
+            const auto expected = static_cast<double>(behind.at(behind.size.x - 1 - x, y).g);
+            if (expected < least) continue;
+            errors.push_back(std::abs(static_cast<double>(shown.at(x, y).g) - expected) / expected);
+        }
+    }
+    std::ranges::sort(errors);
+    return errors;
 }
 
 }  // namespace
@@ -270,5 +314,45 @@ TEST_SUITE("gloss") {
         // The reflectance is 1 up to the table of shares, 1e-3, and a ray is off by 1e-5 of its length. At
         // edges, rays and triangles may find different surfaces.
         CHECK(errors[errors.size() * 3 / 4] < 0.005);
+    }
+
+    TEST_CASE_FIXTURE(RenderFixture, "a mirror shows highlights and bumps as they are seen from behind it") {
+        // Nothing else is there that the ground could reflect: what it reflects of other surfaces is the same
+        // mean in mirrors, but found by rays where it is seen itself.
+        Configuration configuration = linear_configuration();
+        configuration.indirect = false;
+        configure(configuration);
+        const auto expect = [&](const std::shared_ptr<const Mesh>& ground, const Transform& pose = {}) {
+            Scene seen_in_mirror = ground_for_mirror(ground, pose, false);
+            add_mirror(seen_in_mirror);
+            const Picture shown = render(seen_in_mirror, {48, 48});
+            renderer.invalidate();
+            const Picture behind = render(ground_for_mirror(ground, pose, true), {48, 48});
+            renderer.invalidate();
+            const double middle = mean(behind);
+            REQUIRE(middle > 0.01);
+            // The reflectance is 1 up to the table of shares, 1e-3; roughness is a half float, 5e-4, and
+            // normals of the ray's triangle have 16 bits.
+            const std::vector<double> all = errors_in_mirror(shown, behind, 0.1 * middle);
+            REQUIRE(all.size() > 1000);
+            CHECK(all[all.size() * 9 / 10] < 0.005);
+            const std::vector<double> bright = errors_in_mirror(shown, behind, 1.5 * middle);
+            REQUIRE(bright.size() > 20);
+            CHECK(bright[bright.size() * 9 / 10] < 0.01);
+        };
+        const Transform mirrored{.scale = {-1, 1, 1}};
+        for (const auto& made : {metal({0.9F, 0.8F, 0.7F}, 0.5F), plastic(glm::vec3(0.2F), 0.3F)}) {
+            CAPTURE(made->roughness);
+            Material material = *made;
+            expect(ground_of(material, true, false));
+            // Without bent normals, as rays do not interpolate the tangents of corners. One texel has no
+            // bilinear weights, which drivers round.
+            material.normal_texture = std::make_shared<const Image>(Image{
+                .width = 1, .height = 1, .texels = {{140, 134, 250, 255}}, .encoding = Encoding::linear});
+            material.normal_scale = 1.2F;
+            expect(ground_of(material, false, false));
+            expect(ground_of(material, false, true));
+            expect(ground_of(material, false, false), mirrored);
+        }
     }
 }

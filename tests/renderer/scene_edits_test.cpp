@@ -62,10 +62,10 @@ TEST_SUITE("scene edits") {
             renderer.render(scene.world, scene.camera, target.target());
             return Uploads::take();
         };
-        // 20,000 triangles: 60,000 vertices and indices, 80 bytes for each triangle traced. The rest is less:
+        // 20,000 triangles: 60,000 vertices and indices, 96 bytes for each triangle traced. The rest is less:
         // nodes of the hierarchy and 1 MiB of texels.
         const std::uint64_t all = uploaded();
-        CHECK(all > 60'000 * (sizeof(Vertex) + 4) + 20'000 * 80);
+        CHECK(all > 60'000 * (sizeof(Vertex) + 4) + 20'000 * 96);
 
         // A box of 12 triangles, and tables that do not depend on the number of triangles: of them, the top
         // of the hierarchy has the most, at least 2 · 1,024 nodes of 32 bytes.

@@ -61,6 +61,7 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         read_tracing(pass, tracing);
         read_view(pass, view);
         std::vector<std::string> variant = material_variant(parts_of(surfaces));
+        if (sources.bumpy) variant.emplace_back("MIRRORED_BUMPS");
         if (sources.emitters) variant.emplace_back("EMISSION");
         if (read_emitters(pass, sources)) variant.emplace_back("EMITTERS");
         if (sources.sky) {
@@ -80,6 +81,9 @@ MirroredSurfaces add_mirror_rays(FrameGraph& graph, Gpu& gpu, const Surfaces& su
         out.surfaces.mirrored = true;
         out.round = round;
         out.source = write("mirrored source", Format::rgba32f);
+        out.surfaces.mirror = write("mirrored reflectance", Format::rgba16f);
+        out.surfaces.gloss = write("mirrored gloss", Format::rg16f);
+        if (sources.bumpy) out.surfaces.bumps = write("mirrored bumps", Format::rgba32f);
         pass.run([=, &gpu, &program, metrics = tracing.metrics](Execution& run) {
             gl::Uniforms uniforms{{"ray_offset", run.value(metrics).ray_offset()},
                                   {"ray_round", round ? run.value(*round) : 0U}};

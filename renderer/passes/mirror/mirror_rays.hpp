@@ -20,9 +20,10 @@ struct MirroredSky {
     SkyTreeData tree;
 };
 
-/// What emits light that is to be seen in mirrors.
+/// What is to be seen in mirrors.
 struct MirroredSources {
     bool emitters = false;
+    bool bumpy = false;  ///< the scene's surfaces may be, whatever those of the view are
     /// Whose emitting surfels light rough surfaces; none: rays find what emits light.
     std::optional<VplLight> vpls{};
     std::optional<MirroredSky> sky{};
@@ -32,8 +33,10 @@ struct MirroredSources {
 struct MirroredSurfaces {
     /// As passes that shade read them: `depth` is rgba32f, the width of a pixel there in metres, 0 where
     /// there is no surface, and the position; `normal` is rgba32f, the face normal and the unit direction
-    /// towards the glossy surface, octahedral. The albedo is that of a Lambertian surface; alpha is the
-    /// radiance of an emitter that the ray was sent to, negative if it did not arrive, 0 if to none.
+    /// towards the glossy surface, octahedral. They have all parts of glossy surfaces, and are bumpy if the
+    /// scene is. Roughness and metalness are the means over their texture; there is no occlusion. The alpha
+    /// of the albedo is the radiance of an emitter that the ray was sent to, negative if it did not arrive, 0
+    /// if to none.
     Surfaces surfaces;
     /// rgba32f: radiance that they emit, or of the sky; and the density of the ray's direction in 1/sr, 0
     /// where there is no ray.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/packing.hpp>
 #include <iterator>
 
 #define STB_IMAGE_RESIZE_IMPLEMENTATION
@@ -55,9 +56,9 @@ std::shared_ptr<const MaterialTexture> upload_texture(Gpu& gpu, const Image& ima
     return made;
 }
 
-std::shared_ptr<const MaterialTexture> upload_normals(Gpu& gpu, const Image& image) {
+std::shared_ptr<const MaterialTexture> upload_normals(Gpu& gpu, const Image& image,
+                                                      const std::vector<NormalLevel>& levels) {
     const std::shared_ptr<MaterialTexture> made = make_texture(gpu, image);
-    const std::vector<NormalLevel> levels = normal_levels(image);
     for (std::uint32_t i = 0; i < levels.size(); ++i) {
         made->texture.upload(std::as_bytes(std::span(levels[i])), i);
     }
@@ -97,7 +98,8 @@ std::uint32_t wrap_bits(const Image* image) {
 std::uint32_t material_flags(const Material& material) {
     return (material.double_sided ? MATERIAL_DOUBLE_SIDED : 0U) |
            wrap_bits(material.base_colour_texture.get()) << MATERIAL_BASE_COLOUR_WRAP_SHIFT |
-           wrap_bits(material.emissive_texture.get()) << MATERIAL_EMISSIVE_WRAP_SHIFT;
+           wrap_bits(material.emissive_texture.get()) << MATERIAL_EMISSIVE_WRAP_SHIFT |
+           wrap_bits(material.normal_texture.get()) << MATERIAL_NORMAL_WRAP_SHIFT;
 }
 
 bool is_masked(const Material& material) {
@@ -125,11 +127,18 @@ glm::vec3 mean_of(const Image& image) {
     return glm::vec3(sum / static_cast<double>(image.texels.size()));
 }
 
-/// Normals are drawn, and have no mean.
+/// For tracing, normals have the largest level that is small enough.
 UploadedImage upload_normal_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
+    const std::vector<NormalLevel> levels = normal_levels(*image);
+    std::size_t reduced = 0;
+    while (std::max(image->width, image->height) >> reduced > traced_image_size) ++reduced;
     UploadedImage uploaded;
     uploaded.image = image;
-    uploaded.texture = upload_normals(gpu, *image);
+    uploaded.texture = upload_normals(gpu, *image, levels);
+    uploaded.width = std::max(image->width >> reduced, 1U);
+    uploaded.height = std::max(image->height >> reduced, 1U);
+    std::ranges::transform(levels[reduced], std::back_inserter(uploaded.texels), pack);
+    uploaded.range.count = static_cast<std::uint32_t>(uploaded.texels.size());
     return uploaded;
 }
 
@@ -264,9 +273,10 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
     const Material& material = *listed.material;
     const UploadedImage& colour = image_of(listed, base_colour_slot);
     const UploadedImage& emissive = image_of(listed, emissive_slot);
+    const UploadedImage& normals = image_of(listed, normal_slot);
     const glm::vec3 gloss = mean_of_image(listed, metal_roughness_slot);
-    const TracedReflection traced =
-        traced_reflection(material, material.metalness * gloss.b, material.roughness * gloss.g);
+    const glm::vec2 mean_gloss(material.roughness * gloss.g, material.metalness * gloss.b);
+    const TracedReflection traced = traced_reflection(material, mean_gloss.y, mean_gloss.x);
     return {.base_colour = material.base_colour,
             .first_texel = colour.range.first,
             .texel_width = colour.width,
@@ -283,7 +293,11 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
             .traced_share = traced.share,
             .roughness = material.roughness,
             .normal_scale = material.normal_texture ? material.normal_scale : 0.0F,
-            .occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F};
+            .occlusion_strength = material.occlusion_texture ? material.occlusion_strength : 0.0F,
+            .mean_gloss = glm::packHalf2x16(mean_gloss),
+            .first_normal_texel = normals.range.first,
+            .normal_width = normals.width,
+            .normal_height = normals.height};
 }
 
 void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials,
@@ -303,13 +317,15 @@ void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials
         }
     }
 
+    std::vector<UploadedImage*> images = images_.used();
+    images.insert(images.end(), normals_.used().begin(), normals_.used().end());
     std::vector<BufferRange*> ranges;
-    for (UploadedImage* image : images_.used()) {
+    for (UploadedImage* image : images) {
         ranges.push_back(&image->range);
     }
     place_ranges(run, texels, ranges, texels_end_);
     upload_ranges(*gpu_, run, texels, ranges, [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {
-        writer.append(images_.used()[i]->texels);
+        writer.append(images[i]->texels);
     });
     std::vector<gpu::Material> records;
     for (const Listed& listed : by_index_) {

@@ -23,7 +23,8 @@ struct UploadedImage {
     std::shared_ptr<const MaterialTexture> texture;
     std::uint32_t width = 0;  ///< of the reduced image
     std::uint32_t height = 0;
-    /// Of the reduced image: sRGB, 8 bits per channel, red the lowest. None of an image that has no colours.
+    /// Of the reduced image: 8 bits per channel, red the lowest; colours in sRGB, normals as normal_levels
+    /// has them. None of other images.
     std::vector<std::uint32_t> texels;
     BufferRange range;     ///< of these texels
     glm::vec3 mean{0.0F};  ///< of the image, decoded

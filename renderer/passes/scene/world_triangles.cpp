@@ -1,6 +1,10 @@
 #include "renderer/passes/scene/world_triangles.hpp"
 
+#include <cmath>
+
+#include <glm/geometric.hpp>
 #include <glm/gtc/color_space.hpp>
+#include <glm/matrix.hpp>
 #include <glm/packing.hpp>
 
 namespace candela {
@@ -15,6 +19,24 @@ std::uint32_t packed_colour(glm::u16vec4 colour) {
     if (colour == glm::u16vec4(65535)) return 0xffffffffU;
     const glm::vec4 linear = glm::vec4(colour) / 65535.0F;
     return glm::packUnorm4x8(glm::vec4(glm::convertLinearToSRGB(glm::vec3(linear)), linear.a));
+}
+
+/// As world_normal of shaders/surfaces/mesh.glsl.
+glm::mat3 normal_matrix(const glm::mat4& world) {
+    const glm::mat3 m(world);
+    const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    return glm::determinant(m) < 0.0F ? -cofactors : cofactors;
+}
+
+/// Octahedral encoding (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+/// 2014) of a vector of any length, rounded to 16 bits. Of 0, that of +Z.
+std::uint32_t packed_normal(const glm::vec3& normal) {
+    const float sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+    if (!(sum > 0.0F)) return 0;
+    const glm::vec2 p = glm::vec2(normal) / sum;
+    const glm::vec2 folded((p.x >= 0.0F ? 1.0F : -1.0F) * (1.0F - std::abs(p.y)),
+                           (p.y >= 0.0F ? 1.0F : -1.0F) * (1.0F - std::abs(p.x)));
+    return glm::packSnorm2x16(normal.z >= 0.0F ? p : folded);
 }
 
 /// Vertex indices of triangle i of a drawable, counter-clockwise in world space.
@@ -61,6 +83,7 @@ gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::
     const bool is_masked = drawable.primitive->material->alpha_mode == AlphaMode::mask;
     const Triangle triangle = place_triangle(layout, drawable, vertices, i, world);
     const glm::uvec3 corner = corners(layout, drawable, i);
+    const glm::mat3 to_world = normal_matrix(world);
     return {.a = triangle.a,
             .material = drawable.material,
             .edge_ab = triangle.b - triangle.a,
@@ -71,7 +94,10 @@ gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::
             .uv_b = vertices[corner.y].uv,
             .uv_c = vertices[corner.z].uv,
             .colour_b = packed_colour(vertices[corner.y].colour),
-            .colour_c = packed_colour(vertices[corner.z].colour)};
+            .colour_c = packed_colour(vertices[corner.z].colour),
+            .normal_a = packed_normal(to_world * vertices[corner.x].normal),
+            .normal_b = packed_normal(to_world * vertices[corner.y].normal),
+            .normal_c = packed_normal(to_world * vertices[corner.z].normal)};
 }
 
 }  // namespace candela
