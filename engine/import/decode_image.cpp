@@ -10,7 +10,7 @@
 #include <png.h>
 #include <stb/stb_image.h>
 
-#include <candela/scene/scene_error.hpp>
+#include "engine/import/piece_error.hpp"
 
 namespace candela::gltf {
 
@@ -23,7 +23,7 @@ Image image_of(std::uint32_t width, std::uint32_t height, std::size_t encoded_by
     // at least 1 bit for 64 pixels, which gives fewer pixels per byte.
     constexpr std::uint64_t most_pixels_in_a_byte = 8256;  // 8 × 1,032
     if (std::uint64_t{width} * height > most_pixels_in_a_byte * encoded_bytes) {
-        throw SceneError(
+        throw PieceError(
             fmt::format("its {} bytes cannot hold {} x {} pixels", encoded_bytes, width, height));
     }
     budget.add_picture(width, height);
@@ -35,7 +35,7 @@ Image image_of(std::uint32_t width, std::uint32_t height, std::size_t encoded_by
 
 /// libpng's functions do not go on after an error: the exception leaves them.
 [[noreturn]] void fail(png_structp /*png*/, png_const_charp message) {
-    throw SceneError(fmt::format("it cannot be decoded: {}", message));
+    throw PieceError(fmt::format("it cannot be decoded: {}", message));
 }
 
 void ignore(png_structp /*png*/, png_const_charp /*warning*/) {}
@@ -54,7 +54,7 @@ struct PngReader {
 
 void read_bytes(png_structp png, png_bytep to, std::size_t size) {
     Bytes& rest = *static_cast<Bytes*>(png_get_io_ptr(png));
-    if (size > rest.size()) throw SceneError("it is cut short");
+    if (size > rest.size()) throw PieceError("it is cut short");
     std::memcpy(to, rest.data(), size);
     rest = rest.subspan(size);
 }
@@ -88,19 +88,19 @@ Image decode_png(Bytes encoded, ImportBudget& budget) {
 }
 
 Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
-    if (encoded.size() > std::numeric_limits<int>::max()) throw SceneError("it exceeds 2 GiB");
+    if (encoded.size() > std::numeric_limits<int>::max()) throw PieceError("it exceeds 2 GiB");
     const int size = static_cast<int>(encoded.size());
     int width = 0;
     int height = 0;
     if (stbi_info_from_memory(encoded.data(), size, &width, &height, nullptr) == 0) {
-        throw SceneError("it cannot be decoded");
+        throw PieceError("it cannot be decoded");
     }
     Image image = image_of(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
                            encoded.size(), budget);
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
         stbi_image_free);
-    if (!pixels) throw SceneError("it cannot be decoded");
+    if (!pixels) throw PieceError("it cannot be decoded");
     image.texels.resize(std::size_t{image.width} * image.height);
     std::memcpy(image.texels.data(), pixels.get(), image.texels.size() * sizeof(glm::u8vec4));
     return image;
@@ -111,7 +111,7 @@ Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
 Image decode_image(Bytes encoded, ImportBudget& budget) {
     if (starts_with(encoded, "\x89PNG")) return decode_png(encoded, budget);
     if (starts_with(encoded, "\xFF\xD8\xFF")) return decode_jpeg(encoded, budget);
-    throw SceneError("it is neither PNG nor JPEG");
+    throw PieceError("it is neither PNG nor JPEG");
 }
 
 }  // namespace candela::gltf

@@ -6,7 +6,8 @@
 namespace candela::gltf {
 
 /// The pixels of a PNG or JPEG, of which channels of 16 bits keep the high byte. Its size is added to the
-/// budget before memory is allocated for it. Throws SceneError.
+/// budget before memory is allocated for it. Throws PieceError for what cannot be decoded, SceneError for
+/// what exceeds the budget.
 [[nodiscard]] Image decode_image(Bytes encoded, ImportBudget& budget);
 
 }  // namespace candela::gltf

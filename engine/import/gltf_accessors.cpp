@@ -251,6 +251,11 @@ std::size_t element_count(const Document& document, int accessor) {
     return document.at("accessors", accessor).at("count").whole<std::size_t>();
 }
 
+bool has_data(const Document& document, int accessor) {
+    const Json& json = document.at("accessors", accessor);
+    return json.contains("bufferView") || json.contains("sparse");
+}
+
 std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);
     if (accessor.components != 3 || accessor.source.component_type != floating_point) {

@@ -42,6 +42,9 @@ class Selection {
 /// The number of elements.
 [[nodiscard]] std::size_t element_count(const Document& document, int accessor);
 
+/// Whether any of its elements are in the file. Without, all are zeros, unless an extension holds them.
+[[nodiscard]] bool has_data(const Document& document, int accessor);
+
 /// Positions or normals: VEC3 of finite FLOAT.
 [[nodiscard]] std::vector<glm::vec3> read_vectors(const Document& document, int accessor,
                                                   const Selection& selection);

@@ -74,7 +74,7 @@ Json parse_json(Bytes text) {
     }
 }
 
-/// Throws for required extensions that are not supported; returns a warning for each other unsupported one.
+/// A warning for each extension that the file requires or uses and that is not supported.
 std::vector<std::string> check_extensions(const Json& document) {
     const auto names = [&](const char* member) {
         std::set<std::string> listed;
@@ -83,15 +83,17 @@ std::vector<std::string> check_extensions(const Json& document) {
         }
         return listed;
     };
-    for (const std::string& name : names("extensionsRequired")) {
+    const std::set<std::string> required = names("extensionsRequired");
+    std::vector<std::string> warnings;
+    for (const std::string& name : required) {
         if (!is_supported(name)) {
-            throw SceneError(
-                fmt::format("it requires the extension {}, which is not supported", readable(name)));
+            warnings.push_back(fmt::format(
+                "it requires the extension {}, which is not supported: what is shown may be wrong",
+                readable(name)));
         }
     }
-    std::vector<std::string> warnings;
     for (const std::string& name : names("extensionsUsed")) {
-        if (!is_supported(name)) {
+        if (!is_supported(name) && !required.contains(name)) {
             warnings.push_back(
                 fmt::format("the extension {} is not supported and is ignored", readable(name)));
         }
@@ -129,15 +131,6 @@ std::vector<Buffer> load_buffers(const Json& document, const std::optional<Bytes
     return buffers;
 }
 
-void check_images(const Json& document) {
-    const Json& images = list_in(document, "images");
-    for (std::size_t i = 0; i < images.size(); ++i) {
-        if (text_in(images[i], "uri").empty() != images[i].contains("bufferView")) {
-            throw SceneError(fmt::format(R"(image {} needs either a "uri" or a "bufferView")", i));
-        }
-    }
-}
-
 /// Whether any material has the member at `path`.
 bool any_material(const Json& document, const std::string& path) {
     return std::ranges::any_of(list_in(document, "materials").items(),
@@ -168,7 +161,6 @@ Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     budget.check_nodes(document.all("nodes").size());
     document.warnings = check_extensions(json);
     document.buffers = load_buffers(json, container.binary, files);
-    check_images(json);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
     return document;
 }

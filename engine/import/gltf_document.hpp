@@ -32,7 +32,7 @@ struct Document {
 };
 
 /// Parses and checks .gltf or .glb, distinguished by their first bytes, and loads the buffers. Throws
-/// SceneError for malformed data and for required extensions that are not supported. The document refers to
+/// SceneError for malformed data; extensions that are not supported are warnings. The document refers to
 /// `bytes`.
 [[nodiscard]] Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -15,6 +16,9 @@
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
+#include "engine/import/piece_error.hpp"
+#include "engine/import/stand_ins.hpp"
+#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
@@ -74,32 +78,42 @@ class ImageReader {
     ImageReader(Document& document, ImportFiles& files, ImportBudget& budget)
         : document_(document), files_(files), budget_(budget) {}
 
-    /// The image of a textureInfo; null, with a warning that starts with `label`, if it cannot be used. `use`
-    /// may be null.
-    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, const std::string& label) {
+    /// The image of a textureInfo; null, with a warning that starts with `label`, if it cannot be used. What
+    /// stands in for an image that cannot be read comes with one warning for that image. `use` may be null.
+    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, StandIn stand_in,
+                                      const std::string& label) {
         if (!use) return nullptr;
-        const Json& texture = document_.at("textures", index_in(*use, "index"));
+        const int index = index_in(*use, "index");
+        const Json& texture = document_.at("textures", index);
         const int image = index_in(texture, "source");
-        if (image < 0) {
-            warn(fmt::format("{} has no PNG or JPEG image; ignored", label));
-            return nullptr;
-        }
         if (const int set = coordinate_set_of(*use); set != 0) {
             warn(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label, set));
             return nullptr;
         }
         const Wraps wraps = wraps_of(document_, texture);
-        return naming(fmt::format("image {}", image), [&] { return load(image, wraps, encoding); });
+        const std::string called =
+            image < 0 ? fmt::format("texture {}", index) : fmt::format("image {}", image);
+        try {
+            // Each is tried once: trying again would use up the budget.
+            if (!unreadable_.contains(called)) {
+                return naming(called, [&] { return load(image, wraps, encoding); });
+            }
+        } catch (const PieceError& fault) {
+            unreadable_.insert(called);
+            warn(fmt::format("{}; {}", readable(fault.what(), longest_message), consequence(stand_in)));
+        }
+        return stand_ins_.image(stand_in);
     }
 
     void warn(std::string warning) { document_.warnings.push_back(std::move(warning)); }
 
  private:
     std::shared_ptr<const Image> load(int index, const Wraps& wraps, Encoding encoding) {
+        if (index < 0) throw PieceError("it has no PNG or JPEG image");
         const Bytes encoded = encoded_image(index);
         std::shared_ptr<const Image>& image = images_[{encoded.data(), wraps.u, wraps.v, encoding}];
         if (!image) {
-            Image decoded = decode_image(encoded, budget_);
+            Image decoded = naming_image(index, [&] { return decode_image(encoded, budget_); });
             decoded.wrap_u = wraps.u;
             decoded.wrap_v = wraps.v;
             decoded.encoding = encoding;
@@ -108,11 +122,24 @@ class ImageReader {
         return image;
     }
 
+    /// Runs the decoding of an image, whose faults then name its file or, if it is embedded, what it is
+    /// called.
+    template <class Decode>
+    Image naming_image(int index, Decode decode) {
+        const Json& source = document_.at("images", index);
+        const std::string uri = text_in(source, "uri");
+        const bool is_embedded = uri.empty() || uri.starts_with("data:");
+        const std::string name = is_embedded ? text_in(source, "name") : uri;
+        return name.empty() ? decode() : naming(readable(name), decode);
+    }
+
     Bytes encoded_image(int index) {
         const Json& source = document_.at("images", index);
-        if (const int view = index_in(source, "bufferView"); view >= 0) {
-            return buffer_view_bytes(document_, view);
+        const int view = index_in(source, "bufferView");
+        if (text_in(source, "uri").empty() != (view >= 0)) {
+            throw PieceError(R"(it needs either a "uri" or a "bufferView")");
         }
+        if (view >= 0) return buffer_view_bytes(document_, view);
         Content& content = contents_[index];
         if (!content) content = files_.read(source.at("uri").text());
         return *content;
@@ -123,6 +150,8 @@ class ImageReader {
     ImportBudget& budget_;
     std::map<int, Content> contents_;  // by image; keeps their bytes, whose addresses identify images
     std::map<ImageKey, std::shared_ptr<const Image>> images_;
+    std::set<std::string> unreadable_;  // images, and textures without one, as warnings call them
+    StandIns stand_ins_;
 };
 
 /// check_schema accepts no other names.
@@ -163,9 +192,10 @@ class TextureReader {
  public:
     TextureReader(ImageReader& images, std::string label) : images_(images), label_(std::move(label)) {}
 
-    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, const char* name) {
+    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, StandIn stand_in,
+                                      const char* name) {
         std::shared_ptr<const Image> image =
-            images_.read(use, encoding, fmt::format("{}: its {}", label_, name));
+            images_.read(use, encoding, stand_in, fmt::format("{}: its {}", label_, name));
         if (!image) return nullptr;
         const glm::mat3 transform = transform_of(use);
         if (!first_) first_ = {name, transform};
@@ -189,10 +219,11 @@ class TextureReader {
 
 /// Normal and occlusion textures.
 void read_bumps(const Json& source, TextureReader& textures, Material& material) {
-    material.normal_texture = textures.read(source.find("normalTexture"), Encoding::linear, "normal texture");
+    material.normal_texture =
+        textures.read(source.find("normalTexture"), Encoding::linear, StandIn::nothing, "normal texture");
     material.normal_scale = number_in(source, "normalTexture/scale", 1.0F);
-    material.occlusion_texture =
-        textures.read(source.find("occlusionTexture"), Encoding::linear, "occlusion texture");
+    material.occlusion_texture = textures.read(source.find("occlusionTexture"), Encoding::linear,
+                                               StandIn::nothing, "occlusion texture");
     material.occlusion_strength = number_in(source, "occlusionTexture/strength", 1.0F);
 }
 
@@ -202,19 +233,19 @@ ReadMaterial read_material(const Json& source, const std::string& label, ImageRe
     material.name = text_in(source, "name");
     material.base_colour = vector_in(source, "pbrMetallicRoughness/baseColorFactor", glm::vec4(1.0F));
     material.base_colour_texture = textures.read(source.find_path("pbrMetallicRoughness/baseColorTexture"),
-                                                 Encoding::srgb, "base colour texture");
+                                                 Encoding::srgb, StandIn::checker, "base colour texture");
     read_emission(source, label, material);
     if (source.find_path("extensions/KHR_materials_unlit")) {
         show_unlit(material);
     } else {
         read_gloss(source, material);
         if (emits(material)) {
-            material.emissive_texture =
-                textures.read(source.find("emissiveTexture"), Encoding::srgb, "emissive texture");
+            material.emissive_texture = textures.read(source.find("emissiveTexture"), Encoding::srgb,
+                                                      StandIn::black, "emissive texture");
         }
         material.metal_roughness_texture =
             textures.read(source.find_path("pbrMetallicRoughness/metallicRoughnessTexture"), Encoding::linear,
-                          "metallic-roughness texture");
+                          StandIn::nothing, "metallic-roughness texture");
         read_bumps(source, textures, material);
     }
     material.double_sided = flag_in(source, "doubleSided", false);

@@ -20,8 +20,9 @@ struct ReadMaterial {
 /// The document's materials in its order, followed by the default material (rough white metal, single-sided).
 /// Those that no mesh of `used_meshes` has are null. Textures with the same file or buffer view and wrapping
 /// share one Image; images that no material uses are not loaded. A texture that cannot be used is left out,
-/// with an entry in the document's warnings. Throws SceneError, which names the image or sampler and the
-/// problem.
+/// with an entry in the document's warnings. What takes the place of an image that is missing or cannot be
+/// read (see StandIn) comes with one entry for that image. Throws SceneError, which names the image or
+/// sampler and the problem, such as a file outside of the root.
 [[nodiscard]] std::vector<ReadMaterial> read_materials(Document& document,
                                                        const std::vector<bool>& used_meshes,
                                                        ImportFiles& files, ImportBudget& budget,

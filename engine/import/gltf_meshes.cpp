@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
+#include "engine/readable.hpp"
 
 namespace candela::gltf {
 
@@ -26,7 +28,7 @@ namespace {
 using Corners = std::array<std::uint32_t, 3>;
 
 /// Warnings about kinds of content that were left out, each once.
-using Omissions = std::set<std::string_view>;
+using Omissions = std::set<std::string>;
 
 std::optional<int> find_attribute(const Json& source, std::string_view name) {
     const Json* const found = source.at("attributes").find(name);
@@ -168,7 +170,22 @@ void fill_normals(std::vector<Vertex>& vertices, const std::vector<Corners>& tri
     }
 }
 
-bool is_drawn(const Json& source, Omissions& omissions) {
+/// Why the primitive has no positions or indices, although it names accessors of them: these are then in an
+/// extension that is not supported. Zeros would be drawn otherwise. Empty if it has them.
+std::string missing_data(const Document& document, const Json& source) {
+    const int indices = indices_of(source);
+    const bool is_there = has_data(document, *find_attribute(source, "POSITION")) &&
+                          (indices < 0 || has_data(document, indices));
+    if (is_there) return {};
+    for (const JsonMember& extension : list_in(source, "extensions").members()) {
+        if (!is_supported(extension.name)) {
+            return fmt::format("primitives whose data {} holds are skipped", readable(extension.name));
+        }
+    }
+    return "primitives whose positions or indices have no data are skipped";
+}
+
+bool is_drawn(const Document& document, const Json& source, Omissions& omissions) {
     if (!list_in(source, "targets").empty()) omissions.insert("morph targets are ignored");
     if (find_attribute(source, "COLOR_1")) {
         omissions.insert("vertex colours beyond the first set are ignored");
@@ -179,6 +196,10 @@ bool is_drawn(const Json& source, Omissions& omissions) {
     }
     if (!find_attribute(source, "POSITION")) {
         omissions.insert("primitives without positions are skipped");
+        return false;
+    }
+    if (const std::string missing = missing_data(document, source); !missing.empty()) {
+        omissions.insert(missing);
         return false;
     }
     return true;
@@ -262,7 +283,7 @@ Mesh read_mesh(const Document& document, const Json& source, const std::vector<R
     Mesh mesh;
     mesh.name = text_in(source, "name");
     for (const Json& part : source.at("primitives").items()) {
-        if (!is_drawn(part, omissions)) continue;
+        if (!is_drawn(document, part, omissions)) continue;
         const int index = index_in(part, "material");
         const ReadMaterial& material =
             index < 0 ? materials.back() : materials[static_cast<std::size_t>(index)];

@@ -11,6 +11,7 @@
 #include <tiny_gltf.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/piece_error.hpp"
 #include "engine/readable.hpp"
 
 namespace candela::gltf {
@@ -39,7 +40,7 @@ Content decode_data(const std::string& uri) {
     std::vector<unsigned char> bytes;
     std::string media_type;
     if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) {
-        throw SceneError(
+        throw PieceError(
             fmt::format("the data URI {}... is empty or of an unknown kind", readable(uri.substr(0, 40))));
     }
     return std::make_shared<const std::vector<unsigned char>>(std::move(bytes));
@@ -63,14 +64,14 @@ bool starts_with(Bytes bytes, std::string_view prefix) {
 std::vector<unsigned char> read_file(const fs::path& path, std::string_view called, ImportBudget& budget) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::not_found) throw SceneError(fmt::format("{} does not exist", called));
-    if (!fs::is_regular_file(status)) throw SceneError(fmt::format("{} is not a file", called));
+    if (status.type() == fs::file_type::not_found) throw PieceError(fmt::format("{} does not exist", called));
+    if (!fs::is_regular_file(status)) throw PieceError(fmt::format("{} is not a file", called));
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     const std::streamoff size = file ? std::streamoff{file.tellg()} : 0;
     budget.add_file(static_cast<std::uint64_t>(size));
     std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
     file.seekg(0).read(reinterpret_cast<char*>(bytes.data()), size);
-    if (!file) throw SceneError(fmt::format("{} cannot be read", called));
+    if (!file) throw PieceError(fmt::format("{} cannot be read", called));
     return bytes;
 }
 

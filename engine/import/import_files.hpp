@@ -20,8 +20,8 @@ using Content = std::shared_ptr<const std::vector<unsigned char>>;
 /// Whether a file of these bytes begins with `prefix`, which tells what kind of file it is.
 [[nodiscard]] bool starts_with(Bytes bytes, std::string_view prefix);
 
-/// Reads a whole regular file, whose bytes it adds to the budget first. Throws SceneError, which names the
-/// file as `called`.
+/// Reads a whole regular file, whose bytes it adds to the budget first. Throws PieceError if there is none or
+/// it cannot be read, SceneError if it exceeds the budget; both name the file as `called`.
 [[nodiscard]] std::vector<unsigned char> read_file(const std::filesystem::path& path, std::string_view called,
                                                    ImportBudget& budget);
 
@@ -32,8 +32,8 @@ class ImportFiles {
     /// first. Both may be empty for the current directory. `budget` must outlive this object.
     ImportFiles(std::filesystem::path base_directory, std::filesystem::path root, ImportBudget& budget);
 
-    /// The bytes behind a URI: a base64 data URI, or a percent-encoded file path. Throws SceneError, which
-    /// names the URI.
+    /// The bytes behind a URI: a base64 data URI, or a percent-encoded file path. Throws PieceError if
+    /// there are none, SceneError for a path that leads out of the root; both name the URI.
     [[nodiscard]] Content read(const std::string& uri);
 
  private:

@@ -9,6 +9,7 @@
 
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/piece_error.hpp"
 #include "engine/readable.hpp"
 #include "engine/scene/check.hpp"
 
@@ -22,11 +23,13 @@ inline void check(const Fault& fault) {
     if (fault) throw SceneError(*fault);
 }
 
-/// Runs a part of an import or export. A SceneError then names what it concerns.
+/// Runs a part of an import or export. A SceneError or PieceError then names what it concerns.
 template <class Action>
 auto naming(std::string_view what, Action action) {
     try {
         return action();
+    } catch (const PieceError& error) {
+        throw PieceError(fmt::format("{}: {}", what, error.what()));
     } catch (const SceneError& error) {
         throw SceneError(fmt::format("{}: {}", what, error.what()));
     }

@@ -374,6 +374,31 @@ TEST_SUITE("glTF scenes") {
               std::vector<std::string>{"the extension KHR_materials_sheen is not supported and is ignored"});
     }
 
+    TEST_CASE("what a required extension that is not supported does not hold is read") {
+        GltfBuilder file = right_triangle();
+        file.document["extensionsRequired"] = {"EXT_unknown"};
+        file.document["extensionsUsed"] = {"EXT_unknown"};
+        const std::string warning =
+            "it requires the extension EXT_unknown, which is not supported: what is shown may be wrong";
+        CHECK(Imported(file).report.triangles == 1);
+        CHECK(Imported(file).report.warnings == std::vector<std::string>{warning});
+
+        // Positions and indices that the extension holds are not taken for zeros.
+        Json& hidden = file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0});
+        file.document["accessors"].back().erase("bufferView");
+        hidden["extensions"]["EXT_unknown"] = Json::object();
+        CHECK(Imported(file).report.triangles == 1);
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{warning, "primitives whose data EXT_unknown holds are skipped"});
+        hidden.erase("extensions");
+        hidden["attributes"]["POSITION"] = 0;
+        hidden["indices"] =
+            file.add("accessors", {{"componentType", 5123}, {"count", 3}, {"type", "SCALAR"}});
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{warning,
+                                       "primitives whose positions or indices have no data are skipped"});
+    }
+
     TEST_CASE("a chain of 100,000 nodes") {
         GltfBuilder file = right_triangle();
         Json nodes = Json::array();

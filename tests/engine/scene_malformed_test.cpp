@@ -317,18 +317,39 @@ TEST_SUITE("malformed glTF") {
             {"/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", "3e38",
              "material 0: its emission is too large"},
             {"/samplers/0/wrapS", "1", "sampler 0 has the unknown wrapping mode 1"},
-            {"/images/0", "{}", "image 0 needs either a \"uri\" or a \"bufferView\""},
-            {"/images/0/bufferView", "0", "image 0 needs either a \"uri\" or a \"bufferView\""},
-            {"/images/0/uri", "\"nowhere.png\"", "image 0: nowhere.png does not exist"},
-            {"/images/0/uri", "\"data:image/png;base64,\"",
-             "image 0: the data URI data:image/png;base64,... is empty or of an unknown kind"},
-            {"/images/0/uri", "\"data:image/png;base64,AAAA\"", "image 0: it is neither PNG nor JPEG"},
-            {"/images/0/uri", "\"data:image/png;base64,iVBORw0KGgo=\"", "image 0: it is cut short"},
-            {"/images/0/uri",
-             "\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mP4/7+B\"",
-             "image 0: it is cut short"},
-            {"/images/0", "{\"bufferView\": 0}", "image 0: it is neither PNG nor JPEG"},
+            {"/images/0", "{\"bufferView\": 6}", "images[0].bufferView is 6, but there are 6 buffer views"},
+            {"/images/0/uri", "\"../nowhere.png\"",
+             "image 0: ../nowhere.png is outside of the folder that files are read from"},
+            {"/images/0/uri", "\"a\\u0000.png\"", "image 0: a\\x00.png contains a NUL character"},
         });
+    }
+
+    TEST_CASE("an image that cannot be read is one warning, whatever uses it") {
+        const auto warnings_of = [](const std::string& image) {
+            GltfBuilder file = complete_scene();
+            file.document["images"][0] = Json::parse(image);
+            return Imported(file).report.warnings;
+        };
+        const auto check_warning = [&](const std::string& image, const std::string& fault) {
+            CAPTURE(image);
+            CHECK(warnings_of(image) ==
+                  std::vector<std::string>{"image 0: " + fault + "; a checker pattern takes its place"});
+        };
+        check_warning("{}", R"(it needs either a "uri" or a "bufferView")");
+        check_warning(R"({"uri": "a.png", "bufferView": 0})", R"(it needs either a "uri" or a "bufferView")");
+        check_warning(R"({"uri": "nowhere.png"})", "nowhere.png does not exist");
+        check_warning(R"({"uri": "\u001B[2J.png"})", "\\x1B[2J.png does not exist");
+        check_warning(R"({"uri": "."})", ". is not a file");
+        check_warning(R"({"uri": "data:image/png;base64,"})",
+                      "the data URI data:image/png;base64,... is empty or of an unknown kind");
+        check_warning(R"({"uri": "data:image/png;base64,AAAA"})", "it is neither PNG nor JPEG");
+        check_warning(R"({"uri": "data:image/png;base64,AAAA", "name": "rock"})",
+                      "rock: it is neither PNG nor JPEG");
+        check_warning(R"({"uri": "data:image/png;base64,iVBORw0KGgo="})", "it is cut short");
+        check_warning(
+            R"({"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mP4/7+B"})",
+            "it is cut short");
+        check_warning(R"({"bufferView": 0})", "it is neither PNG nor JPEG");
     }
 
     TEST_CASE("an image that declares more pixels than its bytes can hold is not allocated") {
@@ -339,7 +360,9 @@ TEST_SUITE("malformed glTF") {
             0,    0,    0,   0,   'I', 'D', 'A', 'T', 0,    0,    0,    0};
         GltfBuilder file = complete_scene();
         file.document["images"][0]["uri"] = "data:image/png;base64," + base64(png);
-        CHECK(error_of(file) == "image 0: its 45 bytes cannot hold 16384 x 16384 pixels");
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{"image 0: its 45 bytes cannot hold 16384 x 16384 pixels; "
+                                       "a checker pattern takes its place"});
     }
 
     TEST_CASE("buffers") {
@@ -370,8 +393,7 @@ TEST_SUITE("malformed glTF") {
             {"/asset", "", "it has no \"asset\", so it is not glTF 2.0"},
             {"/asset/version", "", "asset has no \"version\""},
             {"/asset/version", "\"1.0\"", "asset.version is \"1.0\"; only 2.0 is read"},
-            {"/extensionsRequired", "[\"KHR_lights_punctual\", \"KHR_draco_mesh_compression\"]",
-             "it requires the extension KHR_draco_mesh_compression, which is not supported"},
+            {"/extensionsRequired", "[3]", "extensionsRequired[0] is not a string"},
             {"/extensionsUsed", "[3]", "extensionsUsed[0] is not a string"},
         });
     }
@@ -420,9 +442,14 @@ TEST_SUITE("malformed glTF") {
         CHECK(with_u32(binary + 4, 0) == "the .glb lacks its BIN chunk");
     }
 
-    TEST_CASE("strings from the file do not break the error message into several lines") {
+    TEST_CASE("strings from the file do not break a message into several lines") {
+        const std::string name = "_\n\r\x7F" + std::string(10'000, 'x');
         GltfBuilder file = complete_scene();
-        file.document["extensionsRequired"] = {"EXT_\n\r\x7F" + std::string(10'000, 'x')};
-        CHECK(error_of(file).starts_with("it requires the extension EXT_\\x0A\\x0D\\x7Fxxx"));
+        file.document["extensionsRequired"] = {name};
+        const Imported imported(file);
+        REQUIRE(imported.report.warnings.size() == 1);
+        CHECK(imported.report.warnings[0].starts_with("it requires the extension _\\x0A\\x0D\\x7Fxxx"));
+        file.document["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = name;
+        CHECK(error_of(file).starts_with("light 0 has the unknown type \"_\\x0A\\x0D\\x7Fxxx"));
     }
 }

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <stb/stb_image_write.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -72,6 +73,15 @@ std::vector<glm::i16vec4> tangents_of(const Imported& imported) {
     return tangents;
 }
 
+/// Both colours of the checker and nothing else, as many texels of each.
+bool is_checker(const Image& image) {
+    const auto magenta = std::ranges::count(image.texels, glm::u8vec4(255, 0, 255, 255));
+    const auto black = std::ranges::count(image.texels, glm::u8vec4(0, 0, 0, 255));
+    return magenta > 0 && magenta == black &&
+           static_cast<std::size_t>(magenta + black) == image.texels.size() &&
+           image.texels.size() == std::size_t{image.width} * image.height;
+}
+
 const Image& texture_of(const Imported& imported) {
     return *imported.primitive().material->base_colour_texture;
 }
@@ -140,7 +150,7 @@ TEST_SUITE("glTF materials") {
                                      "read; ignored"});
         set_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1}})");
         CHECK(Imported(file).report.warnings ==
-              std::vector<std::string>{"material 0: its emissive texture has no PNG or JPEG image; ignored"});
+              std::vector<std::string>{"texture 1: it has no PNG or JPEG image; it is taken to be black"});
     }
 
     TEST_CASE("texture transforms move the texture coordinates") {
@@ -414,8 +424,56 @@ TEST_SUITE("glTF materials") {
             file.document["textures"][0].erase("source");
             CHECK(Imported(file).report.warnings ==
                   std::vector<std::string>{
-                      "material 0: its base colour texture has no PNG or JPEG image; ignored"});
+                      "texture 0: it has no PNG or JPEG image; a checker pattern takes its place"});
+            CHECK(is_checker(texture_of(Imported(file))));
         }
+    }
+
+    TEST_CASE("what takes the place of an image that cannot be read depends on what it is for") {
+        GltfBuilder file = textured({{"uri", "nowhere.png"}});
+        file.document["materials"] = Json::parse(R"([
+            {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0}},
+             "normalTexture": {"index": 0}, "occlusionTexture": {"index": 0},
+             "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0}},
+            {"normalTexture": {"index": 1}}])");
+        file.document["images"].push_back({{"uri", "nowhere else.png"}});
+        file.document["textures"].push_back({{"source", 1}});
+        file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0})["material"] = 1;
+        const Imported imported(file);
+        const Material& material = *imported.primitive().material;
+        REQUIRE(material.base_colour_texture != nullptr);
+        CHECK(is_checker(*material.base_colour_texture));
+        REQUIRE(material.emissive_texture != nullptr);
+        CHECK(material.emissive_texture->texels == Texels{{0, 0, 0, 255}});
+        CHECK(material.metal_roughness_texture == nullptr);
+        CHECK(material.normal_texture == nullptr);
+        CHECK(material.occlusion_texture == nullptr);
+        CHECK(imported.mesh().primitives[1].material->normal_texture == nullptr);
+        CHECK(
+            imported.report.warnings ==
+            std::vector<std::string>{"image 0: nowhere.png does not exist; a checker pattern takes its place",
+                                     "image 1: nowhere else.png does not exist; it is left out"});
+    }
+
+    TEST_CASE("a damaged image is decoded once, however many textures have it") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        Bytes damaged = png(four_colours, 2, 2);
+        damaged.resize(damaged.size() - 20);  // without its end and the last of its pixels' data
+        const TemporaryDirectory directory;
+        write_file(directory / "rock.png", damaged);
+        file.document["images"][0] = {{"uri", "rock.png"}};
+        for (int i = 0; i < 100; ++i) {
+            file.add_primitive({0, 0, 0, 1, 0, 0, 0, 1, 0})["material"] =
+                file.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+        }
+        ImportOptions options;
+        options.limits.pixels = 4;
+        World world;
+        const ImportReport report = import_gltf(file.gltf(), directory / "", "test.gltf", world, options);
+        CHECK(report.triangles == 101);
+        CHECK(report.warnings ==
+              std::vector<std::string>{
+                  "image 0: rock.png: it is cut short; a checker pattern takes its place"});
     }
 
     TEST_CASE("an image of an emission that is zero is not loaded") {

@@ -69,11 +69,16 @@ struct ImportOptions {
 /// surface emits its base colour, without that of its vertices), KHR_texture_transform, and
 /// CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name":
 /// "sky"}, which becomes an entity with an Environment (instead of "uri" it may have a "bufferView"), and
-/// CANDELA_light of a light, {"castsShadow": false}. Any other extension is an error if the file requires it
-/// and a warning if the file only uses it. Also left out with a warning: points and lines, skins, animations,
+/// CANDELA_light of a light, {"castsShadow": false}. Any other extension is a warning, also if the file
+/// requires it; primitives whose positions or indices it holds are skipped. Also left out with a warning:
+/// points and lines, skins, animations,
 /// morph targets, further sets of texture coordinates and colours. Triangles without area are dropped. A node
 /// with a sheared matrix, which a Transform cannot represent, becomes two entities, one the parent of the
 /// other (see decompose).
+///
+/// An image that is missing, damaged or of another kind is one warning. A checker of magenta and black takes
+/// its place in base colours, black in emission; other textures are left out. It is still an error if its
+/// file is outside of `options.root` or it exceeds a limit.
 ///
 /// Throws SceneError, whose message is one line that names the file, the object and the problem, or
 /// ImportCancelled. The world is then unchanged. Messages contain nothing of other files than this one.
