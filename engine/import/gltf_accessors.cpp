@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -112,8 +113,10 @@ Elements locate(const Document& document, const Run& run) {
 
 std::size_t component_size(int component_type) {
     switch (component_type) {
+        case signed_byte:
         case unsigned_byte:
             return 1;
+        case signed_short:
         case unsigned_short:
             return 2;
         default:
@@ -190,13 +193,30 @@ std::vector<Element> read(const Document& document, int index, const Selection& 
     return elements;
 }
 
-template <class Vector>
-Vector load_floats(const unsigned char* bytes) {
-    Vector vector;
-    for (int i = 0; i < Vector::length(); ++i) {
-        vector[i] = load<float>(bytes + static_cast<std::size_t>(i) * sizeof(float));
+/// An integer as it is, or as a fraction of the largest (glTF 2.0, section 3.6.2.2): -128 and -127 are -1.
+template <class Integer>
+float load_integer(const unsigned char* bytes, bool normalized) {
+    const auto value = static_cast<float>(load<Integer>(bytes));
+    constexpr auto one = static_cast<float>(std::numeric_limits<Integer>::max());
+    return normalized ? std::max(value / one, -1.0F) : value;
+}
+
+/// Component `i` of an element whose components are FLOAT or integers of 8 or 16 bits.
+float real_component(const unsigned char* element, std::size_t i, const Accessor& accessor) {
+    const int type = accessor.source.component_type;
+    const unsigned char* const bytes = element + i * component_size(type);
+    switch (type) {
+        case signed_byte:
+            return load_integer<std::int8_t>(bytes, accessor.normalized);
+        case unsigned_byte:
+            return load_integer<std::uint8_t>(bytes, accessor.normalized);
+        case signed_short:
+            return load_integer<std::int16_t>(bytes, accessor.normalized);
+        case unsigned_short:
+            return load_integer<std::uint16_t>(bytes, accessor.normalized);
+        default:
+            return load<float>(bytes);
     }
-    return vector;
 }
 
 template <class Vector>
@@ -211,19 +231,47 @@ void check_finite(const std::vector<Vector>& elements, int index, const Selectio
     }
 }
 
+template <class Vector>
+std::vector<Vector> read_reals(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    auto vectors = read<Vector>(document, index, selection, [&accessor](const unsigned char* element) {
+        Vector vector;
+        for (int i = 0; i < Vector::length(); ++i) {
+            vector[i] = real_component(element, static_cast<std::size_t>(i), accessor);
+        }
+        return vector;
+    });
+    check_finite(vectors, index, selection);
+    return vectors;
+}
+
+bool is_float(const Accessor& accessor) {
+    return accessor.source.component_type == floating_point;
+}
+
 /// Whether the components are FLOAT, or normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
 bool has_real_components(const Accessor& accessor) {
     const int type = accessor.source.component_type;
     const bool integers = type == unsigned_byte || type == unsigned_short;
-    return type == floating_point || (integers && accessor.normalized);
+    return is_float(accessor) || (integers && accessor.normalized);
 }
 
-/// Component `i` of an element of such an accessor.
-float real_component(const unsigned char* element, std::size_t i, int type) {
-    const unsigned char* const bytes = element + i * component_size(type);
-    if (type == floating_point) return load<float>(bytes);
-    const float one = type == unsigned_short ? 65535.0F : 255.0F;
-    return static_cast<float>(load_unsigned(bytes, type)) / one;
+/// Whether KHR_mesh_quantization allows the components for positions and texture coordinates: integers of 8
+/// or 16 bits.
+bool has_quantized_components(const Document& document, const Accessor& accessor) {
+    const int type = accessor.source.component_type;
+    return document.is_quantized && type >= signed_byte && type <= unsigned_short;
+}
+
+/// The same for normals and tangents: normalised BYTE or SHORT.
+bool has_quantized_directions(const Document& document, const Accessor& accessor) {
+    const int type = accessor.source.component_type;
+    return document.is_quantized && accessor.normalized && (type == signed_byte || type == signed_short);
+}
+
+/// What messages add to the types that glTF itself allows.
+const char* or_quantized(const Document& document) {
+    return document.is_quantized ? ", or of a type of KHR_mesh_quantization" : "";
 }
 
 }  // namespace
@@ -256,42 +304,44 @@ bool has_data(const Document& document, int accessor) {
     return json.contains("bufferView") || json.contains("sparse");
 }
 
-std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
+std::vector<glm::vec3> read_positions(const Document& document, int index, const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 3 || accessor.source.component_type != floating_point) {
-        throw SceneError(
-            fmt::format("accessor {} holds positions or normals, but is not VEC3 of FLOAT", index));
+    if (accessor.components != 3 || !(is_float(accessor) || has_quantized_components(document, accessor))) {
+        throw SceneError(fmt::format("accessor {} holds positions, but is not VEC3 of FLOAT{}", index,
+                                     or_quantized(document)));
     }
-    auto vectors = read<glm::vec3>(document, index, selection, load_floats<glm::vec3>);
-    check_finite(vectors, index, selection);
-    return vectors;
+    return read_reals<glm::vec3>(document, index, selection);
+}
+
+std::vector<glm::vec3> read_normals(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 3 || !(is_float(accessor) || has_quantized_directions(document, accessor))) {
+        throw SceneError(fmt::format("accessor {} holds normals, but is not VEC3 of FLOAT{}", index,
+                                     or_quantized(document)));
+    }
+    return read_reals<glm::vec3>(document, index, selection);
 }
 
 std::vector<glm::vec4> read_tangents(const Document& document, int index, const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 4 || accessor.source.component_type != floating_point) {
-        throw SceneError(fmt::format("accessor {} holds tangents, but is not VEC4 of FLOAT", index));
+    if (accessor.components != 4 || !(is_float(accessor) || has_quantized_directions(document, accessor))) {
+        throw SceneError(fmt::format("accessor {} holds tangents, but is not VEC4 of FLOAT{}", index,
+                                     or_quantized(document)));
     }
-    auto tangents = read<glm::vec4>(document, index, selection, load_floats<glm::vec4>);
-    check_finite(tangents, index, selection);
-    return tangents;
+    return read_reals<glm::vec4>(document, index, selection);
 }
 
 std::vector<glm::vec2> read_texture_coordinates(const Document& document, int index,
                                                 const Selection& selection) {
     const Accessor accessor = accessor_at(document, index);
-    if (accessor.components != 2 || !has_real_components(accessor)) {
+    const bool is_known = has_real_components(accessor) || has_quantized_components(document, accessor);
+    if (accessor.components != 2 || !is_known) {
         throw SceneError(
             fmt::format("accessor {} holds texture coordinates, but is not VEC2 of FLOAT or of "
-                        "normalised UNSIGNED_BYTE or UNSIGNED_SHORT",
-                        index));
+                        "normalised UNSIGNED_BYTE or UNSIGNED_SHORT{}",
+                        index, or_quantized(document)));
     }
-    auto coordinates = read<glm::vec2>(
-        document, index, selection, [type = accessor.source.component_type](const unsigned char* bytes) {
-            return glm::vec2(real_component(bytes, 0, type), real_component(bytes, 1, type));
-        });
-    check_finite(coordinates, index, selection);
-    return coordinates;
+    return read_reals<glm::vec2>(document, index, selection);
 }
 
 std::vector<glm::u16vec4> read_colours(const Document& document, int index, const Selection& selection) {
@@ -304,12 +354,11 @@ std::vector<glm::u16vec4> read_colours(const Document& document, int index, cons
                         index));
     }
     const auto colours =
-        read<glm::vec4>(document, index, selection,
-                        [type = accessor.source.component_type, has_alpha](const unsigned char* bytes) {
-                            return glm::vec4(real_component(bytes, 0, type), real_component(bytes, 1, type),
-                                             real_component(bytes, 2, type),
-                                             has_alpha ? real_component(bytes, 3, type) : 1.0F);
-                        });
+        read<glm::vec4>(document, index, selection, [&accessor, has_alpha](const unsigned char* element) {
+            return glm::vec4(real_component(element, 0, accessor), real_component(element, 1, accessor),
+                             real_component(element, 2, accessor),
+                             has_alpha ? real_component(element, 3, accessor) : 1.0F);
+        });
     check_finite(colours, index, selection);
     std::vector<glm::u16vec4> rounded;
     rounded.reserve(colours.size());

@@ -45,15 +45,23 @@ class Selection {
 /// Whether any of its elements are in the file. Without, all are zeros, unless an extension holds them.
 [[nodiscard]] bool has_data(const Document& document, int accessor);
 
-/// Positions or normals: VEC3 of finite FLOAT.
-[[nodiscard]] std::vector<glm::vec3> read_vectors(const Document& document, int accessor,
+// Floats are finite. The types that are named "quantized" are read only if the document declares
+// KHR_mesh_quantization. Normalised integers are fractions of the largest; others are numbers as they are.
+
+/// Positions: VEC3 of FLOAT; quantized: of integers of 8 or 16 bits, normalised or not.
+[[nodiscard]] std::vector<glm::vec3> read_positions(const Document& document, int accessor,
+                                                    const Selection& selection);
+
+/// Normals: VEC3 of FLOAT; quantized: of normalised BYTE or SHORT.
+[[nodiscard]] std::vector<glm::vec3> read_normals(const Document& document, int accessor,
                                                   const Selection& selection);
 
-/// Tangents: VEC4 of finite FLOAT.
+/// Tangents: VEC4 of the same.
 [[nodiscard]] std::vector<glm::vec4> read_tangents(const Document& document, int accessor,
                                                    const Selection& selection);
 
-/// Texture coordinates: VEC2 of finite FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
+/// Texture coordinates: VEC2 of FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT; quantized: of
+/// integers of 8 or 16 bits, normalised or not.
 [[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const Document& document, int accessor,
                                                               const Selection& selection);
 

@@ -9,6 +9,7 @@ namespace candela::gltf {
 // Numbers that stand for names in glTF 2.0.
 inline constexpr int signed_byte = 5120;
 inline constexpr int unsigned_byte = 5121;
+inline constexpr int signed_short = 5122;
 inline constexpr int unsigned_short = 5123;
 inline constexpr int unsigned_int = 5125;
 inline constexpr int floating_point = 5126;
@@ -24,12 +25,14 @@ inline constexpr const char* lights_extension = "KHR_lights_punctual";
 inline constexpr const char* emissive_strength_extension = "KHR_materials_emissive_strength";
 inline constexpr const char* ior_extension = "KHR_materials_ior";
 inline constexpr const char* specular_extension = "KHR_materials_specular";
+inline constexpr const char* quantization_extension = "KHR_mesh_quantization";
 inline constexpr const char* environment_extension = "CANDELA_environment";
 inline constexpr const char* light_extension = "CANDELA_light";
 /// All extensions that are supported.
-inline constexpr std::array<std::string_view, 8> supported_extensions{
-    lights_extension,      emissive_strength_extension, ior_extension,         specular_extension,
-    "KHR_materials_unlit", "KHR_texture_transform",     environment_extension, light_extension};
+inline constexpr std::array<std::string_view, 9> supported_extensions{
+    lights_extension,       emissive_strength_extension, ior_extension,
+    specular_extension,     "KHR_materials_unlit",       "KHR_texture_transform",
+    quantization_extension, environment_extension,       light_extension};
 
 [[nodiscard]] inline bool is_supported(std::string_view extension) {
     return std::ranges::find(supported_extensions, extension) != supported_extensions.end();

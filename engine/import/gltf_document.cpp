@@ -74,16 +74,18 @@ Json parse_json(Bytes text) {
     }
 }
 
+/// The names of extensions in one of the document's lists.
+std::set<std::string> extensions_in(const Json& document, const char* member) {
+    std::set<std::string> listed;
+    for (const Json& name : list_in(document, member).items()) {
+        listed.insert(name.text());
+    }
+    return listed;
+}
+
 /// A warning for each extension that the file requires or uses and that is not supported.
 std::vector<std::string> check_extensions(const Json& document) {
-    const auto names = [&](const char* member) {
-        std::set<std::string> listed;
-        for (const Json& name : list_in(document, member).items()) {
-            listed.insert(name.text());
-        }
-        return listed;
-    };
-    const std::set<std::string> required = names("extensionsRequired");
+    const std::set<std::string> required = extensions_in(document, "extensionsRequired");
     std::vector<std::string> warnings;
     for (const std::string& name : required) {
         if (!is_supported(name)) {
@@ -92,7 +94,7 @@ std::vector<std::string> check_extensions(const Json& document) {
                 readable(name)));
         }
     }
-    for (const std::string& name : names("extensionsUsed")) {
+    for (const std::string& name : extensions_in(document, "extensionsUsed")) {
         if (!is_supported(name) && !required.contains(name)) {
             warnings.push_back(
                 fmt::format("the extension {} is not supported and is ignored", readable(name)));
@@ -155,11 +157,12 @@ std::vector<std::string> omissions(const Json& document) {
 
 Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     const Container container = split(bytes);
-    Document document{parse_json(container.json), {}, {}};
+    Document document{parse_json(container.json), {}, {}, false};
     const Json& json = document.json;
     check_schema(json);
     budget.check_nodes(document.all("nodes").size());
     document.warnings = check_extensions(json);
+    document.is_quantized = extensions_in(json, "extensionsUsed").contains(quantization_extension);
     document.buffers = load_buffers(json, container.binary, files);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
     return document;

@@ -22,6 +22,7 @@ struct Document {
     Json json;
     std::vector<Buffer> buffers;
     std::vector<std::string> warnings;
+    bool is_quantized = false;  ///< it declares KHR_mesh_quantization, so that attributes may be integers
 
     /// The objects of a kind, such as "meshes"; empty if there are none.
     [[nodiscard]] const Json& all(std::string_view list) const { return list_in(json, list); }

@@ -85,10 +85,11 @@ void set_tangent(Vertex& vertex, const glm::vec4& tangent) {
 std::vector<Vertex> read_vertices(const Document& document, const Json& source, const Selection& selection) {
     std::vector<Vertex> vertices;
     vertices.reserve(selection.count());
-    for (const glm::vec3& position : read_vectors(document, *find_attribute(source, "POSITION"), selection)) {
+    for (const glm::vec3& position :
+         read_positions(document, *find_attribute(source, "POSITION"), selection)) {
         vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
     }
-    read_attribute(document, source, "NORMAL", "normals", selection, vertices, read_vectors, set_normal);
+    read_attribute(document, source, "NORMAL", "normals", selection, vertices, read_normals, set_normal);
     read_attribute(document, source, "TEXCOORD_0", "texture coordinates", selection, vertices,
                    read_texture_coordinates, [](Vertex& vertex, glm::vec2 uv) { vertex.uv = uv; });
     read_attribute(document, source, "COLOR_0", "colours", selection, vertices, read_colours,

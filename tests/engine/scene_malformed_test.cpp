@@ -131,10 +131,9 @@ TEST_SUITE("malformed glTF") {
 
     TEST_CASE("types that geometry cannot have") {
         check({
-            {"/accessors/0/type", "\"VEC2\"",
-             "mesh 0: accessor 0 holds positions or normals, but is not VEC3 of FLOAT"},
+            {"/accessors/0/type", "\"VEC2\"", "mesh 0: accessor 0 holds positions, but is not VEC3 of FLOAT"},
             {"/accessors/2/componentType", "5120",
-             "mesh 0: accessor 2 holds positions or normals, but is not VEC3 of FLOAT"},
+             "mesh 0: accessor 2 holds normals, but is not VEC3 of FLOAT"},
             {"/accessors/1/componentType", "5126",
              "mesh 0: accessor 1 holds indices, but is not SCALAR of an unsigned integer"},
             {"/accessors/1/type", "\"VEC3\"",

@@ -66,15 +66,14 @@ struct ImportOptions {
 /// the file lacks are derived, as are all of a primitive whose texture coordinates are transformed.
 ///
 /// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
-/// surface emits its base colour, without that of its vertices), KHR_texture_transform, and
-/// CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name":
-/// "sky"}, which becomes an entity with an Environment (instead of "uri" it may have a "bufferView"), and
-/// CANDELA_light of a light, {"castsShadow": false}. Any other extension is a warning, also if the file
-/// requires it; primitives whose positions or indices it holds are skipped. Also left out with a warning:
-/// points and lines, skins, animations,
-/// morph targets, further sets of texture coordinates and colours. Triangles without area are dropped. A node
-/// with a sheared matrix, which a Transform cannot represent, becomes two entities, one the parent of the
-/// other (see decompose).
+/// surface emits its base colour, without that of its vertices), KHR_texture_transform,
+/// KHR_mesh_quantization, and CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr",
+/// "rotation": radians, "name": "sky"}, which becomes an entity with an Environment (instead of "uri" it may
+/// have a "bufferView"), and CANDELA_light of a light, {"castsShadow": false}. Any other extension is a
+/// warning, also if the file requires it; primitives whose positions or indices it holds are skipped. Also
+/// left out with a warning: points and lines, skins, animations, morph targets, further sets of texture
+/// coordinates and colours. Triangles without area are dropped. A node with a sheared matrix, which a
+/// Transform cannot represent, becomes two entities, one the parent of the other (see decompose).
 ///
 /// An image that is missing, damaged or of another kind is one warning. A checker of magenta and black takes
 /// its place in base colours, black in emission; other textures are left out. It is still an error if its
