@@ -9,6 +9,9 @@
 #include <fmt/format.h>
 #include <png.h>
 #include <stb/stb_image.h>
+#if CANDELA_WEBP
+#include <webp/decode.h>
+#endif
 
 #include "engine/import/piece_error.hpp"
 
@@ -16,7 +19,16 @@ namespace candela::gltf {
 
 namespace {
 
-/// A picture without pixels yet, whose size has been checked and counted.
+/// A picture without pixels yet, whose size has been counted.
+Image image_of(std::uint32_t width, std::uint32_t height, ImportBudget& budget) {
+    budget.add_picture(width, height);
+    Image image;
+    image.width = width;
+    image.height = height;
+    return image;
+}
+
+/// The same for a PNG or JPEG, whose size is checked, too.
 Image image_of(std::uint32_t width, std::uint32_t height, std::size_t encoded_bytes, ImportBudget& budget) {
     // Upper bound of pixels per encoded byte, to reject headers with impossible sizes. Deflate compresses at
     // most 1,032 : 1 (zlib's documentation), and an uncompressed PNG byte holds at most 8 pixels. A JPEG uses
@@ -26,11 +38,7 @@ Image image_of(std::uint32_t width, std::uint32_t height, std::size_t encoded_by
         throw PieceError(
             fmt::format("its {} bytes cannot hold {} x {} pixels", encoded_bytes, width, height));
     }
-    budget.add_picture(width, height);
-    Image image;
-    image.width = width;
-    image.height = height;
-    return image;
+    return image_of(width, height, budget);
 }
 
 /// libpng's functions do not go on after an error: the exception leaves them.
@@ -106,12 +114,50 @@ Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
     return image;
 }
 
+bool is_webp(Bytes encoded) {
+    constexpr std::size_t size_ahead = 8;
+    return starts_with(encoded, "RIFF") && encoded.size() > size_ahead &&
+           starts_with(encoded.subspan(size_ahead), "WEBP");
+}
+
+#if CANDELA_WEBP
+
+/// A picture of one colour takes the same few bytes at any size: the budget alone limits it.
+Image decode_webp(Bytes encoded, ImportBudget& budget) {
+    int width = 0;
+    int height = 0;
+    if (WebPGetInfo(encoded.data(), encoded.size(), &width, &height) == 0) {
+        throw PieceError("it cannot be decoded");
+    }
+    Image image = image_of(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), budget);
+    image.texels.resize(std::size_t{image.width} * image.height);
+    if (WebPDecodeRGBAInto(encoded.data(), encoded.size(), &image.texels.data()->x,
+                           image.texels.size() * sizeof(glm::u8vec4), width * 4) == nullptr) {
+        throw PieceError("it cannot be decoded");
+    }
+    return image;
+}
+
+#else
+
+Image decode_webp(Bytes /*encoded*/, ImportBudget& /*budget*/) {
+    throw PieceError("it is WebP, but Candela was built without libwebp");
+}
+
+#endif
+
 }  // namespace
+
+bool reads_webp() {
+    return CANDELA_WEBP != 0;
+}
 
 Image decode_image(Bytes encoded, ImportBudget& budget) {
     if (starts_with(encoded, "\x89PNG")) return decode_png(encoded, budget);
     if (starts_with(encoded, "\xFF\xD8\xFF")) return decode_jpeg(encoded, budget);
-    throw PieceError("it is neither PNG nor JPEG");
+    if (is_webp(encoded)) return decode_webp(encoded, budget);
+    if (starts_with(encoded, "\xABKTX")) throw PieceError("it is KTX, which is not read");
+    throw PieceError("it is neither PNG, JPEG nor WebP");
 }
 
 }  // namespace candela::gltf

@@ -26,13 +26,16 @@ inline constexpr const char* emissive_strength_extension = "KHR_materials_emissi
 inline constexpr const char* ior_extension = "KHR_materials_ior";
 inline constexpr const char* specular_extension = "KHR_materials_specular";
 inline constexpr const char* quantization_extension = "KHR_mesh_quantization";
+inline constexpr const char* basisu_extension = "KHR_texture_basisu";
+inline constexpr const char* webp_extension = "EXT_texture_webp";
 inline constexpr const char* environment_extension = "CANDELA_environment";
 inline constexpr const char* light_extension = "CANDELA_light";
-/// All extensions that are supported.
-inline constexpr std::array<std::string_view, 9> supported_extensions{
-    lights_extension,       emissive_strength_extension, ior_extension,
-    specular_extension,     "KHR_materials_unlit",       "KHR_texture_transform",
-    quantization_extension, environment_extension,       light_extension};
+/// All extensions that are supported. KHR_texture_basisu is one of them because a texture has a fallback, or
+/// else a warning of its own.
+inline constexpr auto supported_extensions = std::to_array<std::string_view>(
+    {lights_extension, emissive_strength_extension, ior_extension, specular_extension, "KHR_materials_unlit",
+     "KHR_texture_transform", quantization_extension, basisu_extension, webp_extension, environment_extension,
+     light_extension});
 
 [[nodiscard]] inline bool is_supported(std::string_view extension) {
     return std::ranges::find(supported_extensions, extension) != supported_extensions.end();

@@ -53,6 +53,18 @@ Wraps wraps_of(const Document& document, const Json& texture) {
             to_wrap(number_in(sampler, "wrapT", wrap_repeat), index)};
 }
 
+/// The index of a texture's image; -1 for none. Beside an image of a kind that an extension adds, there may
+/// be another one for who cannot read that kind.
+int image_of(const Json& texture) {
+    const auto added_by = [&](const char* extension) {
+        return index_in(texture, fmt::format("extensions/{}/source", extension));
+    };
+    const int webp = added_by(webp_extension);
+    const int plain = index_in(texture, "source");
+    if (webp >= 0 && (reads_webp() || plain < 0)) return webp;
+    return plain >= 0 ? plain : added_by(basisu_extension);
+}
+
 /// What KHR_texture_transform of a textureInfo does to (u, v, 1): scales, then rotates, then moves. `use` may
 /// be null.
 glm::mat3 transform_of(const Json* use) {
@@ -85,7 +97,7 @@ class ImageReader {
         if (!use) return nullptr;
         const int index = index_in(*use, "index");
         const Json& texture = document_.at("textures", index);
-        const int image = index_in(texture, "source");
+        const int image = image_of(texture);
         if (const int set = coordinate_set_of(*use); set != 0) {
             warn(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label, set));
             return nullptr;
@@ -109,7 +121,7 @@ class ImageReader {
 
  private:
     std::shared_ptr<const Image> load(int index, const Wraps& wraps, Encoding encoding) {
-        if (index < 0) throw PieceError("it has no PNG or JPEG image");
+        if (index < 0) throw PieceError("it has no PNG, JPEG or WebP image");
         const Bytes encoded = encoded_image(index);
         std::shared_ptr<const Image>& image = images_[{encoded.data(), wraps.u, wraps.v, encoding}];
         if (!image) {

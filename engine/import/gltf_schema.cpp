@@ -226,6 +226,8 @@ std::vector<Rule> rules() {
         {"samplers.[].wrapT", index},
         {"textures.[].sampler", sampler},
         {"textures.[].source", image},
+        {"textures.[].extensions.EXT_texture_webp.source", image},
+        {"textures.[].extensions.KHR_texture_basisu.source", image},
         {"materials.[].name", text()},
         {"materials.[].doubleSided", flag()},
         {"materials.[].alphaMode", one_of({"OPAQUE", "MASK", "BLEND"})},

@@ -341,14 +341,14 @@ TEST_SUITE("malformed glTF") {
         check_warning(R"({"uri": "."})", ". is not a file");
         check_warning(R"({"uri": "data:image/png;base64,"})",
                       "the data URI data:image/png;base64,... is empty or of an unknown kind");
-        check_warning(R"({"uri": "data:image/png;base64,AAAA"})", "it is neither PNG nor JPEG");
+        check_warning(R"({"uri": "data:image/png;base64,AAAA"})", "it is neither PNG, JPEG nor WebP");
         check_warning(R"({"uri": "data:image/png;base64,AAAA", "name": "rock"})",
-                      "rock: it is neither PNG nor JPEG");
+                      "rock: it is neither PNG, JPEG nor WebP");
         check_warning(R"({"uri": "data:image/png;base64,iVBORw0KGgo="})", "it is cut short");
         check_warning(
             R"({"uri": "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR42mP4/7+B"})",
             "it is cut short");
-        check_warning(R"({"bufferView": 0})", "it is neither PNG nor JPEG");
+        check_warning(R"({"bufferView": 0})", "it is neither PNG, JPEG nor WebP");
     }
 
     TEST_CASE("an image that declares more pixels than its bytes can hold is not allocated") {

@@ -150,7 +150,8 @@ TEST_SUITE("glTF materials") {
                                      "read; ignored"});
         set_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1}})");
         CHECK(Imported(file).report.warnings ==
-              std::vector<std::string>{"texture 1: it has no PNG or JPEG image; it is taken to be black"});
+              std::vector<std::string>{
+                  "texture 1: it has no PNG, JPEG or WebP image; it is taken to be black"});
     }
 
     TEST_CASE("texture transforms move the texture coordinates") {
@@ -424,7 +425,7 @@ TEST_SUITE("glTF materials") {
             file.document["textures"][0].erase("source");
             CHECK(Imported(file).report.warnings ==
                   std::vector<std::string>{
-                      "texture 0: it has no PNG or JPEG image; a checker pattern takes its place"});
+                      "texture 0: it has no PNG, JPEG or WebP image; a checker pattern takes its place"});
             CHECK(is_checker(texture_of(Imported(file))));
         }
     }
@@ -453,6 +454,27 @@ TEST_SUITE("glTF materials") {
             imported.report.warnings ==
             std::vector<std::string>{"image 0: nowhere.png does not exist; a checker pattern takes its place",
                                      "image 1: nowhere else.png does not exist; it is left out"});
+    }
+
+    TEST_CASE("a texture in Basis Universal is replaced by its fallback, or else by a pattern") {
+        const Bytes basis{0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n', 0x1A, '\n'};
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        file.document["extensionsUsed"] = {"KHR_texture_basisu"};
+        file.document["images"].push_back({{"uri", "data:image/png;base64," + base64(basis)}});
+        Json& texture = file.document["textures"][0];
+        texture["extensions"]["KHR_texture_basisu"]["source"] = 1;
+        CHECK(texture_of(Imported(file)).texels == four_colours);
+        CHECK(Imported(file).report.warnings.empty());
+
+        texture.erase("source");
+        file.document["extensionsRequired"] = {"KHR_texture_basisu"};
+        CHECK(is_checker(texture_of(Imported(file))));
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{
+                  "image 1: it is KTX, which is not read; a checker pattern takes its place"});
+        texture["extensions"]["KHR_texture_basisu"]["source"] = 2;
+        CHECK(error_of(file) ==
+              "textures[0].extensions.KHR_texture_basisu.source is 2, but there are 2 images");
     }
 
     TEST_CASE("a damaged image is decoded once, however many textures have it") {

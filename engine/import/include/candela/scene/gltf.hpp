@@ -61,19 +61,21 @@ struct ImportOptions {
 /// Adds the default scene of a glTF 2.0 file, .gltf or .glb, to the world. Each node becomes an entity with
 /// Name and Transform and, if the node has them, MeshInstance, one of the lights, and Camera. Meshes,
 /// materials and images are shared between instances. Buffers and images may be embedded or in files relative
-/// to this one, within `options.root`; images are PNG or JPEG, reduced to 8 bits per channel. Meshes,
-/// materials and images that the scene does not use are not read. Tangents that a normal texture needs and
-/// the file lacks are derived, as are all of a primitive whose texture coordinates are transformed.
+/// to this one, within `options.root`; images are PNG, JPEG or (if Candela was built with libwebp) WebP,
+/// reduced to 8 bits per channel. Meshes, materials and images that the scene does not use are not read.
+/// Tangents that a normal texture needs and the file lacks are derived, as are all of a primitive whose
+/// texture coordinates are transformed.
 ///
 /// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
-/// surface emits its base colour, without that of its vertices), KHR_texture_transform,
-/// KHR_mesh_quantization, and CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr",
-/// "rotation": radians, "name": "sky"}, which becomes an entity with an Environment (instead of "uri" it may
-/// have a "bufferView"), and CANDELA_light of a light, {"castsShadow": false}. Any other extension is a
-/// warning, also if the file requires it; primitives whose positions or indices it holds are skipped. Also
-/// left out with a warning: points and lines, skins, animations, morph targets, further sets of texture
-/// coordinates and colours. Triangles without area are dropped. A node with a sheared matrix, which a
-/// Transform cannot represent, becomes two entities, one the parent of the other (see decompose).
+/// surface emits its base colour, without that of its vertices), KHR_texture_transform, EXT_texture_webp,
+/// KHR_texture_basisu (of which the fallback is read), KHR_mesh_quantization, and CANDELA_environment of a
+/// scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name": "sky"}, which becomes an
+/// entity with an Environment (instead of "uri" it may have a "bufferView"), and CANDELA_light of a light,
+/// {"castsShadow": false}. Any other extension is a warning, also if the file requires it; primitives whose
+/// positions or indices it holds are skipped. Also left out with a warning: points and lines, skins,
+/// animations, morph targets, further sets of texture coordinates and colours. Triangles without area are
+/// dropped. A node with a sheared matrix, which a Transform cannot represent, becomes two entities, one the
+/// parent of the other (see decompose).
 ///
 /// An image that is missing, damaged or of another kind is one warning. A checker of magenta and black takes
 /// its place in base colours, black in emission; other textures are left out. It is still an error if its
