@@ -169,6 +169,21 @@ void apply_sparse(const Document& document, int index, const Selection& selectio
     }
 }
 
+/// Whether the accessor has elements beside those of its sparse part.
+bool has_elements(const Document& document, int index) {
+    return document.at("accessors", index).contains("bufferView") ||
+           document.decoded_accessors.contains(index);
+}
+
+/// Where they are.
+Elements locate_elements(const Document& document, int index, const Accessor& accessor, std::size_t component,
+                         std::size_t size) {
+    const auto decoded = document.decoded_accessors.find(index);
+    if (decoded != document.decoded_accessors.end()) return {decoded->second.data(), size};
+    return locate(document, {fmt::format("accessor {}", index), accessor.source.buffer_view,
+                             accessor.source.offset, accessor.count, component, size});
+}
+
 /// The selected elements, each converted from its bytes by `decode`. The caller has checked the accessor's
 /// types. An accessor without a buffer view is all zeros.
 template <class Element, class Decode>
@@ -178,12 +193,10 @@ std::vector<Element> read(const Document& document, int index, const Selection& 
     const std::size_t size = component * static_cast<std::size_t>(accessor.components);
 
     std::vector<Element> elements{};
-    if (accessor.source.buffer_view < 0) {
+    if (!has_elements(document, index)) {
         elements.resize(selection.count(), Element{});
     } else {
-        const Elements source =
-            locate(document, {fmt::format("accessor {}", index), accessor.source.buffer_view,
-                              accessor.source.offset, accessor.count, component, size});
+        const Elements source = locate_elements(document, index, accessor, component, size);
         elements.reserve(selection.count());
         for (std::size_t i = 0; i < selection.count(); ++i) {
             elements.push_back(decode(source[selection[i]]));
@@ -284,10 +297,21 @@ std::size_t Selection::place(std::size_t element) const {
 }
 
 Bytes buffer_view_bytes(const Document& document, int buffer_view) {
+    const auto decoded = document.decoded_views.find(buffer_view);
+    if (decoded != document.decoded_views.end()) return decoded->second;
     const Json& view = document.at("bufferViews", buffer_view);
-    const auto buffer = view.at("buffer").whole<std::size_t>();
-    const auto length = view.at("byteLength").whole<std::size_t>();
-    const auto offset = number_in<std::size_t>(view, "byteOffset", 0);
+    if (view.find_path(fmt::format("extensions/{}", meshopt_extension)) &&
+        document.buffers[view.at("buffer").whole<std::size_t>()].bytes.empty()) {
+        throw SceneError(fmt::format("buffer view {} is compressed by {}, which is not supported",
+                                     buffer_view, meshopt_extension));
+    }
+    return buffer_bytes(document, view, buffer_view);
+}
+
+Bytes buffer_bytes(const Document& document, const Json& range, int buffer_view) {
+    const auto buffer = range.at("buffer").whole<std::size_t>();
+    const auto length = range.at("byteLength").whole<std::size_t>();
+    const auto offset = number_in<std::size_t>(range, "byteOffset", 0);
     const Bytes bytes = document.buffers[buffer].bytes;
     if (offset > bytes.size() || length > bytes.size() - offset) {
         throw SceneError(fmt::format("buffer view {} reads past the end of buffer {}", buffer_view, buffer));
@@ -295,13 +319,19 @@ Bytes buffer_view_bytes(const Document& document, int buffer_view) {
     return bytes.subspan(offset, length);
 }
 
+ElementLayout layout_of(const Document& document, int index) {
+    const Accessor accessor = accessor_at(document, index);
+    const auto components = static_cast<std::size_t>(accessor.components);
+    const int type = accessor.source.component_type;
+    return {type, components, accessor.count, components * component_size(type)};
+}
+
 std::size_t element_count(const Document& document, int accessor) {
     return document.at("accessors", accessor).at("count").whole<std::size_t>();
 }
 
 bool has_data(const Document& document, int accessor) {
-    const Json& json = document.at("accessors", accessor);
-    return json.contains("bufferView") || json.contains("sparse");
+    return has_elements(document, accessor) || document.at("accessors", accessor).contains("sparse");
 }
 
 std::vector<glm::vec3> read_positions(const Document& document, int index, const Selection& selection) {

@@ -36,13 +36,27 @@ class Selection {
     std::span<const std::uint32_t> indices_;
 };
 
-/// The bytes of a buffer view.
+/// The bytes of a buffer view, decoded if they were compressed.
 [[nodiscard]] Bytes buffer_view_bytes(const Document& document, int buffer_view);
+
+/// The bytes of a buffer between the "byteOffset" and the "byteLength" of `range`, which belongs to that
+/// buffer view.
+[[nodiscard]] Bytes buffer_bytes(const Document& document, const Json& range, int buffer_view);
+
+/// How the elements of an accessor are stored.
+struct ElementLayout {
+    int component_type;
+    std::size_t components;    ///< 0 for matrices, which no attribute has
+    std::size_t count;         ///< elements
+    std::size_t element_size;  ///< bytes
+};
+[[nodiscard]] ElementLayout layout_of(const Document& document, int accessor);
 
 /// The number of elements.
 [[nodiscard]] std::size_t element_count(const Document& document, int accessor);
 
-/// Whether any of its elements are in the file. Without, all are zeros, unless an extension holds them.
+/// Whether any of its elements are in the file or were decoded. Without, all are zeros, unless an extension
+/// that is not supported holds them.
 [[nodiscard]] bool has_data(const Document& document, int accessor);
 
 // Floats are finite. The types that are named "quantized" are read only if the document declares

@@ -28,17 +28,26 @@ inline constexpr const char* specular_extension = "KHR_materials_specular";
 inline constexpr const char* quantization_extension = "KHR_mesh_quantization";
 inline constexpr const char* basisu_extension = "KHR_texture_basisu";
 inline constexpr const char* webp_extension = "EXT_texture_webp";
+inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
+inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
 inline constexpr const char* environment_extension = "CANDELA_environment";
 inline constexpr const char* light_extension = "CANDELA_light";
 /// All extensions that are supported. KHR_texture_basisu is one of them because a texture has a fallback, or
 /// else a warning of its own.
 inline constexpr auto supported_extensions = std::to_array<std::string_view>(
     {lights_extension, emissive_strength_extension, ior_extension, specular_extension, "KHR_materials_unlit",
-     "KHR_texture_transform", quantization_extension, basisu_extension, webp_extension, environment_extension,
-     light_extension});
+     "KHR_texture_transform", quantization_extension, basisu_extension, webp_extension, meshopt_extension,
+     draco_extension, environment_extension, light_extension});
+
+/// Whether Candela was built with what reads it.
+[[nodiscard]] inline bool is_built(std::string_view extension) {
+    if (extension == meshopt_extension) return CANDELA_MESHOPT != 0;
+    return extension != draco_extension || CANDELA_DRACO != 0;
+}
 
 [[nodiscard]] inline bool is_supported(std::string_view extension) {
-    return std::ranges::find(supported_extensions, extension) != supported_extensions.end();
+    return is_built(extension) &&
+           std::ranges::find(supported_extensions, extension) != supported_extensions.end();
 }
 
 }  // namespace candela::gltf

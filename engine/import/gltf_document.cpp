@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_compressed.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_schema.hpp"
 #include "engine/import/naming.hpp"
@@ -103,10 +104,18 @@ std::vector<std::string> check_extensions(const Json& document) {
     return warnings;
 }
 
+/// Whether nothing is read from the buffer: its views are decoded from another one, or it is not there for
+/// who cannot do so.
+bool is_placeholder(const Json& buffer) {
+    const std::string path = fmt::format("extensions/{}/fallback", meshopt_extension);
+    return flag_in(buffer, path, false) && (is_supported(meshopt_extension) || !buffer.contains("uri"));
+}
+
 Buffer load_buffer(const Json& buffer, std::size_t index, const std::optional<Bytes>& binary,
                    ImportFiles& files) {
     const auto length = buffer.at("byteLength").whole<std::size_t>();
     Buffer loaded;
+    if (is_placeholder(buffer)) return loaded;
     if (const Json* const uri = buffer.find("uri")) {
         loaded.content = files.read(uri->text());
         loaded.bytes = *loaded.content;
@@ -157,13 +166,14 @@ std::vector<std::string> omissions(const Json& document) {
 
 Document read_document(Bytes bytes, ImportFiles& files, ImportBudget& budget) {
     const Container container = split(bytes);
-    Document document{parse_json(container.json), {}, {}, false};
+    Document document{parse_json(container.json), {}, {}, {}, {}, false};
     const Json& json = document.json;
     check_schema(json);
     budget.check_nodes(document.all("nodes").size());
     document.warnings = check_extensions(json);
     document.is_quantized = extensions_in(json, "extensionsUsed").contains(quantization_extension);
     document.buffers = load_buffers(json, container.binary, files);
+    decode_buffer_views(document, budget);
     std::ranges::move(omissions(json), std::back_inserter(document.warnings));
     return document;
 }

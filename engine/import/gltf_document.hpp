@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,10 @@ struct Document {
     Json json;
     std::vector<Buffer> buffers;
     std::vector<std::string> warnings;
+    // What was compressed, by index. Reading an accessor or a buffer view prefers it.
+    std::map<int, std::vector<unsigned char>> decoded_views;  ///< bytes of buffer views
+    std::map<int, std::vector<unsigned char>>
+        decoded_accessors;      ///< elements of accessors, one after the other
     bool is_quantized = false;  ///< it declares KHR_mesh_quantization, so that attributes may be integers
 
     /// The objects of a kind, such as "meshes"; empty if there are none.

@@ -16,6 +16,7 @@
 #include <candela/scene/scene_error.hpp>
 #include <candela/scene/tangents.hpp>
 #include "engine/import/gltf_accessors.hpp"
+#include "engine/import/gltf_compressed.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
@@ -305,7 +306,9 @@ std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const s
         if (!used[i]) continue;
         progress("reading meshes", i, meshes.size());
         Mesh mesh = naming(fmt::format("mesh {}", i), [&] {
-            return read_mesh(document, document.all("meshes")[i], materials, omissions, budget);
+            const Json& source = document.all("meshes")[i];
+            decode_primitives(document, source, budget);
+            return read_mesh(document, source, materials, omissions, budget);
         });
         meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
     }

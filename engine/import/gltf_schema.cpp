@@ -188,6 +188,9 @@ std::vector<Rule> rules() {
     const Check size = whole(0, any_size);
     const Check index = whole(0, std::numeric_limits<int>::max());
 
+    const std::string meshopt = "bufferViews.[].extensions.EXT_meshopt_compression";
+    const std::string draco = "meshes.[].primitives.[].extensions.KHR_draco_mesh_compression";
+
     std::vector<Rule> all = {
         {"asset", has({"version"})},
         {"asset.version", version()},
@@ -202,6 +205,15 @@ std::vector<Rule> rules() {
         {"bufferViews.[].byteOffset", size},
         {"bufferViews.[].byteLength", whole(1, any_size)},
         {"bufferViews.[].byteStride", stride()},
+        {"buffers.[].extensions.EXT_meshopt_compression.fallback", flag()},
+        {meshopt, has({"buffer", "byteLength", "byteStride", "count", "mode"})},
+        {meshopt + ".buffer", buffer},
+        {meshopt + ".byteOffset", size},
+        {meshopt + ".byteLength", whole(1, any_size)},
+        {meshopt + ".byteStride", whole(1, 256)},
+        {meshopt + ".count", whole(1, most_elements)},
+        {meshopt + ".mode", one_of({"ATTRIBUTES", "TRIANGLES", "INDICES"})},
+        {meshopt + ".filter", one_of({"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"})},
         {"accessors.[]", has({"componentType", "count", "type"})},
         {"accessors.[].bufferView", buffer_view},
         {"accessors.[].byteOffset", size},
@@ -250,6 +262,10 @@ std::vector<Rule> rules() {
         {"meshes.[].primitives.[].indices", accessor},
         {"meshes.[].primitives.[].material", material},
         {"meshes.[].primitives.[].mode", whole(0, 6)},
+
+        {draco, has({"bufferView", "attributes"})},
+        {draco + ".bufferView", buffer_view},
+        {draco + ".attributes.{}", whole(0, most_elements)},
 
         {"cameras.[]", has({"type"})},
         {"cameras.[].name", text()},

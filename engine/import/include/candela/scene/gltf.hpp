@@ -68,8 +68,9 @@ struct ImportOptions {
 ///
 /// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
 /// surface emits its base colour, without that of its vertices), KHR_texture_transform, EXT_texture_webp,
-/// KHR_texture_basisu (of which the fallback is read), KHR_mesh_quantization, and CANDELA_environment of a
-/// scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name": "sky"}, which becomes an
+/// KHR_texture_basisu (of which the fallback is read), KHR_mesh_quantization, EXT_meshopt_compression and
+/// KHR_draco_mesh_compression (if Candela was built with meshoptimizer and Draco), and CANDELA_environment of
+/// a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name": "sky"}, which becomes an
 /// entity with an Environment (instead of "uri" it may have a "bufferView"), and CANDELA_light of a light,
 /// {"castsShadow": false}. Any other extension is a warning, also if the file requires it; primitives whose
 /// positions or indices it holds are skipped. Also left out with a warning: points and lines, skins,
