@@ -269,6 +269,12 @@ bool has_real_components(const Accessor& accessor) {
     return is_float(accessor) || (integers && accessor.normalized);
 }
 
+/// Whether the components are normalised BYTE or SHORT.
+bool has_signed_fractions(const Accessor& accessor) {
+    const int type = accessor.source.component_type;
+    return accessor.normalized && (type == signed_byte || type == signed_short);
+}
+
 /// Whether KHR_mesh_quantization allows the components for positions and texture coordinates: integers of 8
 /// or 16 bits.
 bool has_quantized_components(const Document& document, const Accessor& accessor) {
@@ -278,8 +284,7 @@ bool has_quantized_components(const Document& document, const Accessor& accessor
 
 /// The same for normals and tangents: normalised BYTE or SHORT.
 bool has_quantized_directions(const Document& document, const Accessor& accessor) {
-    const int type = accessor.source.component_type;
-    return document.is_quantized && accessor.normalized && (type == signed_byte || type == signed_short);
+    return document.is_quantized && has_signed_fractions(accessor);
 }
 
 /// What messages add to the types that glTF itself allows.
@@ -357,6 +362,24 @@ std::vector<glm::vec4> read_tangents(const Document& document, int index, const 
     if (accessor.components != 4 || !(is_float(accessor) || has_quantized_directions(document, accessor))) {
         throw SceneError(fmt::format("accessor {} holds tangents, but is not VEC4 of FLOAT{}", index,
                                      or_quantized(document)));
+    }
+    return read_reals<glm::vec4>(document, index, selection);
+}
+
+std::vector<glm::vec3> read_vectors(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 3 || !is_float(accessor)) {
+        throw SceneError(
+            fmt::format("accessor {} holds translations or scales, but is not VEC3 of FLOAT", index));
+    }
+    return read_reals<glm::vec3>(document, index, selection);
+}
+
+std::vector<glm::vec4> read_rotations(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 4 || !(is_float(accessor) || has_signed_fractions(accessor))) {
+        throw SceneError(fmt::format(
+            "accessor {} holds rotations, but is not VEC4 of FLOAT or of normalised BYTE or SHORT", index));
     }
     return read_reals<glm::vec4>(document, index, selection);
 }

@@ -74,6 +74,14 @@ struct ElementLayout {
 [[nodiscard]] std::vector<glm::vec4> read_tangents(const Document& document, int accessor,
                                                    const Selection& selection);
 
+/// Translations or scales of instances: VEC3 of FLOAT.
+[[nodiscard]] std::vector<glm::vec3> read_vectors(const Document& document, int accessor,
+                                                  const Selection& selection);
+
+/// Rotations of instances, (x, y, z, w): VEC4 of FLOAT or of normalised BYTE or SHORT.
+[[nodiscard]] std::vector<glm::vec4> read_rotations(const Document& document, int accessor,
+                                                    const Selection& selection);
+
 /// Texture coordinates: VEC2 of FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT; quantized: of
 /// integers of 8 or 16 bits, normalised or not.
 [[nodiscard]] std::vector<glm::vec2> read_texture_coordinates(const Document& document, int accessor,

@@ -30,14 +30,16 @@ inline constexpr const char* basisu_extension = "KHR_texture_basisu";
 inline constexpr const char* webp_extension = "EXT_texture_webp";
 inline constexpr const char* meshopt_extension = "EXT_meshopt_compression";
 inline constexpr const char* draco_extension = "KHR_draco_mesh_compression";
+inline constexpr const char* instancing_extension = "EXT_mesh_gpu_instancing";
 inline constexpr const char* environment_extension = "CANDELA_environment";
 inline constexpr const char* light_extension = "CANDELA_light";
 /// All extensions that are supported. KHR_texture_basisu is one of them because a texture has a fallback, or
-/// else a warning of its own.
+/// else a warning of its own; KHR_materials_variants because a file's other materials are its defaults.
 inline constexpr auto supported_extensions = std::to_array<std::string_view>(
     {lights_extension, emissive_strength_extension, ior_extension, specular_extension, "KHR_materials_unlit",
      "KHR_texture_transform", quantization_extension, basisu_extension, webp_extension, meshopt_extension,
-     draco_extension, environment_extension, light_extension});
+     draco_extension, instancing_extension, "KHR_materials_variants", environment_extension,
+     light_extension});
 
 /// Whether Candela was built with what reads it.
 [[nodiscard]] inline bool is_built(std::string_view extension) {

@@ -12,6 +12,7 @@
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/decompose.hpp"
 #include "engine/import/gltf_document.hpp"
+#include "engine/import/gltf_instances.hpp"
 #include "engine/import/gltf_lights.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
@@ -104,11 +105,7 @@ Transform read_translation_rotation_scale(const Json& node) {
     Transform transform;
     transform.translation = vector_in(node, "translation", transform.translation);
     transform.scale = vector_in(node, "scale", transform.scale);
-    const auto parts = vector_in(node, "rotation", glm::dvec4(0.0, 0.0, 0.0, 1.0));
-    const glm::dquat rotation(parts.w, parts.x, parts.y, parts.z);
-    const double length = glm::length(rotation);
-    if (length == 0.0) throw SceneError("its rotation is zero");
-    transform.rotation = glm::quat(is_unit_length(length) ? rotation : rotation / length);
+    transform.rotation = unit_rotation(vector_in(node, "rotation", glm::dvec4(0.0, 0.0, 0.0, 1.0)));
     return transform;
 }
 
@@ -173,7 +170,36 @@ void equip(StagedEntity& entity, const Document& document, const Json& node) {
     }
 }
 
+/// Replaces the mesh of the last entity, which is the node's, by an entity for each instance. Returns how
+/// many there are. `before` nodes and instances have been counted.
+std::size_t add_instances(std::vector<StagedEntity>& entities, const Document& document, const Json& node,
+                          std::uint64_t before, ImportBudget& budget) {
+    const std::size_t count = entities.back().mesh < 0 ? 0 : count_instances(document, node);
+    if (count == 0) return 0;
+    const StagedEntity whole = entities.back();
+    const std::size_t parent = entities.size() - 1;
+    budget.check_nodes(before + count);
+    // Beside the entity, its transform and what this is read from.
+    budget.add_memory(count * (sizeof(StagedEntity) + whole.name.size() + 2 * sizeof(Transform)));
+    entities.back().mesh = -1;
+    for (const Transform& transform : read_instances(document, node, count)) {
+        StagedEntity& instance = entities.emplace_back();
+        instance.parent = parent;
+        instance.name = whole.name;
+        instance.transform = transform;
+        instance.mesh = whole.mesh;
+    }
+    return count;
+}
+
 }  // namespace
+
+glm::quat unit_rotation(const glm::dvec4& parts) {
+    const glm::dquat rotation(parts.w, parts.x, parts.y, parts.z);
+    const double length = glm::length(rotation);
+    if (length == 0.0) throw SceneError("its rotation is zero");
+    return glm::quat(is_unit_length(length) ? rotation : rotation / length);
+}
 
 const Json& default_scene(const Document& document) {
     if (document.all("scenes").empty()) throw SceneError("it has no scene");
@@ -185,6 +211,7 @@ std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& bud
     check_hierarchy(document);
     std::vector<StagedEntity> entities;
     std::vector<Visit> ahead;  // the next one last
+    std::uint64_t counted = document.all("nodes").size();
     const Json& roots = list_in(default_scene(document), "nodes");
     for (std::size_t i = roots.size(); i-- > 0;) {
         ahead.push_back({roots[i].whole<int>(), 1, {}});
@@ -206,6 +233,8 @@ std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& bud
             parent = entities.size() - 1;
         }
         equip(entities.back(), document, json);
+        counted += naming(fmt::format("node {}", node),
+                          [&] { return add_instances(entities, document, json, counted, budget); });
         const Json& children = children_of(document, node);
         for (std::size_t i = children.size(); i-- > 0;) {
             ahead.push_back({children[i].whole<int>(), level + 1, parent});

@@ -21,15 +21,18 @@ struct StagedEntity {
     std::optional<Camera> camera;
 };
 
+/// The rotation of (x, y, z, w), normalised. Throws SceneError if all are 0.
+[[nodiscard]] glm::quat unit_rotation(const glm::dvec4& parts);
+
 /// The scene that the file names as default, else its first. Throws SceneError if there is none.
 [[nodiscard]] const Json& default_scene(const Document& document);
 
 /// The nodes of the default scene (the first scene if no default is given), parents before children, siblings
 /// in the file's order. A sheared node makes two entities with its name, the first the parent of the second
 /// (see decompose). A node that the file does not name gets the name of its camera, light or mesh, or else
-/// `node N`.
-/// Throws SceneError, which names the node, camera or light and the problem, such as two parents, a cycle or
-/// no scene.
+/// `node N`. Of a node with instances (EXT_mesh_gpu_instancing), each becomes an entity below the node's,
+/// with its name and its mesh, which the node's entity then does not have. Throws SceneError, which names the
+/// node, camera or light and the problem, such as two parents, a cycle or no scene.
 [[nodiscard]] std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
                                                    const Progress& progress);
 

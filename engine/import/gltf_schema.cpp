@@ -303,6 +303,8 @@ std::vector<Rule> rules() {
         {"nodes.[].matrix", numbers(16, any)},
         {"nodes.[].extensions.KHR_lights_punctual", has({"light"})},
         {"nodes.[].extensions.KHR_lights_punctual.light", light},
+        {"nodes.[].extensions.EXT_mesh_gpu_instancing", has({"attributes"})},
+        {"nodes.[].extensions.EXT_mesh_gpu_instancing.attributes.{}", accessor},
         {"scenes.[].nodes.[]", node},
         {"scenes.[].extensions.CANDELA_environment.radiance", numbers(3, not_negative)},
         {"scenes.[].extensions.CANDELA_environment.bufferView", buffer_view},

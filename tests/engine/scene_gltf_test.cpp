@@ -10,6 +10,7 @@
 
 #include <candela/scene/hierarchy.hpp>
 #include "tests/engine/gltf_builder.hpp"
+#include "tests/throws.hpp"
 
 using namespace candela;
 using namespace candela::test;
@@ -301,6 +302,80 @@ TEST_SUITE("glTF scenes") {
         CHECK(imported.world.get<MeshInstance>(entities[0]) == imported.world.get<MeshInstance>(entities[1]));
         CHECK(imported.mesh().primitives[0].material == imported.mesh().primitives[1].material);
         CHECK(imported.report.triangles == 4);
+    }
+
+    TEST_CASE("each instance of a node becomes an entity below the node's") {
+        GltfBuilder file = right_triangle();
+        file.document["nodes"] =
+            Json::parse(R"([{"name": "tree", "mesh": 0, "translation": [10, 0, 0], "children": [1]},
+                            {"name": "child", "translation": [0, 0, 1]}])");
+        const std::size_t translations = file.add_vectors({1, 2, 3, 4, 5, 6});
+        const std::size_t scales = file.add_vectors({1, 1, 1, 2, 2, 2});
+        // None, and a quarter turn about z.
+        const std::size_t rotations =
+            file.add_accessor(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, 23170, 23170}, 5122, "VEC4", 4);
+        file.document["accessors"][rotations]["normalized"] = true;
+        file.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+            {"TRANSLATION", translations}, {"ROTATION", rotations}, {"SCALE", scales}};
+        file.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+        file.document["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+        const Imported imported(file);
+        CHECK(imported.report.warnings.empty());
+        CHECK(imported.report.triangles == 2);
+        const std::vector<Entity>& entities = imported.report.entities;
+        REQUIRE(entities.size() == 4);
+        CHECK(imported.world.find<MeshInstance>(entities[0]) == nullptr);
+        CHECK(imported.world.get<MeshInstance>(entities[1]) == imported.world.get<MeshInstance>(entities[2]));
+        CHECK(imported.world.get<Name>(entities[1]).value == "tree");
+        const auto in_world = [&](std::size_t entity, const glm::vec3& point) {
+            return glm::vec3(world_matrix(imported.world, entities[entity]) * glm::vec4(point, 1.0F));
+        };
+        CHECK(in_world(1, {1, 0, 0}) == glm::vec3(12, 2, 3));
+        // Scaled, turned, moved, and moved with the node. Tolerance: the rotation's 16 bits.
+        CHECK(glm::distance(in_world(2, {1, 0, 0}), glm::vec3(14, 7, 6)) < 1e-4F);
+        CHECK(in_world(3, {0, 0, 0}) == glm::vec3(10, 0, 1));
+    }
+
+    TEST_CASE("instances that do not go together or exceed the limit are refused") {
+        GltfBuilder file = right_triangle();
+        const std::size_t two = file.add_vectors({1, 2, 3, 4, 5, 6});
+        const std::size_t three = file.add_vectors({1, 2, 3, 4, 5, 6, 7, 8, 9});
+        Json& attributes = file.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+        attributes = {{"TRANSLATION", two}, {"SCALE", three}};
+        CHECK_THROWS_WITH_AS(
+            Imported{file},
+            "test.gltf: node 0: its instances have 3 values of one attribute and 2 of another", SceneError);
+        attributes = {{"ROTATION", two}};
+        CHECK_THROWS_WITH_AS(Imported{file},
+                             "test.gltf: node 0: accessor 1 holds rotations, but is not VEC4 of FLOAT or of "
+                             "normalised BYTE or SHORT",
+                             SceneError);
+        attributes = {{"TRANSLATION", two}};
+        World world;
+        ImportOptions options;
+        options.limits.nodes = 3;
+        CHECK(import_gltf(file.gltf(), {}, "test.gltf", world, options).entities.size() == 3);
+        options.limits.nodes = 2;
+        CHECK_THROWS_WITH_AS((void)import_gltf(file.gltf(), {}, "test.gltf", world, options),
+                             "test.gltf: node 0: its nodes are 3, above the limit of 2 (nodes)", SceneError);
+        // Zeros that no bytes of the file stand for.
+        file.document["accessors"][two].erase("bufferView");
+        file.document["accessors"][two]["count"] = 4'000'000;
+        CHECK(throws<SceneError>([&] { Imported{file}; }, "(growth)"));
+    }
+
+    TEST_CASE("of materials with variants, the defaults are read") {
+        GltfBuilder file = right_triangle();
+        file.document["extensionsUsed"] = {"KHR_materials_variants"};
+        file.document["extensions"] =
+            Json::parse(R"({"KHR_materials_variants": {"variants": [{"name": "red"}]}})");
+        file.document["materials"] = Json::parse(R"([{"name": "plain"}, {"name": "red"}])");
+        file.primitive()["material"] = 0;
+        file.primitive()["extensions"] =
+            Json::parse(R"({"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}})");
+        const Imported imported(file);
+        CHECK(imported.primitive().material->name == "plain");
+        CHECK(imported.report.warnings.empty());
     }
 
     TEST_CASE("the previous content of the world stays") {

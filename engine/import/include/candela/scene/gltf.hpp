@@ -31,7 +31,7 @@ struct ImportLimits {
     std::uint64_t growth = 32;
     std::uint64_t image_pixels = std::uint64_t{1} << 26U;  ///< of one image, or of the picture of the sky
     std::uint64_t pixels = std::uint64_t{1} << 28U;        ///< of all of them; each image is decoded once
-    std::uint64_t nodes = std::uint64_t{1} << 22U;         ///< of the document
+    std::uint64_t nodes = std::uint64_t{1} << 22U;         ///< of the document, with their instances
     std::uint64_t depth = std::uint64_t{1} << 20U;         ///< levels of the hierarchy of nodes
     std::uint64_t triangles = std::uint64_t{1} << 24U;     ///< of all meshes; instances do not count
 };

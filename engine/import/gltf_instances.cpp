@@ -1,0 +1,58 @@
+#include "engine/import/gltf_instances.hpp"
+
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <candela/scene/scene_error.hpp>
+#include "engine/import/gltf_accessors.hpp"
+#include "engine/import/gltf_nodes.hpp"
+#include "engine/import/naming.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+constexpr std::string_view attributes_path = "extensions/EXT_mesh_gpu_instancing/attributes";
+
+}  // namespace
+
+std::size_t count_instances(const Document& document, const Json& node) {
+    const Json* const attributes = node.find_path(attributes_path);
+    if (!attributes) return 0;
+    std::optional<std::size_t> count;
+    for (const JsonMember& attribute : attributes->members()) {
+        const std::size_t elements = element_count(document, attribute.value.whole<int>());
+        if (count.value_or(elements) != elements) {
+            throw SceneError(fmt::format("its instances have {} values of one attribute and {} of another",
+                                         *count, elements));
+        }
+        count = elements;
+    }
+    return count.value_or(0);
+}
+
+std::vector<Transform> read_instances(const Document& document, const Json& node, std::size_t count) {
+    const Json& attributes = *node.find_path(attributes_path);
+    const Selection all(count);
+    std::vector<Transform> transforms(count);
+    if (const int translations = index_in(attributes, "TRANSLATION"); translations >= 0) {
+        const std::vector<glm::vec3> vectors = read_vectors(document, translations, all);
+        for (std::size_t i = 0; i < count; ++i) transforms[i].translation = vectors[i];
+    }
+    if (const int rotations = index_in(attributes, "ROTATION"); rotations >= 0) {
+        const std::vector<glm::vec4> parts = read_rotations(document, rotations, all);
+        for (std::size_t i = 0; i < count; ++i) {
+            transforms[i].rotation =
+                naming(fmt::format("instance {}", i), [&] { return unit_rotation(glm::dvec4(parts[i])); });
+        }
+    }
+    if (const int scales = index_in(attributes, "SCALE"); scales >= 0) {
+        const std::vector<glm::vec3> vectors = read_vectors(document, scales, all);
+        for (std::size_t i = 0; i < count; ++i) transforms[i].scale = vectors[i];
+    }
+    return transforms;
+}
+
+}  // namespace candela::gltf
