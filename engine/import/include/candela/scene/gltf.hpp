@@ -66,17 +66,27 @@ struct ImportOptions {
 /// Tangents that a normal texture needs and the file lacks are derived, as are all of a primitive whose
 /// texture coordinates are transformed.
 ///
-/// Supported extensions: KHR_lights_punctual, KHR_materials_emissive_strength, KHR_materials_unlit (the
-/// surface emits its base colour, without that of its vertices), KHR_texture_transform, EXT_texture_webp,
-/// KHR_texture_basisu (of which the fallback is read), KHR_mesh_quantization, EXT_meshopt_compression and
-/// KHR_draco_mesh_compression (if Candela was built with meshoptimizer and Draco), and CANDELA_environment of
-/// a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name": "sky"}, which becomes an
-/// entity with an Environment (instead of "uri" it may have a "bufferView"), and CANDELA_light of a light,
-/// {"castsShadow": false}. Any other extension is a warning, also if the file requires it; primitives whose
-/// positions or indices it holds are skipped. Also left out with a warning: points and lines, skins,
-/// animations, morph targets, further sets of texture coordinates and colours. Triangles without area are
-/// dropped. A node with a sheared matrix, which a Transform cannot represent, becomes two entities, one the
-/// parent of the other (see decompose).
+/// Supported extensions:
+/// - KHR_lights_punctual
+/// - KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_specular without its textures
+/// - KHR_materials_unlit: the surface emits its base colour, without that of its vertices
+/// - KHR_materials_variants: the default materials are read
+/// - KHR_texture_transform
+/// - KHR_texture_basisu: the fallback is read
+/// - EXT_texture_webp, if Candela was built with libwebp; else the fallback is read
+/// - KHR_mesh_quantization
+/// - EXT_meshopt_compression and KHR_draco_mesh_compression, if Candela was built with meshoptimizer and
+/// Draco
+/// - EXT_mesh_gpu_instancing: each instance becomes an entity below that of its node
+/// - CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name":
+///   "sky"}: becomes an entity with an Environment. Instead of "uri" it may have a "bufferView".
+/// - CANDELA_light of a light, {"castsShadow": false}
+///
+/// Any other extension is a warning, also if the file requires it; primitives whose positions or indices it
+/// holds are skipped. Also left out with a warning: points and lines, skins, animations, morph targets,
+/// further sets of texture coordinates and colours. Triangles without area are dropped. A node with a sheared
+/// matrix, which a Transform cannot represent, becomes two entities, one the parent of the other (see
+/// decompose).
 ///
 /// An image that is missing, damaged or of another kind is one warning. A checker of magenta and black takes
 /// its place in base colours, black in emission; other textures are left out. It is still an error if its
