@@ -168,8 +168,7 @@ std::vector<unsigned char> indices_of(const draco::Mesh& mesh) {
     }
     std::vector<unsigned char> bytes(mesh.num_faces() * 3 * sizeof(Index));
     for (std::uint32_t i = 0; i < mesh.num_faces() * 3; ++i) {
-        const auto index =
-            static_cast<Index>(mesh.face(draco::FaceIndex(i / 3))[static_cast<int>(i % 3)].value());
+        const auto index = static_cast<Index>(mesh.face(draco::FaceIndex(i / 3))[i % 3].value());
         std::memcpy(bytes.data() + i * sizeof(Index), &index, sizeof index);
     }
     return bytes;

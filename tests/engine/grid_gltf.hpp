@@ -69,7 +69,7 @@ inline std::vector<std::array<CornerValues, 3>> sorted_triangles(const Imported&
             triangle[k] = {corner.position.x, corner.position.y, corner.position.z, corner.normal.x,
                            corner.normal.y,   corner.normal.z,   corner.uv.x,       corner.uv.y};
         }
-        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+        std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
         triangles.push_back(triangle);
     }
     std::ranges::sort(triangles);
