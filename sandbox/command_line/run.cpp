@@ -27,6 +27,7 @@
 #include "sandbox/headless/report.hpp"
 #include "sandbox/scene/environment.hpp"
 #include "sandbox/scene/scene.hpp"
+#include "sandbox/scene/studio.hpp"
 #include "sandbox/window/run_window.hpp"
 #include "sandbox/window/window.hpp"
 

@@ -18,6 +18,7 @@
 #include "sandbox/headless/report.hpp"
 #include "sandbox/panels/controls.hpp"
 #include "sandbox/scene/environment.hpp"
+#include "sandbox/scene/studio.hpp"
 
 namespace candela::sandbox {
 
@@ -240,6 +241,25 @@ void draw_selected(Document& document, std::vector<Action>& wanted) {
     draw_materials(document, *interaction.selected);
 }
 
+void draw_studio(Document& document) {
+    Scene& scene = document.scene;
+    bool on = has_studio(scene);
+    if (!checkbox(
+            "studio", on,
+            "a sky that is brighter above than below, in place of the scene's, and a light with a shadow")) {
+        return;
+    }
+    EntityStates before = states_of(scene.world, touched_by_studio(scene));
+    if (on) {
+        add_studio(scene);
+    } else {
+        remove_studio(scene);
+    }
+    document.interaction.history().record(scene.world, on ? "add the studio" : "remove the studio",
+                                          std::move(before));
+    document.interaction.history().end_of_gesture();
+}
+
 void draw_sky(Document& document) {
     World& world = document.scene.world;
     const Entity entity = environment_entity(world);
@@ -314,6 +334,7 @@ std::vector<Action> draw_scene_panel(Document& document, const AppState& state, 
     document.material_edit.apply(document.scene.world, document.interaction.history(),
                                  !ImGui::IsAnyItemActive());
     ImGui::Separator();
+    draw_studio(document);
     draw_sky(document);
     if (document.playback && header("Animation", true)) draw_playback(*document.playback);
     if (report != nullptr && header("Energy: lights in, surfaces out", false)) draw_account(*report);

@@ -14,7 +14,7 @@ namespace candela::sandbox {
 /// A sky from the command line: the same radiance from everywhere, or a picture.
 using SkyChoice = std::variant<glm::vec3, std::filesystem::path>;
 
-/// Radiance of the sky of a scene without light, from everywhere.
+/// Radiance of a sky that is added, from everywhere.
 inline constexpr glm::vec3 default_sky{0.5F};
 
 /// The entity with the environment that counts; a null entity if there is none.
@@ -26,8 +26,5 @@ void set_environment(World& world, const Environment& environment);
 /// Replaces the environments of the scene by the chosen sky. Throws SceneError that names the file and the
 /// problem if its picture cannot be read.
 void set_sky(Scene& scene, const SkyChoice& choice);
-
-/// Lights a scene that has no light with default_sky, and adds a line to its warnings.
-void light_if_dark(Scene& scene);
 
 }  // namespace candela::sandbox

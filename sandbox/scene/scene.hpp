@@ -24,6 +24,7 @@ struct Scene {
     World world;
     std::vector<std::string> warnings;   ///< what the import left out, and what the app added; one per line
     std::optional<Animation> animation;  ///< refers to entities of `world`
+    std::vector<Entity> studio{};        ///< sky and light of add_studio; none before it was called
 };
 
 /// The file of the animation script, if there is one.

@@ -11,7 +11,7 @@
 #include "sandbox/files/numbered_file.hpp"
 #include "sandbox/files/picture.hpp"
 #include "sandbox/files/recent_files.hpp"
-#include "sandbox/scene/environment.hpp"
+#include "sandbox/scene/studio.hpp"
 #include "sandbox/window/save_commands.hpp"
 #include "sandbox/window/view_commands.hpp"
 #include "sandbox/window/window_session.hpp"

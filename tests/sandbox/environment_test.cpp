@@ -8,43 +8,20 @@
 
 #include <candela/scene/components.hpp>
 #include <candela/scene/scene_error.hpp>
+#include "sandbox/scene/studio.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 using namespace candela;
 using namespace candela::sandbox;
 
 TEST_SUITE("environment") {
-    TEST_CASE("a scene without light is shown under a sky, and a warning says so") {
-        const TemporaryFolder folder;
-        const std::filesystem::path path = folder / "dark.gltf";
-        std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scenes": [{}]})";
-        Scene scene = load_scene(path);
-        CHECK(scene.warnings.empty());
-        light_if_dark(scene);
-        CHECK(scene.warnings ==
-              std::vector<std::string>{"the scene has no light: it is shown under a sky of radiance 0.5"});
-        CHECK(environment_of(scene.world).radiance == glm::vec3(0.5F));
-    }
-
-    TEST_CASE("a scene that a light, a surface or the sky lights stays as it is") {
-        for (const char* lit : {"cornell.gltf", "corner.gltf", "lamp.gltf", "neon.gltf", "court.gltf"}) {
-            CAPTURE(lit);
-            Scene scene = load_scene(shipped_file("scenes", lit));
-            const std::size_t skies = scene.world.count<Environment>();
-            light_if_dark(scene);
-            CHECK(scene.warnings.empty());
-            CHECK(scene.world.count<Environment>() == skies);
-        }
-    }
-
     TEST_CASE("a chosen sky replaces that of the scene, and counts as light even if it is black") {
         Scene scene = load_scene(shipped_file("scenes", "court.gltf"));
         REQUIRE(environment_of(scene.world).picture);
         set_sky(scene, glm::vec3(0.0F));
-        light_if_dark(scene);
+        CHECK(is_lit(scene.world));
         CHECK(scene.world.count<Environment>() == 1);
         CHECK(environment_of(scene.world).radiance == glm::vec3(0.0F));
-        CHECK(scene.warnings.empty());
     }
 
     TEST_CASE("a chosen picture is read, and errors name the file") {

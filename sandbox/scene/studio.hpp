@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include <candela/ecs/world.hpp>
+#include "sandbox/scene/scene.hpp"
+
+namespace candela::sandbox {
+
+/// The radiance that white surfaces of a world would have on average by what its surfaces emit, without
+/// bounces and without shadows' edges: 1,024 rays, the same at each call; cd/m². Of textures, the mean
+/// counts.
+[[nodiscard]] float light_by_emission(const World& world);
+
+/// Whether a world has a light, a sky, or surfaces that emit enough to light it.
+[[nodiscard]] bool is_lit(const World& world);
+
+/// Replaces the sky of a scene by one that is brighter above than below, and adds a directional light with a
+/// shadow: it comes from the left above the first camera, or above one that looks along -Z. The entities are
+/// Scene::studio.
+void add_studio(Scene& scene);
+
+/// Takes the components of Scene::studio; the entities stay for undoing.
+void remove_studio(Scene& scene);
+
+/// Whether the light of the studio is there.
+[[nodiscard]] bool has_studio(const Scene& scene);
+
+/// The entities that add_studio and remove_studio change: those of the studio, and the one with the sky.
+[[nodiscard]] std::vector<Entity> touched_by_studio(Scene& scene);
+
+/// add_studio for a scene that is not lit, with a line for its warnings.
+void light_if_dark(Scene& scene);
+
+}  // namespace candela::sandbox
