@@ -159,7 +159,7 @@ float light_by_emission(const World& world) {
 }
 
 bool is_lit(const World& world) {
-    // A helmet with glowing slits has 0.003, rooms with lamps from 0.2 on.
+    // A helmet with a glowing visor has 0.001, rooms with lamps have 0.1 and more.
     constexpr float least = 0.02F;
     return has_lights(world) || light_by_emission(world) > least;
 }
