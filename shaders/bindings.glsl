@@ -50,6 +50,8 @@
 #define BINDING_VPL_SAMPLES BINDING_LIST_FIRST
 // Passes that inspect resources read light lists, but draw no meshes.
 #define BINDING_INSPECTED_RANGES BINDING_INSTANCES
+// Passes that expose the picture read no other buffer.
+#define BINDING_EXPOSURE BINDING_INSTANCES
 
 #define MOST_STORAGE_BLOCKS 13  // of a program: blended surfaces, with light lists, surfels and rays
 
@@ -108,6 +110,11 @@
 #define ATTRIBUTE_COLOUR 4
 #define ATTRIBUTE_TANGENT 5
 
+#define TONE_CURVE_NONE 0u  // tone_curves.glsl
+#define TONE_CURVE_FILMIC 1u
+#define TONE_CURVE_NEUTRAL 2u
+#define TONE_CURVE_ACES 3u
+
 #define BVH_STACK_SIZE 145
 
 #define MOST_SHADOW_RAYS 32  // that an invocation casts in a dispatch or draw: shadow.glsl
@@ -120,6 +127,8 @@
 #define SAMPLE_COLUMNS 24   // of the grid of pixels in vpl_samples.comp
 #define SAMPLE_ROWS 18
 #define INSPECT_GROUP 64    // invocations of a work group of inspect_range.comp: a power of two
+#define EXPOSURE_GROUP 64   // invocations of a work group of exposure.comp: a power of two
+#define EXPOSURE_GROUPS 256 // work groups that a picture of any size is shared out to
 #define NO_SURFEL 0xffffffffu
 #define SURFEL_GROUP 64     // invocations of a work group in surfel_*.comp: surfels, cell points or rows
 // Rays that an invocation of surfel_light.comp casts to sources of one kind in a dispatch, at most. Each ray loops over

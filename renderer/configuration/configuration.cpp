@@ -42,6 +42,10 @@ constexpr std::array<Choice, 5> interleave_choices{
      {"2", ""},
      {"4", ""},
      {"8", ""}}};
+constexpr std::array<Choice, 3> curve_choices{
+    {{"filmic", "Narkowicz' curve: strong contrast, each channel by itself"},
+     {"neutral", "Khronos PBR Neutral: base colours stay as they are, only highlights are compressed"},
+     {"aces", "Hill's fit to ACES, as in many glTF viewers: strong contrast, highlights fade to white"}}};
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -268,6 +272,9 @@ std::span<const Choice> choices_of(VplVisibility /*type*/) {
 }
 std::span<const Choice> choices_of(Interleave /*type*/) {
     return interleave_choices;
+}
+std::span<const Choice> choices_of(ToneCurve /*type*/) {
+    return curve_choices;
 }
 
 }  // namespace candela

@@ -354,7 +354,7 @@ void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Tar
     }
     texture.upload(std::as_bytes(std::span(texels)));
     texture.bind(UNIT_RADIANCE);
-    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, display_of(configuration_));
+    candela::tone_map(gpu_, target, display_of(configuration_));
 }
 
 void Renderer::State::tone_map(GLuint texture, const Target& target) {
@@ -363,7 +363,7 @@ void Renderer::State::tone_map(GLuint texture, const Target& target) {
     const gl::HostState host_state(gpu_.gl());
     gpu_.gl().BindTextureUnit(UNIT_RADIANCE, texture);
     gpu_.nearest().bind(UNIT_RADIANCE);
-    draw_tone_mapped(gpu_, tone_map_program(gpu_), target, display_of(configuration_));
+    candela::tone_map(gpu_, target, display_of(configuration_));
 }
 
 GraphDescription Renderer::State::description() const {

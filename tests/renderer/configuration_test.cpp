@@ -39,7 +39,8 @@ Configuration unusual() {
     c.frame_budget_ms = std::nullopt;
     c.geometry_bound = std::numeric_limits<float>::infinity();
     c.shadows = {.enabled = false, .cube_resolution = 16, .map_resolution = 8192, .budget_mib = 0};
-    c.tone_map = {.enabled = false, .exposure_ev = -1.7F};
+    c.tone_map = {
+        .enabled = false, .exposure_ev = -1.7F, .curve = ToneCurve::aces, .automatic_exposure = true};
     return c;
 }
 

@@ -135,6 +135,8 @@ TEST_SUITE("second compiler") {
         };
         configure_each(VplPlacement::surfels, Show::total);
         configure_each(VplPlacement::paths, Show::total);
+        configuration.tone_map.automatic_exposure = true;
+        REQUIRE(renderer.configure(configuration).empty());
         for (const Show show : {Show::indirect, Show::irradiance, Show::albedo, Show::normals}) {
             configure_each(VplPlacement::surfels, show);
         }
@@ -179,7 +181,8 @@ TEST_SUITE("second compiler") {
         const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
         draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
         CHECK(sources.size() > 40);
-        for (const auto& variant : std::vector<std::vector<std::string>>{{"BUMPY"},
+        for (const auto& variant : std::vector<std::vector<std::string>>{{"AUTOMATIC"},
+                                                                         {"BUMPY"},
                                                                          {"BUMPY", "MASKED"},
                                                                          {"BUMPY", "GLOSSY"},
                                                                          {"BUMPY", "DIRECTED"},

@@ -111,10 +111,31 @@ struct RefinementSettings {
     bool operator==(const RefinementSettings&) const = default;
 };
 
+/// The curve from exposed light to colours that a display can show.
+enum class ToneCurve : std::uint8_t {
+    /// Narkowicz, "ACES Filmic Tone Mapping Curve" (2015): each channel by itself.
+    filmic,
+    /// Khronos PBR Neutral, github.com/KhronosGroup/ToneMapping (2024): base colours in white light stay as
+    /// they are, and only highlights are compressed.
+    neutral,
+    /// The fit to the ACES transforms by Hill, "ACES.hlsl" in github.com/TheRealMJP/BakingLab (2016), of
+    /// light / 0.6, the factor that glTF viewers apply (three.js; Khronos' sample viewer with its exposure
+    /// boost).
+    aces
+};
+
 /// How radiance becomes the colours of the target.
 struct ToneMapSettings {
-    bool enabled = true;       ///< off: linear radiance times the exposure; alpha 1 where there is a surface
+    /// Off: linear radiance times 2^exposure_ev, whatever automatic_exposure; alpha 1 where there is a
+    /// surface.
+    bool enabled = true;
     float exposure_ev = 0.0F;  ///< in stops: radiance is multiplied by 2^exposure_ev
+    ToneCurve curve = ToneCurve::filmic;
+    /// Radiance is also multiplied by 0.18 / the log-average luminance of the picture (Reinhard et al.,
+    /// "Photographic Tone Reproduction for Digital Images", 2002), within 2^-10 to 2^10, so that exposure_ev
+    /// compensates it. The luminance L of a pixel counts L / (L + 2^-16), so that what is black, or nearly,
+    /// does not, nor do values that are not finite. It depends on the picture alone, not on earlier ones.
+    bool automatic_exposure = false;
     bool operator==(const ToneMapSettings&) const = default;
 };
 
@@ -247,6 +268,7 @@ struct Choice {
 [[nodiscard]] CANDELA_API std::span<const Choice> choices_of(VplPlacement type);
 [[nodiscard]] CANDELA_API std::span<const Choice> choices_of(VplVisibility type);
 [[nodiscard]] CANDELA_API std::span<const Choice> choices_of(Interleave type);
+[[nodiscard]] CANDELA_API std::span<const Choice> choices_of(ToneCurve type);
 
 /// The name of a value of such an enumeration.
 template <class Enum>

@@ -103,8 +103,8 @@ class CANDELA_API Renderer {
     void verify(bool on);
 
     /// Tone-maps a picture of linear radiance, or of what else Configuration::show selects, that was computed
-    /// elsewhere, for example an average of frames, into `target`. `radiance` holds target.size.x ×
-    /// target.size.y pixels row by row, the bottom row first.
+    /// elsewhere, for example an average of frames, into `target`. An automatic exposure is that of this
+    /// picture. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
     /// Throws gl::GlError if it holds another number of pixels, and where `render` does because of a target.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
     /// The same for a 2D texture of linear radiance on the GPU, by its GL name. It is scaled to the target.

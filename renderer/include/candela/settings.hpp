@@ -104,7 +104,13 @@ void for_each_setting(Config& c, const Visitor& visit) {
         "number of frames that are averaged; without VPLs at most 64", c.refinement.enabled);
 
     row("tone_map.enabled", "", c.tone_map.enabled, {}, "off: linear radiance times the exposure");
-    row("tone_map.exposure_ev", "", c.tone_map.exposure_ev, {-32, 32},
+    row("tone_map.curve", "--tone-curve", c.tone_map.curve, {}, "from exposed light to colours",
+        c.tone_map.enabled);
+    row("tone_map.automatic_exposure", "--automatic-exposure", c.tone_map.automatic_exposure, {},
+        "radiance is multiplied so that its log-average in the picture becomes 18 % grey; the app's default "
+        "for files other than its own scenes, if no exposure is given",
+        c.tone_map.enabled);
+    row("tone_map.exposure_ev", "--exposure", c.tone_map.exposure_ev, {-32, 32},
         "exposure in stops: radiance is multiplied by 2 to this power");
 
     row("frame_budget_ms", "", c.frame_budget_ms, {0, 1e6},

@@ -1,47 +1,75 @@
 #include "renderer/passes/output/tone_map.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/passes/output/exposure.hpp"
 #include "shaders/bindings.glsl"
 
 namespace candela {
+namespace {
+
+std::uint32_t number_of(std::optional<ToneCurve> curve) {
+    constexpr std::array numbers{TONE_CURVE_FILMIC, TONE_CURVE_NEUTRAL, TONE_CURVE_ACES};  // as in ToneCurve
+    return curve ? numbers.at(static_cast<std::size_t>(*curve)) : TONE_CURVE_NONE;
+}
+
+/// With the texture at UNIT_RADIANCE and, if the exposure is automatic, what find_exposure has written.
+void draw(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display) {
+    gpu.set_target(target);
+    gpu.draw_fullscreen(program, {{"target_origin", glm::vec2(target.origin)},
+                                  {"target_size", glm::vec2(target.size)},
+                                  {"exposure", display.exposure},
+                                  {"curve", number_of(display.curve)},
+                                  {"encoded", display.encoded},
+                                  {"opaque", display.opaque}});
+}
+
+const gl::Program& program_for(Gpu& gpu, const Display& display) {
+    std::vector<std::string> defined;
+    if (display.automatic) defined.emplace_back("AUTOMATIC");
+    return gpu.program({"output/fullscreen.vert", "output/tone_map.frag"}, defined);
+}
+
+}  // namespace
 
 Display display_of(const Configuration& configuration) {
     const ToneMapSettings& settings = configuration.tone_map;
     const bool light = shows_light(configuration.show);
+    const bool mapped = settings.enabled && light;
     return {.exposure = light ? std::exp2(settings.exposure_ev) : 1.0F,
-            .curve = settings.enabled && light,
+            .automatic = mapped && settings.automatic_exposure,
+            .curve = mapped ? std::optional(settings.curve) : std::nullopt,
             .encoded = settings.enabled && (light || configuration.show == Show::albedo),
             .opaque = settings.enabled};
 }
 
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
                   TextureHandle picture, const Display& display) {
+    std::optional<BufferHandle<glm::vec2>> exposure;
+    if (display.automatic) exposure = add_exposure(graph, gpu, radiance);
     graph.add("tone-map", [&](Pass& pass) {
         pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
+        if (exposure) pass.read(*exposure, {Usage::storage, BINDING_EXPOSURE});
         pass.read(target);
         pass.parameter(display);
-        const gl::Program& program = tone_map_program(gpu);
+        const gl::Program& program = program_for(gpu, display);
         (void)pass.write(picture, Usage::layer_target);
-        pass.run([=, &gpu, &program](Execution& run) {
-            draw_tone_mapped(gpu, program, run.value(target), display);
-        });
+        pass.run([=, &gpu, &program](Execution& run) { draw(gpu, program, run.value(target), display); });
     });
 }
 
-void draw_tone_mapped(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display) {
-    gpu.set_target(target);
-    gpu.draw_fullscreen(program, {{"target_origin", glm::vec2(target.origin)},
-                                  {"target_size", glm::vec2(target.size)},
-                                  {"exposure", display.exposure},
-                                  {"curve", display.curve},
-                                  {"encoded", display.encoded},
-                                  {"opaque", display.opaque}});
-}
-
-const gl::Program& tone_map_program(Gpu& gpu) {
-    return gpu.program({"output/fullscreen.vert", "output/tone_map.frag"});
+void tone_map(Gpu& gpu, const Target& target, const Display& display) {
+    gl::Buffer exposure;
+    if (display.automatic) {
+        exposure = gl::Buffer(gpu.device(), "exposure", exposure_values * sizeof(glm::vec2));
+        exposure.bind_base(GL_SHADER_STORAGE_BUFFER, BINDING_EXPOSURE);
+        find_exposure(gpu, exposure_program(gpu));
+        gpu.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+    draw(gpu, program_for(gpu, display), target, display);
 }
 
 }  // namespace candela

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <candela/configuration.hpp>
 
 #include <candela/graph/frame_graph.hpp>
@@ -10,25 +12,26 @@ namespace candela {
 
 /// How the values of a picture become those of the target.
 struct Display {
-    float exposure = 1.0F;  ///< factor on the values
-    bool curve = false;     ///< the filmic curve of Narkowicz, "ACES Filmic Tone Mapping Curve" (2015)
-    bool encoded = false;   ///< sRGB encoding, by the shader
-    bool opaque = false;    ///< alpha is 1; otherwise, that of the picture
+    float exposure = 1.0F;           ///< factor on the values
+    bool automatic = false;          ///< times that of find_exposure
+    std::optional<ToneCurve> curve;  ///< none: linear
+    bool encoded = false;            ///< sRGB encoding, by the shader
+    bool opaque = false;             ///< alpha is 1; otherwise, that of the picture
     bool operator==(const Display&) const = default;
 };
 /// Radiance is exposed and goes through the curve; albedo is encoded only, and all else is as it is.
-/// Without tone mapping, all are linear.
+/// Without tone mapping, all are linear, and no exposure is automatic.
 [[nodiscard]] Display display_of(const Configuration& configuration);
 
 /// Adds node `tone-map` (raster): writes radiance, or what else the picture shows, to the host's target.
 /// Depends on `radiance` and `target`, whose framebuffer is the object of `picture`, an
-/// imported texture.
+/// imported texture. Before it, adds node `exposure` if the exposure is automatic.
 void add_tone_map(FrameGraph& graph, Gpu& gpu, TextureHandle radiance, ValueHandle<Target> target,
                   TextureHandle picture, const Display& display);
 
-/// Does the work of the node, also for pictures from elsewhere. The texture at UNIT_RADIANCE is drawn to the
-/// target, with bilinear scaling if its size differs. Changes the draw framebuffer and the viewport.
-void draw_tone_mapped(Gpu& gpu, const gl::Program& program, const Target& target, const Display& display);
-[[nodiscard]] const gl::Program& tone_map_program(Gpu& gpu);
+/// Does the work of these nodes for pictures from elsewhere. The texture at UNIT_RADIANCE is drawn to the
+/// target, with bilinear scaling if its size differs. Changes the draw framebuffer, the viewport and what is
+/// bound at BINDING_EXPOSURE.
+void tone_map(Gpu& gpu, const Target& target, const Display& display);
 
 }  // namespace candela

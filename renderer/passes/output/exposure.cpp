@@ -1,0 +1,33 @@
+#include "renderer/passes/output/exposure.hpp"
+
+#include <candela/graph/execute.hpp>
+#include <candela/workload.hpp>
+#include "renderer/gpu/compute_steps.hpp"
+
+namespace candela {
+
+BufferHandle<glm::vec2> add_exposure(FrameGraph& graph, Gpu& gpu, TextureHandle radiance) {
+    return graph.add("exposure", [&](Pass& pass) {
+        pass.tag(Workload::pixels);
+        pass.read(radiance, {Usage::sampled, UNIT_RADIANCE});
+        const gl::Program& program = exposure_program(gpu);
+        // Kept while the radiance does not change.
+        const auto exposure =
+            pass.write(graph.buffer<glm::vec2>("exposure", exposure_values, Lifetime::persistent),
+                       {Usage::storage, BINDING_EXPOSURE});
+        pass.run([&gpu, &program](Execution& /*run*/) { find_exposure(gpu, program); });
+        return exposure;
+    });
+}
+
+void find_exposure(Gpu& gpu, const gl::Program& program) {
+    ComputeSteps steps(gpu);
+    steps.run(program, {EXPOSURE_GROUPS}, {{"finish", false}});
+    steps.run(program, {}, {{"finish", true}});
+}
+
+const gl::Program& exposure_program(Gpu& gpu) {
+    return gpu.program({"output/exposure.comp"});
+}
+
+}  // namespace candela
