@@ -77,10 +77,7 @@ std::string write_track(const Track& track) {
 
 /// The scene as a script names it: see Script::scene.
 std::string scene_name(const fs::path& scene, const fs::path& script) {
-    std::error_code ignored;
-    if (fs::equivalent(scene, shipped_file("scenes", scene.filename().string()), ignored)) {
-        return scene.stem().string();
-    }
+    if (is_shipped("scenes", scene)) return scene.stem().string();
     return fs::proximate(fs::absolute(scene), fs::absolute(script).parent_path()).string();
 }
 

@@ -14,6 +14,15 @@ namespace candela::sandbox {
 /// picture. Throws std::runtime_error with a one-line message that names the file and all errors.
 [[nodiscard]] Configuration choose_configuration(const Options& options, bool in_window);
 
+/// The same configuration, and whether it leaves the exposure open: neither the file nor a flag gives
+/// tone_map.exposure_ev or tone_map.automatic_exposure. The app then chooses it for each scene: see
+/// SceneExposure.
+struct ChosenConfiguration {
+    Configuration configuration;
+    bool leaves_exposure_open = true;
+};
+[[nodiscard]] ChosenConfiguration choose_with_exposure(const Options& options, bool in_window);
+
 /// A named configuration with the refinement, the frame budget, the tone map and the view of `present`: its
 /// name only says how a frame is computed.
 [[nodiscard]] Configuration choose_named(const Configuration& present, const NamedConfiguration& named);

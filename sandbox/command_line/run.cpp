@@ -23,10 +23,12 @@
 #include "sandbox/command_line/exit_status.hpp"
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/config_watch.hpp"
+#include "sandbox/files/output_file.hpp"
 #include "sandbox/headless/headless.hpp"
 #include "sandbox/headless/report.hpp"
 #include "sandbox/scene/environment.hpp"
 #include "sandbox/scene/scene.hpp"
+#include "sandbox/scene/scene_exposure.hpp"
 #include "sandbox/scene/studio.hpp"
 #include "sandbox/window/run_window.hpp"
 #include "sandbox/window/window.hpp"
@@ -119,21 +121,30 @@ Scene open_scene(const Options& options, const TellProgress& tell) {
     return scene;
 }
 
+/// The configuration for a scene, with an exposure if the picture is to be looked at: others are linear.
+Configuration exposed(ChosenConfiguration chosen, const Scene& scene, const Options& options) {
+    const std::optional<std::filesystem::path> out = picture_path(options);
+    if (out && lower_extension(*out) == ".png") {
+        SceneExposure(chosen.leaves_exposure_open).choose(scene.path, chosen.configuration.tone_map);
+    }
+    return chosen.configuration;
+}
+
 void run_session(const Options& options, const MakeReference& make_reference) {
     ConfigWatch watch(options);
     const bool windowed = wants_window(options);
-    const Configuration configuration = choose_configuration(options, windowed);
+    ChosenConfiguration chosen = choose_with_exposure(options, windowed);
     if (options.list_configs || options.print_config) {
-        fmt::print("{}",
-                   options.list_configs ? list_configurations() : write_configuration(configuration) + "\n");
+        fmt::print("{}", options.list_configs ? list_configurations()
+                                              : write_configuration(chosen.configuration) + "\n");
         return;
     }
     std::vector<std::string> tried;
     if (const std::unique_ptr<Window> window =
             open_window(options, options.size.value_or(window_size), tried)) {
         return run_window(
-            *window, [&](const TellProgress& tell) { return open_scene(options, tell); }, configuration,
-            watch, options, make_reference);
+            *window, [&](const TellProgress& tell) { return open_scene(options, tell); }, chosen, watch,
+            options, make_reference);
     }
     for (const std::string& error : tried) print_message("no window: " + error);
     Scene scene = open_scene(options, {});
@@ -141,8 +152,8 @@ void run_session(const Options& options, const MakeReference& make_reference) {
     const glm::ivec2 size = options.size.value_or(headless_size);
     const Entity camera = choose_camera(scene.world, options.camera, aspect(size));
     const std::unique_ptr<HeadlessContext> context = open_headless(options.context, tried);
-    run_headless(*context, scene, camera, windowed ? choose_configuration(options, false) : configuration,
-                 options, size);
+    if (windowed) chosen = choose_with_exposure(options, false);
+    run_headless(*context, scene, camera, exposed(chosen, scene, options), options, size);
 }
 
 }  // namespace

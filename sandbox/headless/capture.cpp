@@ -13,12 +13,13 @@ namespace candela::sandbox {
 
 namespace {
 
-/// Turns tone mapping off during its lifetime.
+/// Turns tone mapping off during its lifetime, and exposure, which Capture::tone_mapped applies.
 class LinearOutput {
  public:
     explicit LinearOutput(Renderer& renderer) : renderer_(renderer), before_(renderer.configuration()) {
         Configuration linear = before_;
         linear.tone_map.enabled = false;
+        linear.tone_map.exposure_ev = 0.0F;
         const std::vector<std::string> errors = renderer_.configure(linear);
         if (!errors.empty()) throw std::runtime_error(fmt::format("{}", fmt::join(errors, "; ")));
     }

@@ -73,6 +73,11 @@ fs::path shipped_file(const std::string& folder, const std::string& name) {
     return fs::exists(beside, ignored) ? beside : fs::path(CANDELA_SHIPPED) / folder / name;
 }
 
+bool is_shipped(const std::string& folder, const fs::path& file) {
+    std::error_code ignored;
+    return fs::equivalent(file, shipped_file(folder, file.filename().string()), ignored);
+}
+
 std::vector<fs::path> shipped_scenes() {
     std::vector<fs::path> scenes;
     std::error_code ignored;

@@ -34,6 +34,9 @@ struct Scene {
 /// there is none, in the source tree.
 [[nodiscard]] std::filesystem::path shipped_file(const std::string& folder, const std::string& name);
 
+/// Whether the file is one of those that shipped_file finds.
+[[nodiscard]] bool is_shipped(const std::string& folder, const std::filesystem::path& file);
+
 /// The shipped scenes, sorted by name.
 [[nodiscard]] std::vector<std::filesystem::path> shipped_scenes();
 

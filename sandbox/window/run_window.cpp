@@ -7,9 +7,9 @@
 
 namespace candela::sandbox {
 
-void run_window(Window& window, const OpenScene& open, const Configuration& configuration, ConfigWatch& watch,
+void run_window(Window& window, const OpenScene& open, const ChosenConfiguration& chosen, ConfigWatch& watch,
                 const Options& options, const MakeReference& make_reference) {
-    WindowSession session(window, open, configuration, watch, options, make_reference);
+    WindowSession session(window, open, chosen, watch, options, make_reference);
     session.run();
     session.write_results();
     if (session.stop()) return;

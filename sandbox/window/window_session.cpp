@@ -24,11 +24,16 @@ using Seconds = std::chrono::duration<double>;
 
 }  // namespace
 
-WindowSession::WindowSession(Window& window, const OpenScene& open, const Configuration& configuration,
+WindowSession::WindowSession(Window& window, const OpenScene& open, const ChosenConfiguration& chosen,
                              ConfigWatch& watch, const Options& options, const MakeReference& make_reference)
-    : window_(window), watch_(watch), options_(options), shader_saves_(options.shaders), gui_(window) {
+    : window_(window),
+      watch_(watch),
+      options_(options),
+      shader_saves_(options.shaders),
+      gui_(window),
+      exposure_(chosen.leaves_exposure_open) {
     constexpr double default_budget_ms = 60.0;
-    state_.app.configuration = configuration;
+    state_.app.configuration = chosen.configuration;
     state_.app.update_budget_ms = options.update_budget.value_or(default_budget_ms);
     if (make_reference) state_.reference = ReferenceView(make_reference(Window::wake));
     if (options.ui_log) log_.emplace(*options.ui_log);

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <stdexcept>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -48,6 +49,41 @@ TEST_SUITE("choosing a configuration") {
         CHECK(configuration.vpls.count == 3);
         CHECK(configuration.vpls.placement == VplPlacement::surfels);
         CHECK(configuration.path == ShadingPath::deferred);
+    }
+
+    TEST_CASE("the exposure is open unless the file or a flag gives one, even that of the default") {
+        const TemporaryFolder folder;
+        const auto is_open = [](const Options& options) {
+            const ChosenConfiguration chosen = choose_with_exposure(options, true);
+            CHECK(chosen.configuration == choose_configuration(options, true));
+            if (chosen.leaves_exposure_open) {
+                CHECK_FALSE(chosen.configuration.tone_map.automatic_exposure);
+                CHECK(chosen.configuration.tone_map.exposure_ev == 0.0F);
+            }
+            return chosen.leaves_exposure_open;
+        };
+        CHECK(is_open({}));
+        Options file;
+        file.config = folder / "a.json";
+        for (const char* text : {"{}", R"({"tone_map": {"curve": "aces"}})"}) {
+            std::ofstream(*file.config) << text;
+            CHECK(is_open(file));
+        }
+        for (const char* text : {R"({"exposure_ev": 0})", R"({"exposure_ev": 1})",
+                                 R"({"automatic_exposure": false})", R"({"automatic_exposure": true})"}) {
+            CAPTURE(text);
+            std::ofstream(*file.config) << R"({"tone_map": )" << text << "}";
+            CHECK_FALSE(is_open(file));
+        }
+        Options named;
+        named.config = "best";
+        CHECK(is_open(named));
+        for (const char* flag : {"--exposure=0", "--exposure=2", "--automatic-exposure=off"}) {
+            CAPTURE(flag);
+            const std::string text = flag;
+            named.settings = {{text.substr(0, text.find('=')), text.substr(text.find('=') + 1)}};
+            CHECK_FALSE(is_open(named));
+        }
     }
 
     TEST_CASE("the written configuration has the requested VPL visibility") {

@@ -97,6 +97,12 @@ TEST_SUITE("options") {
                                           "5",
                                           "--seed",
                                           "4294967295",
+                                          "--exposure",
+                                          "-2.5",
+                                          "--automatic-exposure",
+                                          "on",
+                                          "--tone-curve",
+                                          "neutral",
                                           "--vpl-visibility",
                                           "rays",
                                           "--animate",
@@ -127,6 +133,8 @@ TEST_SUITE("options") {
         CHECK(configuration.vpls.count == 0U);
         CHECK(configuration.vpls.bounces == 5U);
         CHECK(configuration.vpls.seed == 4294967295U);
+        CHECK(configuration.tone_map ==
+              ToneMapSettings{.exposure_ev = -2.5F, .curve = ToneCurve::neutral, .automatic_exposure = true});
         CHECK(configuration.visibility.method == VplVisibility::rays);
         CHECK(configuration.interleave == Interleave::four);
         CHECK(options.animate == "orbit-light");

@@ -1,6 +1,9 @@
 #include "sandbox/command_line/run.hpp"
 
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <string>
 
 #include <doctest/doctest.h>
@@ -22,6 +25,11 @@ Options small_headless() {
     options.size = glm::ivec2(33, 21);
     options.settings["--vpls"] = "8";
     return options;
+}
+
+std::string content_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace
@@ -179,6 +187,51 @@ TEST_SUITE("session") {
             CHECK(light_of(*picture, 0, 12) == 0.0F);
             CHECK(light_of(*picture, 84, 96) == 0.0F);
         }
+    }
+
+    TEST_CASE("an exposure of two stops less makes up for four times the light, and only in PNG") {
+        const TemporaryFolder folder;
+        const TemporaryFolder inputs;
+        const auto picture = [&](const char* name, int intensity, const char* exposure) {
+            std::ofstream(inputs / "a.json")
+                << R"({"frames": 1, "tracks": [{"node": "ceiling light", "intensity": [[0, )" << intensity
+                << "]]}]}";
+            Options options = small_headless();
+            options.animate = inputs / "a.json";
+            options.settings["--indirect"] = "off";
+            if (*exposure != 0) options.settings["--exposure"] = exposure;
+            options.out = folder / name;
+            REQUIRE(run(options) == 0);
+            return content_of(*options.out);
+        };
+        const std::string usual = picture("a.png", 1, "");
+        CHECK(picture("b.png", 1, "0") == usual);
+        CHECK(picture("c.png", 4, "-2") == usual);  // scaling by powers of two is exact
+        CHECK(picture("d.png", 4, "0") != usual);
+        CHECK(picture("a.pfm", 1, "") == picture("b.pfm", 1, "3"));
+    }
+
+    TEST_CASE(
+        "PNGs of files other than the shipped scenes are exposed automatically, unless told otherwise") {
+        const TemporaryFolder folder;
+        const TemporaryFolder inputs;
+        const std::filesystem::path shipped = shipped_file("scenes", "cornell.gltf");
+        std::filesystem::copy(shipped, inputs / "cornell.gltf");
+        const auto picture = [&](const std::filesystem::path& scene, const char* name,
+                                 const std::map<std::string, std::string>& settings) {
+            Options options = small_headless();
+            options.scene = scene;
+            options.settings.insert(settings.begin(), settings.end());
+            options.out = folder / name;
+            REQUIRE(run(options) == 0);
+            return content_of(*options.out);
+        };
+        const std::string manual = picture(shipped, "a.png", {});
+        const std::string automatic = picture(shipped, "b.png", {{"--automatic-exposure", "on"}});
+        CHECK(automatic != manual);
+        CHECK(picture(inputs / "cornell.gltf", "c.png", {}) == automatic);
+        CHECK(picture(inputs / "cornell.gltf", "d.png", {{"--exposure", "0"}}) == manual);
+        CHECK(picture(inputs / "cornell.gltf", "a.pfm", {}) == picture(shipped, "b.pfm", {}));
     }
 
     TEST_CASE("errors end with status 2 and leave no files") {
