@@ -233,8 +233,9 @@ TEST_SUITE("tone map") {
             CAPTURE(dark);
             std::fill_n(radiance.begin(), pixels / 2, glm::vec3(dark));
             const glm::vec3 beside = mapped(radiance).pixels.back();
-            // 1e-9 counts 6.6e-5, which times its 30 stops is 2e-3 of a stop.
-            CHECK(std::abs(double{beside.r} - double{plain.r}) < (dark < 1e-30F ? 1e-6 : 2e-3));
+            // 1e-9 counts 6.6e-5, which times its 30 stops is 2e-3 of a stop. Sums of other numbers of pixels
+            // round differently.
+            CHECK(std::abs(double{beside.r} - double{plain.r}) < (dark < 1e-30F ? 1e-5 : 2e-3));
         }
         CHECK(mapped(std::vector(pixels, glm::vec3(0.0F))).pixels == std::vector(pixels, glm::vec3(0.0F)));
     }
