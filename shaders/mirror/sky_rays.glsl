@@ -5,7 +5,7 @@
 #include "mirror/glossy_surface.glsl"
 #include "sky/sky_picture.glsl"
 
-// A mip level is a level of the tree. xyz: the mean of direction times brightness; w: brightness.
+// A mip level is a level of the tree. w: brightness; xyz: the same times direction, summed.
 layout(binding = UNIT_SKY_TREE) uniform sampler2D sky_tree;
 
 uniform vec4 suns[MOST_SKY_SUNS];  // unit directions, world space; zero: none

@@ -320,9 +320,8 @@ void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials
     std::vector<UploadedImage*> images = images_.used();
     images.insert(images.end(), normals_.used().begin(), normals_.used().end());
     std::vector<BufferRange*> ranges;
-    for (UploadedImage* image : images) {
-        ranges.push_back(&image->range);
-    }
+    std::ranges::transform(images, std::back_inserter(ranges),
+                           [](UploadedImage* image) { return &image->range; });
     place_ranges(run, texels, ranges, texels_end_);
     upload_ranges(*gpu_, run, texels, ranges, [&](std::size_t i, BufferWriter<std::uint32_t>& writer) {
         writer.append(images[i]->texels);

@@ -45,8 +45,9 @@ void take_mean(std::vector<glm::vec4>& level) {
     constexpr float pi = std::numbers::pi_v<float>;
     const float mean = light_of(level) / (4.0F * pi);
     for (std::uint32_t i = 0; i < level.size(); ++i) {
-        const float top = std::cos(pi * static_cast<float>(i / width) / static_cast<float>(width));
-        const float bottom = std::cos(pi * static_cast<float>(i / width + 1) / static_cast<float>(width));
+        const std::uint32_t row = i / width;
+        const float top = std::cos(pi * static_cast<float>(row) / static_cast<float>(width));
+        const float bottom = std::cos(pi * static_cast<float>(row + 1) / static_cast<float>(width));
         const float solid_angle = 2.0F * pi / static_cast<float>(width) * (top - bottom);
         glm::vec4& cell = level[i];
         if (cell.w > 0.0F) cell *= std::max(cell.w - mean * solid_angle, 0.0F) / cell.w;
