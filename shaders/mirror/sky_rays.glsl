@@ -8,18 +8,17 @@
 // A mip level is a level of the tree. w: brightness; xyz: the same times direction, summed.
 layout(binding = UNIT_SKY_TREE) uniform sampler2D sky_tree;
 
-uniform vec4 suns[MOST_SKY_SUNS];  // unit directions, world space; zero: none
-uniform float share_to_sky;        // of the rays of a flat rough surface
-
-const float SUN_COSINE = 0.99939;  // of 2 degrees: nothing else is bright within
+// Unit direction, world space, and the cosine of the radius with its surroundings. Zero: none.
+uniform vec4 suns[MOST_SKY_SUNS];
+uniform float share_to_sky;  // of the rays of a flat rough surface
 
 // Surfaces reflect suns as directional lights: rays see what is beside them.
 vec3 sky_without_suns(vec3 direction) {
     for (int i = 0; i < MOST_SKY_SUNS; ++i) {
         float cosine = dot(direction, suns[i].xyz);
-        if (cosine <= SUN_COSINE) continue;
+        if (cosine <= suns[i].w) continue;
         vec3 aside = direction - cosine * suns[i].xyz + 1e-6 * suns[i].yzx;
-        direction = normalize(suns[i].xyz + sqrt(1.0 / (SUN_COSINE * SUN_COSINE) - 1.0) * normalize(aside));
+        direction = normalize(suns[i].xyz + sqrt(1.0 / (suns[i].w * suns[i].w) - 1.0) * normalize(aside));
     }
     return sky_light(direction);
 }

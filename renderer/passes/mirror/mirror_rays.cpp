@@ -43,7 +43,7 @@ gl::Uniforms mirrored_sky_uniforms(const Execution& run, const MirroredSky& sky)
     const Environment& environment = run.value(sky.sky.environment);
     std::vector<glm::vec4> suns;
     for (const SkySun& sun : run.value(sky.sky.split).suns) {
-        suns.emplace_back(rotated_sky(sun.direction, environment.rotation), 0.0F);
+        suns.emplace_back(rotated_sky(sun.direction, environment.rotation), around_sun_cosine);
     }
     suns.resize(MOST_SKY_SUNS, glm::vec4(0.0F));
     return sky_uniforms(environment) +

@@ -82,7 +82,9 @@ SkyGrid tilted(const SkyGrid& grid) {
 
 /// Cells are blocks of texels, or parts of texels where the picture is small: a bright texel must be
 /// divisible.
-SkyGrid picture_grid(const SkyPicture& picture) {
+SkyGrid picture_grid(const SkyPicture* given) {
+    static const SkyPicture white{2, 1, {glm::vec3(1.0F), glm::vec3(1.0F)}};
+    const SkyPicture& picture = given == nullptr ? white : *given;
     const glm::uvec2 texels(picture.width, picture.height);
     const std::uint32_t parts = std::max(least_columns / picture.width, 1U);
     const glm::uvec2 samples = texels * parts;
@@ -107,7 +109,7 @@ SkyGrid picture_grid(const SkyPicture& picture) {
     return grid;
 }
 
-SkyGrid sky_grid(const SkyPicture& picture) {
+SkyGrid sky_grid(const SkyPicture* picture) {
     return tilted(picture_grid(picture));
 }
 

@@ -29,13 +29,14 @@ template <class T>
     return rgb.r + rgb.g + rgb.b;
 }
 
-/// The light of a picture, by cells of at most 1,024 × 512, in its rows and columns.
-[[nodiscard]] SkyGrid picture_grid(const SkyPicture& picture);
+/// The light of a picture, by cells of at most 1,024 × 512, in its rows and columns. Null: a radiance of 1
+/// everywhere.
+[[nodiscard]] SkyGrid picture_grid(const SkyPicture* picture);
 
 /// The same light by cells of another grid. The grid is tilted against the picture, around no
 /// axis of the world: the edges of patches would otherwise be parallel to those of most rooms and be seen as
 /// bands. Moments have the picture's directions.
-[[nodiscard]] SkyGrid sky_grid(const SkyPicture& picture);
+[[nodiscard]] SkyGrid sky_grid(const SkyPicture* picture);
 
 /// The direction of the picture at a point of the grid, from (0, 0) to (1, 1); unit.
 [[nodiscard]] glm::vec3 grid_direction(glm::vec2 at);

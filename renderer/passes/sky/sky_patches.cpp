@@ -44,16 +44,15 @@ ConeLight light_in_cone(const SkyGrid& grid, glm::vec3 axis, float cosine) {
 /// Takes the surroundings of the brightest cell out of the grid if they are a sun: within a radius of 1
 /// degree lie a twentieth of `all` light, and most of what lies within 2 degrees.
 std::optional<SkySun> take_sun(SkyGrid& grid, double all) {
-    constexpr float two_degrees = 0.99939083F;  // its cosine
     const auto brightest = std::ranges::max_element(
         grid.cells, {}, [](const SkyGrid::Cell& cell) { return sum_of_channels(cell.light); });
     if (brightest->moment == glm::vec3(0.0F)) return std::nullopt;
     // The brightest cell may be at the sun's edge.
-    const glm::dvec3 near = light_in_cone(grid, glm::normalize(brightest->moment), two_degrees).moment;
+    const glm::dvec3 near = light_in_cone(grid, glm::normalize(brightest->moment), around_sun_cosine).moment;
     const glm::vec3 axis(glm::normalize(near));
     const ConeLight sun = light_in_cone(grid, axis, sun_cosine);
     const double light = sum_of_channels(sun.light);
-    const double around = sum_of_channels(light_in_cone(grid, axis, two_degrees).light);
+    const double around = sum_of_channels(light_in_cone(grid, axis, around_sun_cosine).light);
     if (light < 0.05 * all || light < 0.8 * around) return std::nullopt;
     for (SkyGrid::Cell& cell : grid.cells) {
         if (glm::dot(cell.moment, axis) > sun_cosine * glm::length(cell.moment)) cell = {};
@@ -144,8 +143,7 @@ glm::vec3 rotated_sky(glm::vec3 direction, float rotation) {
 }
 
 SplitSky split_sky(const SkyPicture* picture, std::uint32_t count) {
-    const SkyPicture white{2, 1, {glm::vec3(1.0F), glm::vec3(1.0F)}};
-    SkyGrid grid = sky_grid(picture == nullptr ? white : *picture);
+    SkyGrid grid = sky_grid(picture);
     SplitSky sky{.suns = take_suns(grid), .grid = nullptr, .patches = {}};
     const auto less = [](const Candidate& a, const Candidate& b) { return a.need < b.need; };
     std::vector<Candidate> heap{candidate_of(grid, glm::uvec2(0), grid.size)};

@@ -24,6 +24,8 @@ struct SkyPatch {
 
 /// Cosine of the radius of a sun with its surroundings, 1 degree.
 inline constexpr float sun_cosine = 0.99984770F;
+/// Of 2 degrees: nothing else within is as bright.
+inline constexpr float around_sun_cosine = 0.99939083F;
 
 /// A small bright part of the sky.
 struct SkySun {

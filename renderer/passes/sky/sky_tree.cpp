@@ -22,7 +22,7 @@ bool is_sun(const SkyGrid::Cell& cell, const std::vector<SkySun>& suns) {
 }
 
 /// The moment and the light of the picture, summed over the cells of the lowest level.
-std::vector<glm::vec4> lowest_level(const SkyPicture& picture, const std::vector<SkySun>& suns) {
+std::vector<glm::vec4> lowest_level(const SkyPicture* picture, const std::vector<SkySun>& suns) {
     const SkyGrid grid = picture_grid(picture);
     std::vector<glm::vec4> level(std::size_t{width} * width, glm::vec4(0.0F));
     for (std::uint32_t i = 0; i < grid.cells.size(); ++i) {
@@ -69,9 +69,8 @@ std::vector<glm::vec4> level_above(const std::vector<glm::vec4>& level, std::uin
 }  // namespace
 
 SkyTree sky_tree(const SkyPicture* picture, const std::vector<SkySun>& suns) {
-    static const SkyPicture white{2, 1, {glm::vec3(1.0F), glm::vec3(1.0F)}};
     SkyTree tree;
-    tree.levels.push_back(lowest_level(picture == nullptr ? white : *picture, suns));
+    tree.levels.push_back(lowest_level(picture, suns));
     const float all = light_of(tree.levels[0]);
     take_mean(tree.levels[0]);
     tree.share = all > 0.0F ? light_of(tree.levels[0]) / all : 0.0F;
