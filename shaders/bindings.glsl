@@ -48,6 +48,8 @@
 #define BINDING_FILL_MASK BINDING_LIST_COUNT
 #define BINDING_FILL_LIST BINDING_LIST_ENTRIES
 #define BINDING_VPL_SAMPLES BINDING_LIST_FIRST
+#define BINDING_RECEIVERS BINDING_LIST_FIRST
+#define BINDING_RECEIVED BINDING_LIST_COUNT
 // Passes that inspect resources read light lists, but draw no meshes.
 #define BINDING_INSPECTED_RANGES BINDING_INSTANCES
 // Passes that expose the picture read no other buffer.
@@ -123,6 +125,7 @@
 #define RECONSTRUCT_GROUP 64  // pixels of a row that a work group reconstructs
 #define LIST_GROUP 256      // invocations of the one work group that lists pixels
 #define FILL_GROUP 64       // pixels that a work group gathers VPLs for: vpl_fill.comp
+#define RECEIVER_GROUP 16   // receivers that a work group of receiver_light.comp lights
 #define SAMPLE_GROUP 16     // the same in vpl_samples.comp
 #define SAMPLE_COLUMNS 24   // of the grid of pixels in vpl_samples.comp
 #define SAMPLE_ROWS 18

@@ -73,6 +73,13 @@ struct LightConstants {
     uint pad2 DEFAULT(0u);
 };
 
+struct LightReceiver {
+    vec3 position;  // metres
+    float pad0 DEFAULT(0.0);
+    vec3 normal;  // unit
+    float pad1 DEFAULT(0.0);
+};
+
 #define SHADOW_CUBE 0u
 #define SHADOW_PERSPECTIVE 1u
 #define SHADOW_ORTHOGRAPHIC 2u

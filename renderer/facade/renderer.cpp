@@ -38,6 +38,18 @@ FrameResults Renderer::results(std::size_t view) const {
     return state_->results(view);
 }
 
+void Renderer::set_receivers(std::vector<Receiver> receivers) {
+    state_->set_receivers(std::move(receivers));
+}
+
+std::vector<glm::vec3> Renderer::received_light() const {
+    return state_->received_light();
+}
+
+ResultBuffer Renderer::received_light_buffer() const {
+    return state_->received_light_buffer();
+}
+
 std::vector<std::string> Renderer::extend(Extension extension) {
     return state_->extend(std::move(extension));
 }

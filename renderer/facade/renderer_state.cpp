@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
+#include <candela/scene/scene_error.hpp>
 #include "renderer/facade/target_check.hpp"
 #include "renderer/gl/host_state.hpp"
 #include "renderer/passes/output/tone_map.hpp"
@@ -64,6 +68,18 @@ bool same_radiance(Configuration a, const Configuration& b) {
 /// Whether the host has drawn the view's surfaces with their material.
 bool has_material(const RenderView& view) {
     return view.surfaces && view.surfaces->material != 0;
+}
+
+/// Throws SceneError. `index`: of the receiver.
+void require_possible(const Receiver& receiver, std::size_t index) {
+    constexpr float rounding = 1e-3F;  // of normals that a host has stored with 10 bits or more
+    const glm::vec3 position = receiver.position;
+    if (!std::isfinite(position.x + position.y + position.z)) {
+        throw SceneError(fmt::format("receiver {}: its position is not finite", index));
+    }
+    if (!(std::abs(glm::length(receiver.normal) - 1.0F) <= rounding)) {
+        throw SceneError(fmt::format("receiver {}: its normal is not of unit length", index));
+    }
 }
 
 }  // namespace
@@ -168,7 +184,8 @@ void Renderer::State::set_view(const ViewHandles& handles, const RenderView& vie
 void Renderer::State::render(const World& world, std::span<const RenderView> views) {
     require_views(views);
     const gl::HostState host_state(gpu_.gl());
-    FrameShape shape{.views = {}, .quality = {}, .contents = contents_now(world)};
+    FrameShape shape{
+        .views = {}, .quality = {}, .contents = contents_now(world), .receivers = !receivers_.empty()};
     std::vector<ViewRequest> requests;
     std::vector<ViewRequest> without_jitter;
     for (const RenderView& view : views) {
@@ -191,6 +208,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
         refine_ = false;
     }
     set_refinement_clock();
+    if (frame_.receivers) runtime_.set(*frame_.receivers, receivers_);
     if (frame_.epoch) runtime_.set(*frame_.epoch, epoch_);
     set_update_clock();
     if (frame_.requests) runtime_.set(*frame_.requests, std::move(without_jitter));
@@ -202,6 +220,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
         last_passes_ = runtime_.run(world, Timing::on).passes;
     }
     gpu_.log().tell_counts();
+    received_ = static_cast<std::uint32_t>(receivers_.size());
     completed_ = true;
     waiting_ = frame_.waiting ? runtime_.value(*frame_.waiting) : 0;
     waits_ = waiting_ > 0 || (frame_.focus_state && runtime_.value(*frame_.focus_state).held);
@@ -253,6 +272,23 @@ FrameResults Renderer::State::results(std::size_t view) const {
         results.sky_patches = buffer(parts.sky_patches, counts.sky_patches);
     }
     return results;
+}
+
+void Renderer::State::set_receivers(std::vector<Receiver> receivers) {
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        require_possible(receivers[i], i);
+    }
+    receivers_ = std::move(receivers);
+}
+
+ResultBuffer Renderer::State::received_light_buffer() const {
+    return frame_.received ? ResultBuffer{runtime_.object(*frame_.received), received_} : ResultBuffer{};
+}
+
+std::vector<glm::vec3> Renderer::State::received_light() const {
+    if (!frame_.received) return std::vector<glm::vec3>(received_);
+    const auto elements = backend_.buffer(runtime_.object(*frame_.received)).download<glm::vec4>();
+    return {elements.begin(), elements.begin() + received_};
 }
 
 /// Frame budget in milliseconds; 0: no limit.

@@ -26,6 +26,9 @@ class CANDELA_PRIVATE Renderer::State {
     [[nodiscard]] const Configuration& configuration() const { return configuration_; }
     void render(const World& world, std::span<const RenderView> views);
     [[nodiscard]] FrameResults results(std::size_t view) const;
+    void set_receivers(std::vector<Receiver> receivers);
+    [[nodiscard]] std::vector<glm::vec3> received_light() const;
+    [[nodiscard]] ResultBuffer received_light_buffer() const;
     [[nodiscard]] std::vector<std::string> extend(Extension extension);
     void remove_extension(std::string_view name);
     void invalidate();
@@ -77,6 +80,7 @@ class CANDELA_PRIVATE Renderer::State {
     GraphRuntime runtime_;
     Configuration configuration_;
     std::vector<Extension> extensions_;
+    std::vector<Receiver> receivers_;
     FrameShape shape_;                          // of the last frame
     std::array<Tick, 2> contents_revisions_{};  // of the components that determine the contents
     std::uint32_t contents_vpls_ = 0;           // VplSettings::count then
@@ -90,10 +94,11 @@ class CANDELA_PRIVATE Renderer::State {
     std::uint64_t epoch_ = 0;  // incremented by `invalidate`: cached scene data is void
     RefinementClock refinement_clock_;
     UpdateClock update_clock_;
-    std::uint32_t waiting_ = 0;  // surfels that wait for later frames
-    bool waits_ = false;         // whether any do, or others may have to be placed
-    bool refine_ = false;        // whether the next frame adds another sample to the mean
-    bool completed_ = false;     // whether the last frame did not throw, nor was followed by `invalidate`
+    std::uint32_t waiting_ = 0;   // surfels that wait for later frames
+    bool waits_ = false;          // whether any do, or others may have to be placed
+    bool refine_ = false;         // whether the next frame adds another sample to the mean
+    std::uint32_t received_ = 0;  // receivers in the last frame
+    bool completed_ = false;      // whether the last frame did not throw, nor was followed by `invalidate`
     std::vector<PassRecord> last_passes_;
     std::uint64_t next_frame_ = 0;
     std::deque<PendingFrame> pending_;

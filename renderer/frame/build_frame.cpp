@@ -220,6 +220,21 @@ std::optional<SharedVpls> add_vpls(FrameGraph& graph, Gpu& gpu, const Configurat
     return shared;
 }
 
+/// The light at the host's receivers, kept until the end of the frame.
+void light_receivers(FrameGraph& graph, Gpu& gpu, const Configuration& configuration, const LitScene& lit,
+                     const std::optional<SharedVpls>& vpls, FrameHandles& frame) {
+    frame.receivers = graph.import_value<std::vector<Receiver>>("host's receivers");
+    if (!shows_light(configuration.show)) return;
+    Lighting lighting{.lights = lit.lights, .show = configuration.show};
+    if (configuration.shadows.enabled) lighting.shadow_rays = lit.tracing;
+    if (vpls) lighting.vpls = vpls->light;
+    frame.received = add_receivers(graph, gpu, *frame.receivers, lighting);
+    graph.add("keep-received-light", [&](Pass& pass) {
+        pass.side_effect();
+        pass.read(*frame.received, Usage::storage);
+    });
+}
+
 }  // namespace
 
 namespace {
@@ -277,6 +292,7 @@ FrameHandles build_frame(FrameGraph& graph, Gpu& gpu, const Configuration& confi
     const LitScene lit = add_scene(graph, gpu, configuration, shape.contents, frame);
     const std::optional<ValueHandle<Refinement>> refinement = add_cameras(graph, configuration, lit, frame);
     const std::optional<SharedVpls> vpls = add_vpls(graph, gpu, configuration, shape, lit, refinement, frame);
+    if (shape.receivers) light_receivers(graph, gpu, configuration, lit, vpls, frame);
     const SharedFrame shared{configuration, shape.contents, shape.quality, lit, vpls, extensions};
     for (std::size_t i = 0; i < frame.views.size(); ++i) {
         begin_view(graph, i);

@@ -12,6 +12,7 @@
 #include "renderer/passes/indirect/vpl_reconstruct.hpp"
 #include "renderer/passes/lights/light_lists.hpp"
 #include "renderer/passes/lights/lights.hpp"
+#include "renderer/passes/receivers/receivers.hpp"
 #include "renderer/passes/scene/bvh.hpp"
 #include "renderer/passes/scene/scene_check.hpp"
 #include "renderer/passes/surfaces/host_surfaces.hpp"
@@ -50,7 +51,10 @@ struct FrameHandles {
     std::optional<ValueHandle<std::uint32_t>> waiting;     ///< SurfelUpdates::waiting, likewise
     std::optional<ValueHandle<FocusState>> focus_state;    ///< SurfelFoci::state, likewise
     std::optional<ValueHandle<RefinementClock>> refinement_clock;  ///< imported; none without refinement
-    std::vector<ViewHandles> views;                                ///< at least one
+    /// Imported: Renderer::set_receivers; none if there are none.
+    std::optional<ValueHandle<std::vector<Receiver>>> receivers;
+    std::optional<ReceivedLight> received;  ///< none either if no light is shown
+    std::vector<ViewHandles> views;         ///< at least one
 };
 
 /// What the passes of a view depend on.
@@ -85,6 +89,7 @@ struct FrameShape {
     std::vector<ViewShape> views{1};  ///< at least one
     Quality quality;                  ///< of all views
     FrameContents contents;
+    bool receivers = false;  ///< the host has any
     bool operator==(const FrameShape&) const = default;
 };
 

@@ -19,17 +19,6 @@ namespace {
 
 constexpr glm::uvec2 size{48, 36};
 
-/// The inverse of the octahedral map, from its definition: the sum of the coordinates' absolute values is 1,
-/// and the lower half is folded over the diagonals.
-glm::vec3 decoded(glm::vec2 p) {
-    glm::vec3 n(p, 1.0F - std::abs(p.x) - std::abs(p.y));
-    if (n.z < 0.0F) {
-        n.x = std::copysign(1.0F - std::abs(p.y), p.x);
-        n.y = std::copysign(1.0F - std::abs(p.x), p.y);
-    }
-    return glm::normalize(n);
-}
-
 /// A texture of the host's with OpenGL's default parameters, which ask for mip levels that it does not have.
 class HostTexture {
  public:
@@ -231,7 +220,7 @@ TEST_SUITE("host surfaces") {
             const float own = own_depth[i].x;  // near / distance: the camera has no far plane
             const glm::vec4 clip = projection * glm::vec4(0.0F, 0.0F, -camera.near_plane / own, 1.0F);
             depth.emplace_back(own > 0.0F ? 0.5F * clip.z / clip.w + 0.5F : 1.0F);
-            const glm::vec3 normal = decoded(own_normal[i]);
+            const glm::vec3 normal = decoded_normal(own_normal[i]);
             signed_world.emplace_back(normal, 0.0F);
             unsigned_view.emplace_back(0.5F * (view_from_world * normal) + 0.5F, 0.0F);
         }

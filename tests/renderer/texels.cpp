@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include "renderer/gl/texture.hpp"
@@ -39,6 +42,15 @@ Picture picture_of(const gl::Functions& gl, const ResultTexture& radiance) {
         picture.pixels.emplace_back(texel);
     }
     return picture;
+}
+
+glm::vec3 decoded_normal(glm::vec2 p) {
+    glm::vec3 n(p, 1.0F - std::abs(p.x) - std::abs(p.y));
+    if (n.z < 0.0F) {
+        n.x = std::copysign(1.0F - std::abs(p.y), p.x);
+        n.y = std::copysign(1.0F - std::abs(p.x), p.y);
+    }
+    return glm::normalize(n);
 }
 
 }  // namespace candela

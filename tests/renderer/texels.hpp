@@ -14,4 +14,8 @@ namespace candela {
 [[nodiscard]] std::vector<glm::vec4> depths(const gl::Functions& gl, const ResultTexture& result);
 [[nodiscard]] Picture picture_of(const gl::Functions& gl, const ResultTexture& radiance);
 
+/// The inverse of the octahedral map, from its definition: the sum of the coordinates' absolute values is 1,
+/// and the lower half is folded over the diagonals.
+[[nodiscard]] glm::vec3 decoded_normal(glm::vec2 p);
+
 }  // namespace candela

@@ -18,6 +18,7 @@
 #include <candela/gl_error.hpp>
 #include <candela/gl_loader.hpp>
 #include <candela/graph/describe.hpp>
+#include <candela/receiver.hpp>
 #include <candela/renderer_options.hpp>
 #include <candela/report.hpp>
 #include <candela/view.hpp>
@@ -83,6 +84,18 @@ class CANDELA_API Renderer {
     /// What the last frame has left of view number `view`, as far as its RenderView::keep asked for it. Valid
     /// until the next call of a function that is not const. Throws GraphError if there is no such view.
     [[nodiscard]] FrameResults results(std::size_t view = 0) const;
+
+    /// From the next frame on, also finds the light at these places, from which the host can light what it
+    /// draws itself: that of lights, with their shadows, of surfaces that emit or reflect light, and of the
+    /// sky, as far as the configuration shows them. It is computed again only when it may have changed. A
+    /// receiver then costs as much as a pixel that evaluates all lights and all VPLs. Throws SceneError, and
+    /// changes nothing, if a position is not finite or a normal not of unit length.
+    void set_receivers(std::vector<Receiver> receivers);
+    /// The irradiance at each receiver in the last frame, in lux or W/m²; zero if no light is shown. Waits
+    /// for the GPU. Empty before the first frame with receivers.
+    [[nodiscard]] std::vector<glm::vec3> received_light() const;
+    /// The same on the GPU, as vec4s; valid like `results`.
+    [[nodiscard]] ResultBuffer received_light_buffer() const;
 
     /// Adds passes of the host's to the frames of all views from now on; extensions at the same place follow
     /// each other in the order of these calls. An extension with the name of another one takes its place.
