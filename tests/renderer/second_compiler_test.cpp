@@ -147,6 +147,7 @@ TEST_SUITE("second compiler") {
         add(world, Transform{}, MeshInstance{square(1.0F, emitter(glm::vec3(1.0F)))});
         const Entity camera = add(world, at({0.0F, 1.0F, 0.0F}), Camera{});
         const RenderTarget target(device, {1, 1});
+        renderer.set_receivers({{.position = {}, .normal = {0.0F, 1.0F, 0.0F}}});
         renderer.render(world, camera, target.target());
         configure_each(VplPlacement::surfels, Show::total);
         // Surfaces with normal textures, without glossy ones.
