@@ -103,10 +103,30 @@ std::optional<TriangleTangent> tangent_of(const std::array<const Vertex*, 3>& co
     return area > 0.0 ? TriangleTangent{along, 0} : TriangleTangent{-along, 1};
 }
 
+/// Appends a copy of one of its items to a list that has an item for each vertex, if it is not empty.
+template <class T>
+void repeat(std::vector<T>& list, std::size_t item) {
+    if (item >= list.size()) return;
+    const T copy = list[item];
+    list.push_back(copy);
+}
+
+/// Appends a copy of a vertex with all that belongs to it.
+void repeat_vertex(Primitive& primitive, std::size_t vertex) {
+    repeat(primitive.vertices, vertex);
+    for (std::vector<Influences>& set : primitive.influences) repeat(set, vertex);
+    for (MorphTarget& target : primitive.targets) {
+        repeat(target.positions, vertex);
+        repeat(target.normals, vertex);
+        repeat(target.tangents, vertex);
+    }
+}
+
 class TangentWriter {
  public:
     explicit TangentWriter(Primitive& primitive)
-        : vertices_(primitive.vertices),
+        : primitive_(primitive),
+          vertices_(primitive.vertices),
           indices_(primitive.indices),
           sets_(sets_of_equals(vertices_)),
           sums_(vertices_.size(), Sums{glm::dvec3(0.0), glm::dvec3(0.0)}),
@@ -157,8 +177,7 @@ class TangentWriter {
         places[side] = vertex;
         if (places[1 - side] != nowhere) {
             places[side] = static_cast<std::uint32_t>(vertices_.size());
-            const Vertex copy = vertices_[vertex];
-            vertices_.push_back(copy);
+            repeat_vertex(primitive_, vertex);
         }
         const glm::dvec3 normal = direction_of(vertices_[vertex].normal);
         const glm::dvec3 sum = in_plane(direction_of(sums[side]), normal);
@@ -168,6 +187,7 @@ class TangentWriter {
         return places[side];
     }
 
+    Primitive& primitive_;
     std::vector<Vertex>& vertices_;
     std::vector<std::uint32_t>& indices_;
     std::vector<std::uint32_t> sets_;

@@ -132,18 +132,38 @@ struct Vertex {
     bool operator==(const Vertex&) const = default;
 };
 
+/// Four of the joints that move a vertex, as indices into Skin::joints of animation.hpp, and how much: >= 0,
+/// and relative to the sum of all weights of the vertex. Joints of weight 0 do nothing.
+struct Influences {
+    glm::u16vec4 joints{0};
+    glm::vec4 weights{0.0F};
+    bool operator==(const Influences&) const = default;
+};
+
+/// Offsets of the vertices, of which MorphWeights add a part. Each list is empty or has one for each vertex.
+struct MorphTarget {
+    std::vector<glm::vec3> positions;  ///< metres
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec3> tangents;  ///< of the tangents' directions, as vectors of length 1
+    bool operator==(const MorphTarget&) const = default;
+};
+
 /// Indexed triangles of one material, counter-clockwise seen from the front. `indices.size()` is a multiple
 /// of 3 and every index is below `vertices.size()`.
 struct Primitive {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> indices;
     std::shared_ptr<const Material> material;  ///< never null
+    /// Lists with one item for each vertex, which has the joints of all lists. None: no skeleton moves it.
+    std::vector<std::vector<Influences>> influences{};
+    std::vector<MorphTarget> targets{};
 };
 
 /// Immutable geometry, shared by its instances.
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
+    std::vector<float> morph_weights{};  ///< that instances have by default, one for each morph target
 };
 
 /// Whether the mesh may emit light.

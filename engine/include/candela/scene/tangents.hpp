@@ -12,7 +12,8 @@ namespace candela {
 /// which glTF prescribes and for which normal textures are made: the mean of the tangents of the triangles at
 /// the vertex, weighted by their angles there. Vertices with equal position, normal and texture coordinates
 /// count as one. Where triangles of mirrored texture coordinates meet others, their vertices are split: new
-/// ones are appended, at most as many as there were, and the indices of these triangles change. A vertex
+/// ones are appended, at most as many as there were, and the indices of these triangles change; so are their
+/// influences and the offsets of morph targets. A vertex
 /// whose triangles have no area in the texture gets any tangent that is perpendicular to its normal.
 /// Positions, normals and texture coordinates must be finite, and every index must be that of a vertex.
 CANDELA_API void derive_tangents(Primitive& primitive);
