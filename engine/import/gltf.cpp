@@ -3,8 +3,10 @@
 #include <utility>
 #include <variant>
 
+#include "engine/import/gltf_animations.hpp"
 #include "engine/import/gltf_document.hpp"
 #include "engine/import/gltf_environment.hpp"
+#include "engine/import/gltf_figures.hpp"
 #include "engine/import/gltf_materials.hpp"
 #include "engine/import/gltf_meshes.hpp"
 #include "engine/import/gltf_nodes.hpp"
@@ -30,8 +32,19 @@ std::vector<bool> used_meshes(const gltf::Document& document, const std::vector<
     return used;
 }
 
+void add_player(gltf::ReadAnimations animations, World& world, ImportReport& report) {
+    if (animations.clips.empty()) return;
+    AnimationPlayer player;
+    player.clips = std::move(animations.clips);
+    for (const std::size_t target : animations.targets) player.targets.push_back(report.entities[target]);
+    report.entities.push_back(world.create());
+    world.set(report.entities.back(), Name{"animations"});
+    world.set(report.entities.back(), std::move(player));
+}
+
 ImportReport create_entities(std::vector<gltf::StagedEntity> staged,
-                             const std::vector<std::shared_ptr<const Mesh>>& meshes, World& world) {
+                             const std::vector<std::shared_ptr<const Mesh>>& meshes,
+                             const gltf::Figures& figures, World& world) {
     ImportReport report;
     for (gltf::StagedEntity& source : staged) {
         const Entity entity = world.create();
@@ -46,6 +59,10 @@ ImportReport create_entities(std::vector<gltf::StagedEntity> staged,
         if (source.light) std::visit([&](const auto& light) { world.set(entity, light); }, *source.light);
         report.entities.push_back(entity);
     }
+    for (std::size_t i = 0; i < staged.size(); ++i) {
+        const auto* const instance = world.find<MeshInstance>(report.entities[i]);
+        if (instance) figures.add_to(staged[i], report.entities[i], *instance->mesh, report.entities, world);
+    }
     return report;
 }
 
@@ -58,17 +75,22 @@ ImportReport import_document(gltf::Bytes bytes, const std::filesystem::path& bas
     std::vector<gltf::StagedEntity> staged = gltf::read_nodes(document, budget, progress);
     const std::vector<bool> used = used_meshes(document, staged);
     const auto materials = gltf::read_materials(document, used, files, budget, progress);
-    const auto meshes = gltf::read_meshes(document, used, materials, budget, progress);
+    const gltf::Skinned skinned = gltf::find_skinned(document, staged);
+    const auto meshes = gltf::read_meshes(document, used, skinned.meshes, materials, budget, progress);
+    const gltf::Figures figures(document, staged, skinned, budget);
+    gltf::ReadAnimations animations = gltf::read_animations(document, staged, budget);
     const auto environment = gltf::read_environment(document, files, budget);
     progress("creating entities", 0, 1);
     World grown = into;  // a copy, so that running out of memory halfway leaves the world as it was
-    ImportReport report = create_entities(std::move(staged), meshes, grown);
+    ImportReport report = create_entities(std::move(staged), meshes, figures, grown);
+    add_player(std::move(animations), grown, report);
     if (environment) {
         report.entities.push_back(grown.create());
         grown.set(report.entities.back(), Name{environment->name});
         grown.set(report.entities.back(), environment->environment);
     }
     report.warnings = std::move(document.warnings);
+    gltf::deform_once(grown, report);
     into = std::move(grown);
     return report;
 }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
+#include <glm/gtc/vec1.hpp>
 
 #include <candela/scene/scene_error.hpp>
 #include "engine/import/gltf_constants.hpp"
@@ -34,7 +35,7 @@ struct SparseElements {
 
 struct Accessor {
     ElementSource source;     ///< without a buffer view all elements are zero
-    int components = 0;       ///< of SCALAR 1, of VEC2 to VEC4 2 to 4; 0 for matrices, which no attribute has
+    int components = 0;       ///< of SCALAR 1, of VEC2 to VEC4 2 to 4, of MAT4 16; 0 for smaller matrices
     std::size_t count = 0;    ///< elements
     bool normalized = false;  ///< integers stand for fractions of the largest
     std::optional<SparseElements> sparse;
@@ -42,6 +43,7 @@ struct Accessor {
 
 int components_of(std::string_view type) {
     if (type == "SCALAR") return 1;
+    if (type == "MAT4") return 16;
     return type.starts_with("VEC") ? type.back() - '0' : 0;
 }
 
@@ -258,6 +260,17 @@ std::vector<Vector> read_reals(const Document& document, int index, const Select
     return vectors;
 }
 
+/// The components, one after the other.
+template <class Vector>
+std::vector<float> numbers_of(const std::vector<Vector>& vectors) {
+    std::vector<float> numbers;
+    numbers.reserve(vectors.size() * static_cast<std::size_t>(Vector::length()));
+    for (const Vector& vector : vectors) {
+        for (int i = 0; i < Vector::length(); ++i) numbers.push_back(vector[i]);
+    }
+    return numbers;
+}
+
 bool is_float(const Accessor& accessor) {
     return accessor.source.component_type == floating_point;
 }
@@ -419,6 +432,76 @@ std::vector<glm::u16vec4> read_colours(const Document& document, int index, cons
         rounded.emplace_back(glm::clamp(colour, 0.0F, 1.0F) * 65535.0F + 0.5F);
     }
     return rounded;
+}
+
+std::vector<glm::u16vec4> read_joints(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    const int type = accessor.source.component_type;
+    const bool is_known = (type == unsigned_byte || type == unsigned_short) && !accessor.normalized;
+    if (accessor.components != 4 || !is_known) {
+        throw SceneError(fmt::format(
+            "accessor {} holds joints, but is not VEC4 of UNSIGNED_BYTE or UNSIGNED_SHORT", index));
+    }
+    return read<glm::u16vec4>(document, index, selection, [type](const unsigned char* element) {
+        const auto joint = [&](std::size_t i) {
+            return static_cast<std::uint16_t>(load_unsigned(element + i * component_size(type), type));
+        };
+        return glm::u16vec4(joint(0), joint(1), joint(2), joint(3));
+    });
+}
+
+std::vector<glm::vec4> read_weights(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 4 || !has_real_components(accessor)) {
+        throw SceneError(fmt::format(
+            "accessor {} holds weights, but is not VEC4 of FLOAT or of normalised UNSIGNED_BYTE or "
+            "UNSIGNED_SHORT",
+            index));
+    }
+    return read_reals<glm::vec4>(document, index, selection);
+}
+
+std::vector<glm::mat4> read_matrices(const Document& document, int index, const Selection& selection) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 16 || !is_float(accessor)) {
+        throw SceneError(fmt::format("accessor {} holds matrices, but is not MAT4 of FLOAT", index));
+    }
+    const auto matrices = read<glm::mat4>(document, index, selection, load<glm::mat4>);
+    for (std::size_t i = 0; i < matrices.size(); ++i) {
+        for (int k = 0; k < 16; ++k) {
+            if (!std::isfinite(matrices[i][k / 4][k % 4])) {
+                throw SceneError(
+                    fmt::format("accessor {} has a NaN or infinity in element {}", index, selection[i]));
+            }
+        }
+    }
+    return matrices;
+}
+
+std::vector<float> read_key_times(const Document& document, int index) {
+    const Accessor accessor = accessor_at(document, index);
+    if (accessor.components != 1 || !is_float(accessor)) {
+        throw SceneError(fmt::format("accessor {} holds times, but is not SCALAR of FLOAT", index));
+    }
+    return numbers_of(read_reals<glm::vec1>(document, index, Selection(accessor.count)));
+}
+
+std::vector<float> read_key_values(const Document& document, int index, std::size_t components,
+                                   bool may_be_integers) {
+    const Accessor accessor = accessor_at(document, index);
+    const bool are_integers =
+        may_be_integers && (has_real_components(accessor) || has_signed_fractions(accessor));
+    if (static_cast<std::size_t>(accessor.components) != components ||
+        !(is_float(accessor) || are_integers)) {
+        const std::string type = components == 1 ? "SCALAR" : fmt::format("VEC{}", components);
+        throw SceneError(fmt::format("accessor {} holds values of keys, but is not {} of FLOAT{}", index,
+                                     type,
+                                     may_be_integers ? " or of normalised integers of 8 or 16 bits" : ""));
+    }
+    const Selection whole(accessor.count);
+    if (components == 1) return numbers_of(read_reals<glm::vec1>(document, index, whole));
+    if (components == 3) return numbers_of(read_reals<glm::vec3>(document, index, whole));
+    return numbers_of(read_reals<glm::vec4>(document, index, whole));
 }
 
 std::vector<std::uint32_t> read_indices(const Document& document, int index, std::size_t vertex_count) {

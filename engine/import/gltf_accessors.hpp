@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -46,7 +47,7 @@ class Selection {
 /// How the elements of an accessor are stored.
 struct ElementLayout {
     int component_type;
-    std::size_t components;    ///< 0 for matrices, which no attribute has
+    std::size_t components;    ///< of a 4 x 4 matrix 16; 0 for smaller ones, which nothing has
     std::size_t count;         ///< elements
     std::size_t element_size;  ///< bytes
 };
@@ -91,6 +92,26 @@ struct ElementLayout {
 /// UNSIGNED_BYTE or UNSIGNED_SHORT. Floats outside [0, 1] are clamped. 65535 is 1.
 [[nodiscard]] std::vector<glm::u16vec4> read_colours(const Document& document, int accessor,
                                                      const Selection& selection);
+
+/// Indices of joints: VEC4 of UNSIGNED_BYTE or UNSIGNED_SHORT, not normalised.
+[[nodiscard]] std::vector<glm::u16vec4> read_joints(const Document& document, int accessor,
+                                                    const Selection& selection);
+
+/// Weights of joints: VEC4 of FLOAT, or of normalised UNSIGNED_BYTE or UNSIGNED_SHORT.
+[[nodiscard]] std::vector<glm::vec4> read_weights(const Document& document, int accessor,
+                                                  const Selection& selection);
+
+/// Matrices: MAT4 of FLOAT.
+[[nodiscard]] std::vector<glm::mat4> read_matrices(const Document& document, int accessor,
+                                                   const Selection& selection);
+
+/// Times of an animation's keys: SCALAR of FLOAT.
+[[nodiscard]] std::vector<float> read_key_times(const Document& document, int accessor);
+
+/// Values of an animation's keys, their components one after the other: SCALAR, VEC3 or VEC4, as `components`
+/// says, of FLOAT, or, if they `may_be_integers`, of normalised integers of 8 or 16 bits.
+[[nodiscard]] std::vector<float> read_key_values(const Document& document, int accessor,
+                                                 std::size_t components, bool may_be_integers);
 
 /// Vertex indices: SCALAR of UNSIGNED_BYTE, UNSIGNED_SHORT or UNSIGNED_INT, each below `vertex_count`.
 [[nodiscard]] std::vector<std::uint32_t> read_indices(const Document& document, int accessor,

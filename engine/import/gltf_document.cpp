@@ -151,9 +151,6 @@ bool any_material(const Json& document, const std::string& path) {
 /// A warning for each kind of thing that the file asks for explicitly and the import leaves out.
 std::vector<std::string> omissions(const Json& document) {
     std::vector<std::string> warnings;
-    for (const char* member : {"animations", "skins"}) {
-        if (document.contains(member)) warnings.push_back(fmt::format("{} are ignored", member));
-    }
     for (const char* texture : {"specularTexture", "specularColorTexture"}) {
         if (any_material(document, fmt::format("extensions/{}/{}", specular_extension, texture))) {
             warnings.push_back(fmt::format("{}s of {} are ignored", texture, specular_extension));

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <candela/scene/animation.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/hierarchy.hpp>
@@ -137,6 +138,14 @@ class WorldWriter {
         draft_.document["scene"] = 0;
     }
 
+    /// Tells what is left out of entities that need be no nodes.
+    void report_animations(std::span<const Entity> without) {
+        for (const auto& [entity, player] : world_.view<AnimationPlayer>()) {
+            if (std::ranges::find(without, entity) == without.end())
+                warn(entity, "its animations are left out");
+        }
+    }
+
     void write_environment(std::span<const Entity> without) {
         const auto is_kept = [&](Entity entity) {
             return std::ranges::find(without, entity) == without.end();
@@ -200,7 +209,11 @@ class WorldWriter {
         } else {
             warn(entity, "its mesh has no triangles and is left out");
         }
-        if (world_.has<DeformedMesh>(entity)) {
+        const bool has_skin = world_.has<Skin>(entity);
+        const bool has_weights = world_.has<MorphWeights>(entity);
+        if (has_skin) warn(entity, "its skin is left out: its mesh will have its own shape");
+        if (has_weights) warn(entity, "its morph targets are left out: its mesh will have its own shape");
+        if (world_.has<DeformedMesh>(entity) && !has_skin && !has_weights) {
             warn(entity, "its deformation is left out: its mesh will have its own shape");
         }
     }
@@ -266,6 +279,7 @@ std::vector<std::string> export_gltf(const World& world, const std::filesystem::
         Draft draft(path);
         WorldWriter writer(world, choose_nodes(world, without), draft);
         writer.write_nodes();
+        writer.report_animations(without);
         writer.write_environment(without);
         warnings = std::move(draft.warnings);
         return draft.finish();

@@ -18,6 +18,8 @@
 #include "engine/import/gltf_accessors.hpp"
 #include "engine/import/gltf_compressed.hpp"
 #include "engine/import/gltf_constants.hpp"
+#include "engine/import/gltf_morphs.hpp"
+#include "engine/import/gltf_skins.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
 #include "engine/readable.hpp"
@@ -148,15 +150,34 @@ glm::vec3 face_normal(const std::vector<Vertex>& vertices, const Corners& corner
     return length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0F);
 }
 
-std::vector<Vertex> unshare(const std::vector<Vertex>& vertices, std::vector<Corners>& triangles) {
-    std::vector<Vertex> unshared;
-    for (Corners& corners : triangles) {
-        for (std::uint32_t& corner : corners) {
-            unshared.push_back(vertices[corner]);
-            corner = static_cast<std::uint32_t>(unshared.size() - 1);
+/// The items of the corners of all triangles, of a list with an item for each vertex.
+template <class T>
+void unshare(std::vector<T>& list, const std::vector<Corners>& triangles) {
+    if (list.empty()) return;
+    std::vector<T> unshared;
+    unshared.reserve(3 * triangles.size());
+    for (const Corners& corners : triangles) {
+        for (const std::uint32_t corner : corners) {
+            unshared.push_back(list[corner]);
         }
     }
-    return unshared;
+    list = std::move(unshared);
+}
+
+/// Gives each corner of the triangles a vertex of its own.
+void unshare_vertices(Primitive& primitive, std::vector<Corners>& triangles) {
+    unshare(primitive.vertices, triangles);
+    for (std::vector<Influences>& set : primitive.influences) {
+        unshare(set, triangles);
+    }
+    for (MorphTarget& target : primitive.targets) {
+        unshare(target.positions, triangles);
+    }
+    std::uint32_t next = 0;
+    for (Corners& corners : triangles) {
+        corners = {next, next + 1, next + 2};
+        next += 3;
+    }
 }
 
 /// Gives each vertex without a normal that of the first face that uses it, or +Z if no face does.
@@ -188,7 +209,6 @@ std::string missing_data(const Document& document, const Json& source) {
 }
 
 bool is_drawn(const Document& document, const Json& source, Omissions& omissions) {
-    if (!list_in(source, "targets").empty()) omissions.insert("morph targets are ignored");
     if (find_attribute(source, "COLOR_1")) {
         omissions.insert("vertex colours beyond the first set are ignored");
     }
@@ -224,7 +244,10 @@ void count_triangles(const Document& document, const Json& source, ImportBudget&
     const std::uint64_t triangles = triangle_count(order, mode_of(source));
     budget.add_triangles(triangles);
     budget.add_memory(order * sizeof(std::uint32_t) + triangles * sizeof(Corners));
-    if (!find_attribute(source, "NORMAL")) budget.add_memory(triangles * 3 * sizeof(Vertex));
+    if (!find_attribute(source, "NORMAL")) {
+        const std::uint64_t targets = list_in(source, "targets").size();
+        budget.add_memory(triangles * 3 * (sizeof(Vertex) + targets * 2 * sizeof(glm::vec3)));
+    }
 }
 
 /// Whether the file's tangents may be used: by glTF, those without normals are to be ignored. Tangents belong
@@ -239,13 +262,15 @@ void complete_tangents(Primitive& primitive, ImportBudget& budget) {
     const auto is_missing = [](const Vertex& vertex) { return vertex.tangent == glm::i16vec4(0); };
     if (std::ranges::none_of(primitive.vertices, is_missing)) return;
     // Each vertex may be split; sums and indices by vertex take about as much again.
-    budget.add_memory(primitive.vertices.size() * 3 * sizeof(Vertex));
+    const std::size_t vertex_size = sizeof(Vertex) + primitive.influences.size() * sizeof(Influences) +
+                                    primitive.targets.size() * 2 * sizeof(glm::vec3);
+    budget.add_memory(primitive.vertices.size() * 3 * vertex_size);
     derive_tangents(primitive);
 }
 
-/// Without indices if no triangle has an area.
+/// Without indices if no triangle has an area. Triangles that may get one when they move are kept.
 Primitive read_primitive(const Document& document, const Json& source, const ReadMaterial& material,
-                         ImportBudget& budget) {
+                         bool is_skinned, ImportBudget& budget) {
     const std::size_t vertex_count = element_count(document, *find_attribute(source, "POSITION"));
     count_triangles(document, source, budget);
     std::vector<std::uint32_t> order = read_order(document, source, vertex_count);
@@ -259,16 +284,24 @@ Primitive read_primitive(const Document& document, const Json& source, const Rea
     primitive.material = material.material;
     primitive.vertices = read_vertices(document, source, selection);
     const bool needs_tangents = material.material->normal_texture != nullptr;
-    if (needs_tangents && has_tangents(source, material)) {
+    const bool uses_tangents = needs_tangents && has_tangents(source, material);
+    if (uses_tangents) {
         read_attribute(document, source, "TANGENT", "tangents", selection, primitive.vertices, read_tangents,
                        set_tangent);
     }
+    if (is_skinned) primitive.influences = read_influences(document, source, selection, budget);
+    primitive.targets = read_targets(document, source, uses_tangents, selection, budget);
     std::vector<Corners> triangles = assemble(order, mode_of(source));
+    const bool is_rigid = primitive.influences.empty() && primitive.targets.empty();
     std::erase_if(triangles, [&](const Corners& corners) {
-        return face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
+        return is_rigid && face_normal(primitive.vertices, corners) == glm::vec3(0.0F);
     });
-    if (!find_attribute(source, "NORMAL")) primitive.vertices = unshare(primitive.vertices, triangles);
+    const bool is_flat = !find_attribute(source, "NORMAL");
+    if (is_flat) unshare_vertices(primitive, triangles);
     fill_normals(primitive.vertices, triangles);
+    for (MorphTarget& target : primitive.targets) {
+        if (is_flat) set_face_normal_offsets(primitive.vertices, triangles, target);
+    }
     primitive.indices.reserve(3 * triangles.size());
     for (const Corners& corners : triangles) {
         primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
@@ -281,15 +314,18 @@ Primitive read_primitive(const Document& document, const Json& source, const Rea
 }
 
 Mesh read_mesh(const Document& document, const Json& source, const std::vector<ReadMaterial>& materials,
-               Omissions& omissions, ImportBudget& budget) {
+               bool is_skinned, Omissions& omissions, ImportBudget& budget) {
     Mesh mesh;
+    const std::size_t targets = count_targets(source);
+    budget.add_memory(targets * sizeof(float));
+    mesh.morph_weights = read_morph_weights(source, targets, std::vector<float>(targets));
     mesh.name = text_in(source, "name");
     for (const Json& part : source.at("primitives").items()) {
         if (!is_drawn(document, part, omissions)) continue;
         const int index = index_in(part, "material");
         const ReadMaterial& material =
             index < 0 ? materials.back() : materials[static_cast<std::size_t>(index)];
-        Primitive primitive = read_primitive(document, part, material, budget);
+        Primitive primitive = read_primitive(document, part, material, is_skinned, budget);
         if (!primitive.indices.empty()) mesh.primitives.push_back(std::move(primitive));
     }
     return mesh;
@@ -298,6 +334,7 @@ Mesh read_mesh(const Document& document, const Json& source, const std::vector<R
 }  // namespace
 
 std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const std::vector<bool>& used,
+                                                     const std::vector<bool>& skinned,
                                                      const std::vector<ReadMaterial>& materials,
                                                      ImportBudget& budget, const Progress& progress) {
     Omissions omissions;
@@ -308,7 +345,7 @@ std::vector<std::shared_ptr<const Mesh>> read_meshes(Document& document, const s
         Mesh mesh = naming(fmt::format("mesh {}", i), [&] {
             const Json& source = document.all("meshes")[i];
             decode_primitives(document, source, budget);
-            return read_mesh(document, source, materials, omissions, budget);
+            return read_mesh(document, source, materials, skinned[i], omissions, budget);
         });
         meshes[i] = mesh.primitives.empty() ? nullptr : std::make_shared<const Mesh>(std::move(mesh));
     }

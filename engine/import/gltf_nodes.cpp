@@ -161,7 +161,9 @@ std::string name_of(const Document& document, int index) {
 
 /// Adds the node's mesh, camera and light to its (innermost) entity.
 void equip(StagedEntity& entity, const Document& document, const Json& node) {
+    entity.is_node = true;
     entity.mesh = index_in(node, "mesh");
+    entity.skin = index_in(node, "skin");
     if (const int camera = index_in(node, "camera"); camera >= 0) {
         entity.camera = read_camera(document.at("cameras", camera), camera);
     }
@@ -186,6 +188,7 @@ std::size_t add_instances(std::vector<StagedEntity>& entities, const Document& d
         StagedEntity& instance = entities.emplace_back();
         instance.parent = parent;
         instance.name = whole.name;
+        instance.node = whole.node;
         instance.transform = transform;
         instance.mesh = whole.mesh;
     }
@@ -229,6 +232,7 @@ std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& bud
             StagedEntity& entity = entities.emplace_back();
             entity.parent = parent;
             entity.name = name_of(document, node);
+            entity.node = node;
             entity.transform = transform;
             parent = entities.size() - 1;
         }

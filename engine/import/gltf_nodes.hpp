@@ -16,7 +16,11 @@ struct StagedEntity {
     std::optional<std::size_t> parent;
     std::string name;
     Transform transform;  ///< `parent` is null
-    int mesh = -1;        ///< index into the document's meshes; -1 for none
+    int node = -1;        ///< that it comes from, by index
+    bool is_node =
+        false;      ///< its local space is the node's: it is no instance and not the upper of two entities
+    int mesh = -1;  ///< index into the document's meshes; -1 for none
+    int skin = -1;  ///< index into the document's skins; -1 for none
     std::optional<AnyLight> light;
     std::optional<Camera> camera;
 };

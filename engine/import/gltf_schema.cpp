@@ -118,6 +118,12 @@ Check has(std::initializer_list<const char*> members) {
     };
 }
 
+Check not_empty(const char* plural) {
+    return [plural](const Json& value, const Json&) {
+        return value.empty() ? fmt::format("has no {}", plural) : Problem{};
+    };
+}
+
 /// Checks for a member that is named like the value of "type", if that is one of `kinds`.
 Check has_its_kind(std::vector<std::string_view> kinds) {
     return [kinds = std::move(kinds)](const Json& value, const Json&) -> Problem {
@@ -184,6 +190,7 @@ std::vector<Rule> rules() {
     const Check node = index_into("nodes", "nodes");
     const Check sampler = index_into("samplers", "samplers");
     const Check scene = index_into("scenes", "scenes");
+    const Check skin = index_into("skins", "skins");
     const Check texture = index_into("textures", "textures");
     const Check size = whole(0, any_size);
     const Check index = whole(0, std::numeric_limits<int>::max());
@@ -262,6 +269,8 @@ std::vector<Rule> rules() {
         {"meshes.[].primitives.[].indices", accessor},
         {"meshes.[].primitives.[].material", material},
         {"meshes.[].primitives.[].mode", whole(0, 6)},
+        {"meshes.[].primitives.[].targets.[].{}", accessor},
+        {"meshes.[].weights.[]", number(any)},
 
         {draco, has({"bufferView", "attributes"})},
         {draco + ".bufferView", buffer_view},
@@ -295,6 +304,8 @@ std::vector<Rule> rules() {
 
         {"nodes.[].name", text()},
         {"nodes.[].mesh", mesh},
+        {"nodes.[].skin", skin},
+        {"nodes.[].weights.[]", number(any)},
         {"nodes.[].camera", camera},
         {"nodes.[].children.[]", node},
         {"nodes.[].translation", numbers(3, any)},
@@ -305,6 +316,21 @@ std::vector<Rule> rules() {
         {"nodes.[].extensions.KHR_lights_punctual.light", light},
         {"nodes.[].extensions.EXT_mesh_gpu_instancing", has({"attributes"})},
         {"nodes.[].extensions.EXT_mesh_gpu_instancing.attributes.{}", accessor},
+        {"skins.[]", has({"joints"})},
+        {"skins.[].joints", not_empty("joints")},
+        {"skins.[].joints.[]", node},
+        {"skins.[].inverseBindMatrices", accessor},
+        {"animations.[]", has({"channels", "samplers"})},
+        {"animations.[].name", text()},
+        {"animations.[].samplers.[]", has({"input", "output"})},
+        {"animations.[].samplers.[].input", accessor},
+        {"animations.[].samplers.[].output", accessor},
+        {"animations.[].samplers.[].interpolation", one_of({"STEP", "LINEAR", "CUBICSPLINE"})},
+        {"animations.[].channels.[]", has({"sampler", "target"})},
+        {"animations.[].channels.[].sampler", index},
+        {"animations.[].channels.[].target", has({"path"})},
+        {"animations.[].channels.[].target.node", node},
+        {"animations.[].channels.[].target.path", text()},
         {"scenes.[].nodes.[]", node},
         {"scenes.[].extensions.CANDELA_environment.radiance", numbers(3, not_negative)},
         {"scenes.[].extensions.CANDELA_environment.bufferView", buffer_view},

@@ -21,6 +21,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <candela/scene/animation.hpp>
 #include <candela/scene/components.hpp>
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
@@ -602,6 +603,13 @@ TEST_SUITE("glTF export") {
         deformed.set(first_entity, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>()});
         CHECK(warnings(deformed) ==
               Lines{"entity \"triangle\": its deformation is left out: its mesh will have its own shape"});
+        deformed.set(first_entity, Skin{});
+        deformed.set(first_entity, MorphWeights{});
+        deformed.set(first_entity, AnimationPlayer{});
+        CHECK(warnings(deformed) ==
+              Lines{"entity \"triangle\": its skin is left out: its mesh will have its own shape",
+                    "entity \"triangle\": its morph targets are left out: its mesh will have its own shape",
+                    "entity \"triangle\": its animations are left out"});
 
         World skies;
         for (const float radiance : {0.0F, 1.0F, 2.0F}) {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/engine/malformed_gltf.hpp"
+#include "tests/engine/moving_gltf.hpp"
 #include "tests/seed.hpp"
 
 using namespace candela;
@@ -76,5 +77,9 @@ TEST_SUITE("random") {
     }
     TEST_CASE("mutated glTF: a scene with all features, as binary") {
         check_edited(complete_scene().glb(), test_seed(3), 3000);
+    }
+    TEST_CASE("mutated glTF: a figure that moves, as text and binary") {
+        check_edited(moving_scene().gltf(), test_seed(73), 1500);
+        check_edited(moving_scene().glb(), test_seed(74), 3000);
     }
 }

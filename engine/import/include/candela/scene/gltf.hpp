@@ -66,6 +66,14 @@ struct ImportOptions {
 /// Tangents that a normal texture needs and the file lacks are derived, as are all of a primitive whose
 /// texture coordinates are transformed.
 ///
+/// What moves (see animation.hpp): nodes with a mesh and a skin get a Skin, and, if the mesh has morph
+/// targets, MorphWeights. They also get a DeformedMesh, the shape that the nodes of the file give them, so
+/// that a host which never moves them shows them as they are. Vertices without weights follow their first
+/// joint; offsets of tangents are read with the file's tangents, and of a mesh without normals, each target
+/// gets those of its faces. If animations move something of the scene, the last entity but that of an
+/// environment, called "animations", has an AnimationPlayer with all of them, which plays the first from its
+/// start, again and again, when the host calls advance_animations of animate.hpp.
+///
 /// Supported extensions:
 /// - KHR_lights_punctual
 /// - KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_specular without its textures
@@ -83,10 +91,12 @@ struct ImportOptions {
 /// - CANDELA_light of a light, {"castsShadow": false}
 ///
 /// Any other extension is a warning, also if the file requires it; primitives whose positions or indices it
-/// holds are skipped. Also left out with a warning: points and lines, skins, animations, morph targets,
-/// further sets of texture coordinates and colours. Triangles without area are dropped. A node with a sheared
-/// matrix, which a Transform cannot represent, becomes two entities, one the parent of the other (see
-/// decompose).
+/// holds are skipped. Also left out with a warning: points and lines, further sets of texture coordinates and
+/// colours, skins with joints outside of the scene or of instances, and what animates no node of the scene, a
+/// node with a matrix, or another value than a translation, rotation, scale or weight. A figure that cannot
+/// be deformed keeps the shape of its mesh, with a warning. Triangles without area are dropped, except of
+/// meshes that change their shape. A node with a sheared matrix, which a Transform cannot represent, becomes
+/// two entities, one the parent of the other (see decompose); a joint is the lower one.
 ///
 /// An image that is missing, damaged or of another kind is one warning. A checker of magenta and black takes
 /// its place in base colours, black in emission; other textures are left out. It is still an error if its

@@ -19,12 +19,13 @@ namespace candela {
 ///
 /// Entities with a Transform, a mesh, a light or a camera become nodes, in the order of the entities: roots,
 /// and the children of each node. Entities that are listed in `without`, and all below them, are left out.
-/// Of the components, only those of <candela/scene/components.hpp> are kept. Two are written as extensions
-/// of Candela's own: CANDELA_environment, and CANDELA_light, {"castsShadow": false}, of a light.
+/// Of the components, only those of <candela/scene/components.hpp> and lights are kept. Two are written as
+/// extensions of Candela's own: CANDELA_environment, and CANDELA_light, {"castsShadow": false}, of a light.
 ///
 /// What glTF cannot hold comes back differently:
-/// - missing: custom projections of cameras, deformations (DeformedMesh), environments after the first. Each
-///   has a line in the result. So do meshes without triangles.
+/// - missing: custom projections of cameras, deformations (DeformedMesh), skins, morph targets and their
+///   weights, animations, environments after the first. Each has a line in the result. So do meshes without
+///   triangles.
 /// - equal in effect: colours of lights above 1 (the intensity takes over the excess), ranges below
 ///   1.2e-38 m, missing transforms and names, and what a component does not use, such as the field of view
 ///   of an orthographic camera. The import drops triangles without area.

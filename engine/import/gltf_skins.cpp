@@ -1,0 +1,81 @@
+#include "engine/import/gltf_skins.hpp"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <candela/scene/scene_error.hpp>
+#include "engine/import/naming.hpp"
+
+namespace candela::gltf {
+
+namespace {
+
+ReadSkin read_skin(const Document& document, const Json& source, ImportBudget& budget) {
+    ReadSkin skin;
+    for (const Json& joint : source.at("joints").items()) skin.joints.push_back(joint.whole<int>());
+    const int matrices = index_in(source, "inverseBindMatrices");
+    if (matrices < 0) return skin;
+    const std::size_t count = element_count(document, matrices);
+    if (count < skin.joints.size()) {
+        throw SceneError(
+            fmt::format("it has {} joints, but {} inverse bind matrices", skin.joints.size(), count));
+    }
+    budget.add_memory(skin.joints.size() * sizeof(glm::mat4));
+    skin.inverse_bind_matrices = std::make_shared<const std::vector<glm::mat4>>(
+        read_matrices(document, matrices, Selection(skin.joints.size())));
+    return skin;
+}
+
+/// The accessor of "JOINTS_0" and the like; -1 for none.
+int accessor_of(const Json& primitive, const char* kind, std::size_t set) {
+    return index_in(primitive.at("attributes"), fmt::format("{}_{}", kind, set));
+}
+
+void check_count(const Document& document, const Json& primitive, int accessor, const char* plural) {
+    const std::size_t positions = element_count(document, index_in(primitive, "attributes/POSITION"));
+    const std::size_t count = element_count(document, accessor);
+    if (count != positions) {
+        throw SceneError(fmt::format("it has {} positions, but {} {}", positions, count, plural));
+    }
+}
+
+}  // namespace
+
+std::vector<std::optional<ReadSkin>> read_skins(const Document& document, const std::vector<bool>& used,
+                                                ImportBudget& budget) {
+    std::vector<std::optional<ReadSkin>> skins(used.size());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        skins[i] = naming(fmt::format("skin {}", i),
+                          [&] { return read_skin(document, document.all("skins")[i], budget); });
+    }
+    return skins;
+}
+
+std::vector<std::vector<Influences>> read_influences(const Document& document, const Json& primitive,
+                                                     const Selection& selection, ImportBudget& budget) {
+    std::vector<std::vector<Influences>> sets;
+    while (true) {
+        const int joints = accessor_of(primitive, "JOINTS", sets.size());
+        const int weights = accessor_of(primitive, "WEIGHTS", sets.size());
+        if (joints < 0 && weights < 0) return sets;
+        if (joints < 0 || weights < 0) {
+            throw SceneError(fmt::format("it has only one of JOINTS_{0} and WEIGHTS_{0}", sets.size()));
+        }
+        check_count(document, primitive, joints, "sets of joints");
+        check_count(document, primitive, weights, "sets of weights");
+        budget.add_memory(selection.count() *
+                          (sizeof(Influences) + sizeof(glm::u16vec4) + sizeof(glm::vec4)));
+        const std::vector<glm::u16vec4> read_of_joints = read_joints(document, joints, selection);
+        const std::vector<glm::vec4> read_of_weights = read_weights(document, weights, selection);
+        std::vector<Influences>& set = sets.emplace_back();
+        set.reserve(selection.count());
+        for (std::size_t i = 0; i < selection.count(); ++i) {
+            set.push_back({read_of_joints[i], read_of_weights[i]});
+        }
+    }
+}
+
+}  // namespace candela::gltf
