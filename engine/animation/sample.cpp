@@ -93,9 +93,4 @@ void sample(const AnimationSampler& sampler, const KeyPosition& at, bool is_rota
     if (is_rotation) normalise(value);
 }
 
-std::size_t values_needed(const AnimationSampler& sampler, std::size_t components) {
-    const std::size_t parts = sampler.interpolation == Interpolation::cubic_spline ? 3 : 1;
-    return sampler.times->size() * parts * components;
-}
-
 }  // namespace candela

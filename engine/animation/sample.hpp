@@ -23,6 +23,9 @@ struct KeyPosition {
 void sample(const AnimationSampler& sampler, const KeyPosition& at, bool is_rotation, std::span<float> value);
 
 /// The numbers that a sampler with so many components needs.
-[[nodiscard]] std::size_t values_needed(const AnimationSampler& sampler, std::size_t components);
+[[nodiscard]] inline std::size_t values_needed(const AnimationSampler& sampler, std::size_t components) {
+    const std::size_t parts = sampler.interpolation == Interpolation::cubic_spline ? 3 : 1;
+    return sampler.times->size() * parts * components;
+}
 
 }  // namespace candela

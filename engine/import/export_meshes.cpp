@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <candela/scene/tangents.hpp>
+#include "engine/import/export_motion.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/naming.hpp"
 #include "engine/import/unit_length.hpp"
@@ -135,14 +136,21 @@ std::optional<std::size_t> MeshWriter::add(const Mesh& mesh) {
     }
     if (primitives.empty()) return std::nullopt;
     Json json = {{"primitives", std::move(primitives)}};
+    if (const std::size_t targets = count_targets(mesh); targets > 0) {
+        json["weights"] = describe_weights(mesh.morph_weights, targets);
+    }
     if (!mesh.name.empty()) json["name"] = to_json(mesh.name);
     return draft_.add("meshes", std::move(json));
 }
 
 Json MeshWriter::describe(const Primitive& primitive) {
-    return {{"attributes", add_vertices(primitive.vertices, draft_)},
-            {"indices", add_indices(primitive.indices, draft_)},
-            {"material", materials_.index_of(primitive.material)}};
+    Json attributes = add_vertices(primitive.vertices, draft_);
+    add_influences(primitive, draft_, attributes);
+    Json json = {{"attributes", std::move(attributes)},
+                 {"indices", add_indices(primitive.indices, draft_)},
+                 {"material", materials_.index_of(primitive.material)}};
+    if (!primitive.targets.empty()) json["targets"] = describe_targets(primitive, draft_);
+    return json;
 }
 
 }  // namespace candela::gltf

@@ -18,6 +18,7 @@
 #include <candela/scene/hierarchy.hpp>
 #include "engine/import/export_draft.hpp"
 #include "engine/import/export_meshes.hpp"
+#include "engine/import/export_motion.hpp"
 #include "engine/import/exr.hpp"
 #include "engine/import/gltf_constants.hpp"
 #include "engine/import/gltf_lights.hpp"
@@ -62,6 +63,9 @@ std::set<Entity> find_nodes(const World& world) {
         if (!world.has<Environment>(entity)) {  // which ignores its transform
             entities.insert(entity);
         }
+    }
+    for (const Entity entity : gltf::moving_entities(world)) {
+        entities.insert(entity);
     }
     std::vector<Entity> ahead(entities.begin(), entities.end());
     while (!ahead.empty()) {
@@ -122,7 +126,11 @@ Json describe_camera(const Camera& camera) {
 class WorldWriter {
  public:
     WorldWriter(const World& world, Nodes nodes, Draft& draft)
-        : world_(world), nodes_(std::move(nodes)), draft_(draft), meshes_(draft) {}
+        : world_(world),
+          nodes_(std::move(nodes)),
+          draft_(draft),
+          meshes_(draft),
+          motion_(world, nodes_, draft) {}
 
     void write_nodes() {
         for (const Entity entity : nodes_) {
@@ -138,12 +146,19 @@ class WorldWriter {
         draft_.document["scene"] = 0;
     }
 
-    /// Tells what is left out of entities that need be no nodes.
-    void report_animations(std::span<const Entity> without) {
+    void write_animations(std::span<const Entity> without) {
+        std::vector<Entity> players;
         for (const auto& [entity, player] : world_.view<AnimationPlayer>()) {
-            if (std::ranges::find(without, entity) == without.end())
-                warn(entity, "its animations are left out");
+            if (std::ranges::find(without, entity) == without.end()) players.push_back(entity);
         }
+        std::ranges::sort(players);
+        for (const Entity entity : players) {
+            const bool is_complete = gltf::naming(describe(world_, entity), [&] {
+                return motion_.add_clips(world_.get<AnimationPlayer>(entity));
+            });
+            if (!is_complete) warn(entity, "its animations of what is no node are left out");
+        }
+        if (players.size() > 1) warn(players[1], "its animations become those of the first player");
     }
 
     void write_environment(std::span<const Entity> without) {
@@ -206,15 +221,26 @@ class WorldWriter {
         if (!instance.mesh) throw SceneError("it has no mesh");
         if (const std::optional<std::size_t> index = meshes_.index_of(instance.mesh)) {
             node["mesh"] = *index;
+            add_motion(entity, *instance.mesh, node);
         } else {
             warn(entity, "its mesh has no triangles and is left out");
         }
-        const bool has_skin = world_.has<Skin>(entity);
-        const bool has_weights = world_.has<MorphWeights>(entity);
-        if (has_skin) warn(entity, "its skin is left out: its mesh will have its own shape");
-        if (has_weights) warn(entity, "its morph targets are left out: its mesh will have its own shape");
-        if (world_.has<DeformedMesh>(entity) && !has_skin && !has_weights) {
+        const bool is_figure = world_.has<Skin>(entity) || world_.has<MorphWeights>(entity);
+        if (world_.has<DeformedMesh>(entity) && !is_figure) {
             warn(entity, "its deformation is left out: its mesh will have its own shape");
+        }
+    }
+
+    void add_motion(Entity entity, const Mesh& mesh, Json& node) {
+        const std::size_t targets = gltf::count_targets(mesh);
+        const auto* const weights = world_.find<MorphWeights>(entity);
+        if (weights && targets > 0) node["weights"] = gltf::describe_weights(weights->values, targets);
+        const auto* const skin = world_.find<Skin>(entity);
+        if (!skin) return;
+        if (const std::optional<std::size_t> index = motion_.index_of(*skin)) {
+            node["skin"] = *index;
+        } else {
+            warn(entity, "its skin is left out: not all of its joints are nodes");
         }
     }
 
@@ -268,6 +294,7 @@ class WorldWriter {
     Nodes nodes_;
     Draft& draft_;
     gltf::MeshWriter meshes_;
+    gltf::MotionWriter motion_;  // refers to the nodes
 };
 
 }  // namespace
@@ -279,7 +306,7 @@ std::vector<std::string> export_gltf(const World& world, const std::filesystem::
         Draft draft(path);
         WorldWriter writer(world, choose_nodes(world, without), draft);
         writer.write_nodes();
-        writer.report_animations(without);
+        writer.write_animations(without);
         writer.write_environment(without);
         warnings = std::move(draft.warnings);
         return draft.finish();

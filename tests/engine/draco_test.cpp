@@ -6,12 +6,15 @@
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include <candela/scene/deformed_mesh.hpp>
 #include "tests/engine/grid_gltf.hpp"
 #include "tests/engine/malformed_gltf.hpp"
 #include "tests/seed.hpp"
@@ -97,6 +100,69 @@ TEST_SUITE("Draco") {
             const Imported imported(compressed(grid, encode(grid, method, 0)));
             CHECK(imported.report.warnings.empty());
             CHECK(sorted_triangles(imported) == sorted_triangles(Imported(grid.file())));
+        }
+    }
+
+    TEST_CASE("joints and weights that Draco has encoded move the vertices") {
+        const Grid grid;
+        draco::TriangleSoupMeshBuilder builder;
+        const auto triangles = static_cast<std::uint32_t>(grid.indices.size() / 3);
+        builder.Start(static_cast<int>(triangles));
+        const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+        const int joints = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_UINT8);
+        const int weights = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_FLOAT32);
+        constexpr std::array<std::uint8_t, 4> both{0, 1, 0, 0};
+        for (std::uint32_t i = 0; i < triangles; ++i) {
+            const auto position = [&](std::size_t k) {
+                return &grid.positions[3U * grid.indices[3 * i + k]];
+            };
+            // The share of the second joint grows along x, from 0 to 1.
+            std::array<std::array<float, 4>, 3> shares{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const float share = 0.5F * (*position(k) + 1.0F);
+                shares[k] = {1.0F - share, share, 0.0F, 0.0F};
+            }
+            const draco::FaceIndex face(i);
+            builder.SetAttributeValuesForFace(positions, face, position(0), position(1), position(2));
+            builder.SetAttributeValuesForFace(joints, face, both.data(), both.data(), both.data());
+            builder.SetAttributeValuesForFace(weights, face, shares[0].data(), shares[1].data(),
+                                              shares[2].data());
+        }
+        const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+        draco::Encoder encoder;
+        draco::EncoderBuffer buffer;
+        REQUIRE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+        draco::DecoderBuffer again;
+        again.Init(buffer.data(), buffer.size());
+        const std::size_t vertices = draco::Decoder().DecodeMeshFromBuffer(&again).value()->num_points();
+
+        GltfBuilder file;
+        const auto accessor = [&](int component_type, const char* type, std::size_t count) {
+            return file.add("accessors",
+                            {{"componentType", component_type}, {"type", type}, {"count", count}});
+        };
+        Json primitive;
+        primitive["attributes"]["POSITION"] = accessor(5126, "VEC3", vertices);
+        primitive["attributes"]["JOINTS_0"] = accessor(5121, "VEC4", vertices);
+        primitive["attributes"]["WEIGHTS_0"] = accessor(5126, "VEC4", vertices);
+        primitive["indices"] = accessor(5123, "SCALAR", grid.indices.size());
+        primitive["extensions"]["KHR_draco_mesh_compression"] = {
+            {"bufferView", file.add_view(Bytes(buffer.data(), buffer.data() + buffer.size()))},
+            {"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}}};
+        file.document["meshes"][0]["primitives"].push_back(primitive);
+        file.document["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+        file.document["nodes"] = Json::parse(R"([{"mesh": 0, "skin": 0}, {}, {"translation": [0, 0, 2]}])");
+        file.document["scenes"][0]["nodes"] = {0, 1, 2};
+        file.document["skins"] = Json::parse(R"([{"joints": [1, 2]}])");
+        const Imported imported(file);
+        CHECK(imported.report.warnings.empty());
+        const std::vector<Vertex>& rest = imported.primitive().vertices;
+        const std::vector<Vertex>& moved =
+            imported.world.get<DeformedMesh>(imported.report.entities[0]).vertices->at(0);
+        CHECK(rest.size() == grid.indices.size());
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            // Roundings of numbers up to 3.
+            CHECK(std::abs(moved[i].position.z - rest[i].position.z - (rest[i].position.x + 1.0F)) <= 1e-6F);
         }
     }
 

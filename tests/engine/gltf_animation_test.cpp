@@ -16,6 +16,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/animate.hpp>
+#include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "tests/engine/malformed_gltf.hpp"
 #include "tests/engine/moving_gltf.hpp"
@@ -404,6 +405,49 @@ TEST_SUITE("glTF animations") {
         CHECK(warnings_for({{"node", 1}, {"path", "translation"}}, [](GltfBuilder& file) {
                   file.add("nodes", Json::object());
               }) == Warnings{"animations of nodes that are not in the scene are ignored"});
+    }
+}
+
+TEST_SUITE("glTF export") {
+    TEST_CASE("skins, morph targets and animations come back") {
+        Imported before(moving_scene());
+        const TemporaryDirectory folder;
+        for (const char* const name : {"a.glb", "a.gltf"}) {
+            CHECK(export_gltf(before.world, folder / name).empty());
+            World after;
+            const ImportReport report = import_gltf(folder / name, after);
+            CHECK(report.warnings.empty());
+            REQUIRE(report.entities.size() == before.report.entities.size());
+            const Entity figure = report.entities[0];
+            const Entity old = before.report.entities[0];
+            const Primitive& primitive = after.get<MeshInstance>(figure).mesh->primitives.at(0);
+            CHECK(primitive.influences == before.primitive().influences);
+            CHECK(primitive.targets == before.primitive().targets);
+            CHECK(after.get<MeshInstance>(figure).mesh->morph_weights == before.mesh().morph_weights);
+            CHECK(after.get<MorphWeights>(figure) == before.world.get<MorphWeights>(old));
+            CHECK(*after.get<Skin>(figure).inverse_bind_matrices ==
+                  *before.world.get<Skin>(old).inverse_bind_matrices);
+            CHECK(after.get<Skin>(figure).joints ==
+                  std::vector<Entity>{report.entities[1], report.entities[2]});
+            CHECK(after.get<DeformedMesh>(figure).vertices->at(0) == deformed(before));
+
+            const auto& player = after.get<AnimationPlayer>(report.entities.back());
+            const auto& old_player = before.world.get<AnimationPlayer>(player_of(before));
+            REQUIRE(player.clips.size() == 3);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const AnimationClip& clip = *player.clips[i];
+                const AnimationClip& old_clip = *old_player.clips[i];
+                CHECK(clip.name == old_clip.name);
+                CHECK(clip.duration == old_clip.duration);
+                REQUIRE(clip.channels.size() == 1);
+                CHECK(clip.channels[0].property == old_clip.channels[0].property);
+                CHECK(player.targets.at(clip.channels[0].target).index ==
+                      old_player.targets.at(old_clip.channels[0].target).index);
+                CHECK(clip.samplers[0].interpolation == old_clip.samplers[0].interpolation);
+                CHECK(*clip.samplers[0].times == *old_clip.samplers[0].times);
+                CHECK(*clip.samplers[0].values == *old_clip.samplers[0].values);
+            }
+        }
     }
 }
 

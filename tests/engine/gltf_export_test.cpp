@@ -603,13 +603,22 @@ TEST_SUITE("glTF export") {
         deformed.set(first_entity, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>()});
         CHECK(warnings(deformed) ==
               Lines{"entity \"triangle\": its deformation is left out: its mesh will have its own shape"});
-        deformed.set(first_entity, Skin{});
-        deformed.set(first_entity, MorphWeights{});
-        deformed.set(first_entity, AnimationPlayer{});
+        Skin skin;
+        skin.joints.push_back(deformed.create());
+        deformed.set(first_entity, skin);
+        CHECK(warnings(deformed).empty());
+        deformed.destroy(skin.joints[0]);
         CHECK(warnings(deformed) ==
-              Lines{"entity \"triangle\": its skin is left out: its mesh will have its own shape",
-                    "entity \"triangle\": its morph targets are left out: its mesh will have its own shape",
-                    "entity \"triangle\": its animations are left out"});
+              Lines{"entity \"triangle\": its skin is left out: not all of its joints are nodes"});
+        deformed.remove<Skin>(first_entity);
+        deformed.set(first_entity, MorphWeights{});
+        AnimationPlayer player;
+        AnimationClip clip;
+        clip.channels.push_back({0, AnimatedProperty::scale, 0});
+        player.clips.push_back(std::make_shared<const AnimationClip>(clip));
+        deformed.set(first_entity, player);
+        CHECK(warnings(deformed) ==
+              Lines{"entity \"triangle\": its animations of what is no node are left out"});
 
         World skies;
         for (const float radiance : {0.0F, 1.0F, 2.0F}) {
