@@ -243,6 +243,13 @@ void declare_scene(CommandLine& line, Options& options) {
         [&options](const std::string& text) { options.environment = parse_sky(text); });
     add_text(line, "--camera", options.camera, "NAME|INDEX",
              "default: the scene's first, else one that sees all of it");
+    add_text(line, "--clip", options.clip, "NAME|INDEX", "the animation to play; default: the scene's first");
+    line.add_value(
+        "--clip-time", "SECONDS",
+        "where the animation begins; each of --frames is 1/30 s later than the one before; default: 0",
+        [&options](const std::string& text) {
+            options.clip_time = number_of("--clip-time", text, 0.0, 1e6);
+        });
 }
 
 void declare_settings(CommandLine& line, Options& options) {

@@ -33,6 +33,9 @@ struct Options {
     std::optional<SkyChoice> environment;  ///< default: that of the scene
     std::optional<std::string> camera;     ///< name or index; default: the scene's first
 
+    std::optional<std::string> clip;  ///< name or index; default: the scene's first
+    double clip_time = 0.0;           ///< seconds, of the first frame in the clip
+
     std::map<std::string, std::string> settings;   ///< values by the flag that was given: "--vpls", "64"
     std::optional<std::filesystem::path> animate;  ///< a script file, or the name of a shipped script
     std::optional<std::filesystem::path> config;

@@ -18,6 +18,7 @@
 #include <candela/gl_error.hpp>
 #include <candela/headless_context.hpp>
 #include "sandbox/animation/animation_script.hpp"
+#include "sandbox/animation/clips.hpp"
 #include "sandbox/candela_private.hpp"
 #include "sandbox/command_line/choose_configuration.hpp"
 #include "sandbox/command_line/exit_status.hpp"
@@ -118,6 +119,8 @@ Scene open_scene(const Options& options, const TellProgress& tell) {
     if (options.environment) set_sky(scene, *options.environment);
     light_if_dark(scene);
     if (script) scene.animation.emplace(std::move(*script), scene.world);
+    if (options.clip) choose_clip(scene.world, *options.clip);
+    advance_animations(scene.world, options.clip_time);
     return scene;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "sandbox/animation/clips.hpp"
 #include "sandbox/command_line/messages.hpp"
 #include "sandbox/files/output_file.hpp"
 #include "sandbox/headless/update_budget.hpp"
@@ -54,10 +55,12 @@ void run_headless(const HeadlessContext& context, Scene& scene, Entity camera,
 
     RunReport run{
         context.description(), scene.path.string(), animation_of(scene), size, configuration, {}, {}};
+    ClipPlayback clips;
     UpdateBudget budget(options.update_budget.value_or(0.0));
     for (int frame = 0; frame < frames; ++frame) {
         apply(renderer, budget.limited(configuration));
         if (scene.animation) scene.animation->apply(scene.world, frame);
+        clips.advance(scene.world, frame == 0 ? 0.0 : seconds_a_frame);
         CaptureReport captured;
         const Picture picture = capture.render(scene.world, camera, options.samples, captured);
         budget.learn(captured.frame);

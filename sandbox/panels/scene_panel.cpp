@@ -291,6 +291,46 @@ void draw_playback(Playback& playback) {
     if (button("step", "period")) playback.step();
 }
 
+void draw_clip(World& world, Entity entity, ClipPlayback& clips) {
+    AnimationPlayer player = world.get<AnimationPlayer>(entity);
+    if (player.clip >= player.clips.size()) return;
+    ImGui::PushID(static_cast<int>(entity.index));
+    if (ImGui::BeginCombo("clip", clip_name(player, player.clip).c_str())) {
+        for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
+            ImGui::PushID(static_cast<int>(clip));
+            if (ImGui::Selectable(clip_name(player, clip).c_str(), clip == player.clip)) {
+                player.clip = clip;
+                player.time = 0.0;
+            }
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+    note_control("clip", "an animation of the scene's file");
+    auto speed = static_cast<float>(player.speed);
+    if (slide("speed", speed, -2.0F, 2.0F, "1: as in the file; negative: backwards")) {
+        player.speed = static_cast<double>(speed);
+    }
+    if (player != world.get<AnimationPlayer>(entity)) {
+        world.set(entity, player);
+        clips.seek(world, entity, player.time);
+    }
+    auto time = static_cast<float>(player.time);
+    if (slide("time, s", time, 0.0F, player.clips[player.clip]->duration, "in the clip")) {
+        clips.seek(world, entity, static_cast<double>(time));
+    }
+    ImGui::PopID();
+}
+
+void draw_clips(Document& document) {
+    World& world = document.scene.world;
+    for (const Entity player : animation_players(world)) draw_clip(world, player, document.clips);
+    if (button(document.clips.playing(world) ? "pause" : "play", "space")) document.clips.toggle(world);
+    ImGui::SameLine();
+    if (button("step", "period")) document.clips.step(world);
+    for (const std::string& fault : document.clips.faults()) text(fault);
+}
+
 void draw_light_counts(const LightReport& lights) {
     text(fmt::format("shadow maps: {}, no room for {}", lights.with_shadow, lights.without_shadow));
     if (lights.tile_max == 0) return;
@@ -336,7 +376,10 @@ std::vector<Action> draw_scene_panel(Document& document, const AppState& state, 
     ImGui::Separator();
     draw_studio(document);
     draw_sky(document);
-    if (document.playback && header("Animation", true)) draw_playback(*document.playback);
+    if (document.playback && header("Script", true)) draw_playback(*document.playback);
+    if (!document.playback && world.count<AnimationPlayer>() > 0 && header("Animation", true)) {
+        draw_clips(document);
+    }
     if (report != nullptr && header("Energy: lights in, surfaces out", false)) draw_account(*report);
     draw_warnings(state.warnings);
     return wanted;

@@ -11,6 +11,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/gltf.hpp>
 #include <candela/scene/gltf_export.hpp>
 #include <candela/scene/hierarchy.hpp>
@@ -114,8 +115,10 @@ Box box_of(const World& world, const std::vector<Entity>& entities) {
         const auto* instance = world.find<MeshInstance>(entity);
         if (instance == nullptr) continue;
         const glm::mat4 to_world = world_matrices(entity);
-        for (const Primitive& primitive : instance->mesh->primitives) {
-            for (const Vertex& vertex : primitive.vertices) {
+        const auto* deformed = world.find<DeformedMesh>(entity);
+        for (std::size_t i = 0; i < instance->mesh->primitives.size(); ++i) {
+            const Primitive& primitive = instance->mesh->primitives[i];
+            for (const Vertex& vertex : deformed ? (*deformed->vertices)[i] : primitive.vertices) {
                 box.grow(glm::vec3(to_world * glm::vec4(vertex.position, 1.0F)));
             }
         }

@@ -11,17 +11,27 @@ Document::Document(Scene opened, const std::optional<std::string>& camera, float
     if (scene.animation) playback.emplace(*scene.animation);
 }
 
-bool Document::animate() {
-    if (!playback) return false;
+bool Document::animate(double seconds) {
     const Entity camera = interaction.camera();
     const glm::mat4 before = world_matrix(scene.world, camera);
-    playback->advance(scene.world);
-    const bool jumped = playback->jumped();
+    if (playback) playback->advance(scene.world);
+    clips.advance(scene.world, seconds);
+    const bool jumped = playback && playback->jumped();
     const bool moved = world_matrix(scene.world, camera) != before;
     if (moved || (jumped && scene.animation->moves(scene.world, camera))) {
         interaction.look_from_camera(camera);
     }
     return jumped;
+}
+
+void Document::toggle_playback() {
+    if (playback) return playback->toggle();
+    clips.toggle(scene.world);
+}
+
+void Document::step_playback() {
+    if (playback) return playback->step();
+    clips.step(scene.world);
 }
 
 std::shared_ptr<const World> Document::copy_of_world() {

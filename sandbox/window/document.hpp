@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "sandbox/animation/clips.hpp"
 #include "sandbox/animation/drag_recorder.hpp"
 #include "sandbox/animation/playback.hpp"
 #include "sandbox/command_line/options.hpp"
@@ -16,7 +17,8 @@ namespace candela::sandbox {
 struct Document {
     Scene scene;
     Interaction interaction;
-    std::optional<Playback> playback;
+    std::optional<Playback> playback;      ///< of a script
+    ClipPlayback clips;                    ///< of the scene's file
     MaterialEdit material_edit;            ///< of a control that is held
     std::optional<DragRecorder> recorder;  ///< while the motion of an entity is recorded
 
@@ -25,11 +27,17 @@ struct Document {
     Document(const Document&) = delete;
     Document& operator=(const Document&) = delete;
 
-    [[nodiscard]] bool is_playing() const { return playback && playback->playing(); }
-    /// Shows the next frame of the animation. The viewer follows the camera that it started from if the
-    /// animation moves it, even if the user has moved away. Returns whether the scene has jumped to another
-    /// place of the animation.
-    bool animate();
+    [[nodiscard]] bool is_playing() const {
+        return (playback && playback->playing()) || clips.playing(scene.world);
+    }
+    /// Shows the next frame of the script, and the scene's clips `seconds` later. The viewer follows the
+    /// camera that it started from if that moves, even if the user has moved away. Returns whether the scene
+    /// has jumped to another place of the script.
+    bool animate(double seconds = 0.0);
+    /// Pauses or resumes the script, or, if there is none, the clips.
+    void toggle_playback();
+    /// Goes on by a frame and pauses.
+    void step_playback();
 
     /// A copy of the world for another thread; the same one while nothing changes.
     [[nodiscard]] std::shared_ptr<const World> copy_of_world();

@@ -22,7 +22,6 @@ void WindowSession::carry_out(const Command& command) {
     redraw_.changed();
     AppState& app = state_.app;
     if (change_view(command, state_.graph, app, state_.selection)) return;
-    std::optional<Playback>& playback = state_.document->playback;
     switch (command.action) {
         case Action::open_scene:
             return open_panel_.show(
@@ -40,11 +39,9 @@ void WindowSession::carry_out(const Command& command) {
         case Action::cancel:
             return close_what_is_open();
         case Action::play_pause:
-            if (playback) playback->toggle();
-            return;
+            return state_.document->toggle_playback();
         case Action::step_frame:
-            if (playback) playback->step();
-            return;
+            return state_.document->step_playback();
         case Action::quit:
             return window_.close();
         default:

@@ -70,6 +70,7 @@ void WindowSession::take_loaded_scene() {
         return report_errors({error.what()});
     }
     cut_ = true;
+    last_animated_ = Clock::now();
     choose_exposure();
     if (!first) {
         state_.app.errors.clear();

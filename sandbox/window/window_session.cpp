@@ -73,7 +73,7 @@ void WindowSession::step() {
     for (const InputEvent& event : events) take(event);
     if (state_.document) {
         move();
-        if (!state_.shown || state_.is_answered()) cut_ |= state_.document->animate();
+        if (!state_.shown || state_.is_answered()) animate();
         follow_reference();
         submit();
         if (options_.frames) show(thread_->wait_for(state_.submitted));
@@ -107,6 +107,13 @@ void WindowSession::move() {
     if (document.recorder) {
         document.recorder->record(document.scene.world, Seconds(now.time_since_epoch()).count());
     }
+}
+
+/// Shows what moves by itself at the present time.
+void WindowSession::animate() {
+    const Clock::time_point now = Clock::now();
+    const double passed = Seconds(now - std::exchange(last_animated_, now)).count();
+    cut_ |= state_.document->animate(options_.frames ? seconds_a_frame : passed);
 }
 
 void WindowSession::follow_reference() {

@@ -69,6 +69,7 @@ class WindowSession {
     // The loop.
     void step();
     void move();
+    void animate();
     void follow_reference();
     void measure_error();
     void submit();
@@ -139,6 +140,7 @@ class WindowSession {
     int frame_ = 0;
     Redraw redraw_;
     Clock::time_point last_step_ = Clock::now();
+    Clock::time_point last_animated_ = Clock::now();
 };
 
 }  // namespace candela::sandbox

@@ -1,0 +1,125 @@
+#include "sandbox/animation/clips.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <candela/scene/scene_error.hpp>
+
+namespace candela::sandbox {
+
+namespace {
+
+std::optional<std::size_t> find_clip(const AnimationPlayer& player, const std::string& wanted) {
+    for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
+        if (player.clips[clip]->name == wanted) return clip;
+    }
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+    const bool whole = error == std::errc() && end == wanted.data() + wanted.size();
+    return whole && index < player.clips.size() ? std::optional(index) : std::nullopt;
+}
+
+std::string list_clips(const World& world) {
+    std::vector<std::string> names;
+    for (const Entity entity : animation_players(world)) {
+        const auto& player = world.get<AnimationPlayer>(entity);
+        for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
+            names.push_back(fmt::format("{} '{}'", clip, clip_name(player, clip)));
+        }
+    }
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+double duration_of(const AnimationPlayer& player) {
+    if (player.clip >= player.clips.size()) return 0.0;
+    return static_cast<double>(player.clips[player.clip]->duration);
+}
+
+void resume(AnimationPlayer& player) {
+    player.playing = true;
+    if (!player.looping && player.time >= duration_of(player)) player.time = 0.0;
+}
+
+}  // namespace
+
+std::vector<Entity> animation_players(const World& world) {
+    std::vector<Entity> players;
+    for (auto [entity, player] : world.view<AnimationPlayer>()) players.push_back(entity);
+    std::sort(players.begin(), players.end());
+    return players;
+}
+
+std::string clip_name(const AnimationPlayer& player, std::size_t clip) {
+    const std::string& name = player.clips[clip]->name;
+    return name.empty() ? fmt::format("clip {}", clip) : name;
+}
+
+void choose_clip(World& world, const std::string& wanted) {
+    bool found = false;
+    for (const Entity entity : animation_players(world)) {
+        const std::optional<std::size_t> clip = find_clip(world.get<AnimationPlayer>(entity), wanted);
+        if (!clip) continue;
+        world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) { player.clip = *clip; });
+        found = true;
+    }
+    if (!found) throw SceneError(fmt::format("no clip '{}'; the scene has {}", wanted, list_clips(world)));
+}
+
+bool ClipPlayback::playing(const World& world) const {
+    return std::ranges::any_of(animation_players(world), [&](Entity entity) {
+        const auto& player = world.get<AnimationPlayer>(entity);
+        return player.playing && player.speed != 0.0 && duration_of(player) > 0.0;
+    });
+}
+
+void ClipPlayback::toggle(World& world) {
+    const bool pauses = playing(world);
+    for (const Entity entity : animation_players(world)) {
+        world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) {
+            player.playing = false;
+            if (!pauses) resume(player);
+        });
+    }
+}
+
+void ClipPlayback::step(World& world) {
+    const std::vector<Entity> players = animation_players(world);
+    const auto set_playing = [&](bool on) {
+        for (const Entity entity : players) {
+            world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) { player.playing = on; });
+        }
+    };
+    set_playing(true);
+    advance(world, seconds_a_frame);
+    set_playing(false);
+}
+
+void ClipPlayback::seek(World& world, Entity player, double time) {
+    world.edit<AnimationPlayer>(player, [&](AnimationPlayer& edited) { edited.time = time; });
+    of_clips_ = apply_animation(world, player);
+    deform(world);
+}
+
+void ClipPlayback::advance(World& world, double seconds) {
+    if (playing(world)) of_clips_ = advance_animations(world, seconds);
+    deform(world);
+}
+
+AnimationFaults ClipPlayback::faults() const {
+    AnimationFaults all = of_clips_;
+    all.insert(all.end(), of_meshes_.begin(), of_meshes_.end());
+    return all;
+}
+
+void ClipPlayback::deform(World& world) {
+    if (deformed_ == world.revision()) return;
+    of_meshes_ = deformer_.update(world);
+    deformed_ = world.revision();
+}
+
+}  // namespace candela::sandbox
