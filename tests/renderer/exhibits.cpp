@@ -82,7 +82,10 @@ class Writer {
 
     /// From the space of the file's mesh to that of the tick.
     [[nodiscard]] glm::mat4 tick_from_mesh() const {
-        if (exhibit_.motion == Motion::skinned) return glm::mat4(1.0F);  // the node's place does not count
+        if (exhibit_.motion == Motion::skinned) {
+            // The node's own place does not count, but that of its parent, where the joints are.
+            return exhibit_.place == Place::below_another ? glm::mat4_cast(turned) : glm::mat4(1.0F);
+        }
         switch (exhibit_.place) {
             case Place::parts:
             case Place::matrix:
