@@ -111,6 +111,7 @@
 #define ATTRIBUTE_INSTANCE 3
 #define ATTRIBUTE_COLOUR 4
 #define ATTRIBUTE_TANGENT 5
+#define ATTRIBUTE_SECOND_UV 6
 
 #define TONE_CURVE_NONE 0u  // tone_curves.glsl
 #define TONE_CURVE_FILMIC 1u

@@ -46,6 +46,10 @@ struct Material {
 #define MATERIAL_BASE_COLOUR_WRAP_SHIFT 1u  // 2 bits for u, then 2 for v
 #define MATERIAL_EMISSIVE_WRAP_SHIFT 5u
 #define MATERIAL_NORMAL_WRAP_SHIFT 9u
+#define MATERIAL_SECOND_UV_EMISSIVE 0x2000u  // the image lies by the second texture coordinates: SecondUvUse
+#define MATERIAL_SECOND_UV_GLOSS 0x4000u
+#define MATERIAL_SECOND_UV_NORMAL 0x8000u
+#define MATERIAL_SECOND_UV_OCCLUSION 0x10000u
 #define MATERIAL_WRAP_BITS 2u
 #define MATERIAL_WRAP_MASK 3u
 
@@ -224,9 +228,9 @@ struct CellPoint {
     uint material;
     vec3 normal;    // unit
     float area;     // m²
-    vec2 uv;
+    vec2 uv;        // MATERIAL_SECOND_UV_EMISSIVE: the second
     uint surfel;    // index of the surfel whose cell it belongs to
-    uint colour;    // of the vertices, interpolated: rgb in sRGB, and alpha, 8 bits each
+    uint colour;    // of the vertices, interpolated, in that case × the base colour's texture: as TraceTriangle::colour_a
 };
 
 // Light that a cell point receives from the lights and from surfaces that emit light, and that it emits.
@@ -322,7 +326,7 @@ struct TraceTriangle {
     uint normal_a;  // of the vertex: octahedral, 16 bits each
     uint normal_b;
     uint normal_c;
-    uint pad0 DEFAULT(0u);
+    uint second DEFAULT(0u);  // the second texture coordinates are the uv of the triangle so many places behind; 0: none
 };
 
 #define TRIANGLE_MASKED 0x80000000u

@@ -110,6 +110,7 @@ std::size_t MaterialWriter::index_of(const std::shared_ptr<const Material>& mate
 Json MaterialWriter::describe(const Material& material) {
     check_base_colour(material.base_colour);
     Json json = {{"pbrMetallicRoughness", {{"baseColorFactor", to_json(material.base_colour)}}}};
+    const SecondUvUse& use = material.second_uvs;
     write_gloss(material, json, draft_);
     if (!material.name.empty()) json["name"] = to_json(material.name);
     if (material.base_colour_texture) {
@@ -117,17 +118,19 @@ Json MaterialWriter::describe(const Material& material) {
     }
     if (material.metal_roughness_texture) {
         json["pbrMetallicRoughness"]["metallicRoughnessTexture"] =
-            texture_info(material.metal_roughness_texture);
+            texture_info(material.metal_roughness_texture, use.metal_roughness);
     }
     if (emits(material)) write_emission(material.emissive, json, draft_);
-    if (material.emissive_texture) json["emissiveTexture"] = texture_info(material.emissive_texture);
+    if (material.emissive_texture) {
+        json["emissiveTexture"] = texture_info(material.emissive_texture, use.emissive);
+    }
     if (material.normal_texture) {
         json["normalTexture"] =
-            with_factor(texture_info(material.normal_texture), "scale", material.normal_scale);
+            with_factor(texture_info(material.normal_texture, use.normal), "scale", material.normal_scale);
     }
     if (material.occlusion_texture) {
-        json["occlusionTexture"] =
-            with_factor(texture_info(material.occlusion_texture), "strength", material.occlusion_strength);
+        json["occlusionTexture"] = with_factor(texture_info(material.occlusion_texture, use.occlusion),
+                                               "strength", material.occlusion_strength);
     }
     if (material.double_sided) json["doubleSided"] = true;
     if (material.alpha_mode != AlphaMode::opaque) json["alphaMode"] = name_of(material.alpha_mode);
@@ -137,10 +140,12 @@ Json MaterialWriter::describe(const Material& material) {
     return json;
 }
 
-Json MaterialWriter::texture_info(const std::shared_ptr<const Image>& image) {
+Json MaterialWriter::texture_info(const std::shared_ptr<const Image>& image, bool has_second_uvs) {
     auto found = textures_.find(image);
     if (found == textures_.end()) found = textures_.emplace(image, add_texture(*image)).first;
-    return {{"index", found->second}};
+    Json info = {{"index", found->second}};
+    if (has_second_uvs) info["texCoord"] = 1;
+    return info;
 }
 
 std::size_t MaterialWriter::add_texture(const Image& image) {

@@ -21,7 +21,7 @@ class MaterialWriter {
 
  private:
     [[nodiscard]] Json describe(const Material& material);
-    [[nodiscard]] Json texture_info(const std::shared_ptr<const Image>& image);
+    [[nodiscard]] Json texture_info(const std::shared_ptr<const Image>& image, bool has_second_uvs = false);
     std::size_t add_texture(const Image& image);
     std::size_t sampler_of(Wrap u, Wrap v);
 

@@ -100,6 +100,13 @@ Json add_vertices(const std::vector<Vertex>& vertices, Draft& draft) {
     return attributes;
 }
 
+std::size_t add_second_uvs(const std::vector<glm::vec2>& uvs, Draft& draft) {
+    const std::size_t view = draft.add_view(std::as_bytes(std::span(uvs)), {{"target", vertices_target}});
+    return draft.add(
+        "accessors",
+        {{"bufferView", view}, {"componentType", floating_point}, {"type", "VEC2"}, {"count", uvs.size()}});
+}
+
 std::size_t add_indices(const std::vector<std::uint32_t>& indices, Draft& draft) {
     const std::size_t view = draft.add_view(std::as_bytes(std::span(indices)), {{"target", indices_target}});
     return draft.add("accessors", {{"bufferView", view},
@@ -145,6 +152,9 @@ std::optional<std::size_t> MeshWriter::add(const Mesh& mesh) {
 
 Json MeshWriter::describe(const Primitive& primitive) {
     Json attributes = add_vertices(primitive.vertices, draft_);
+    if (!primitive.second_uvs.empty()) {
+        attributes["TEXCOORD_1"] = add_second_uvs(primitive.second_uvs, draft_);
+    }
     add_influences(primitive, draft_, attributes);
     Json json = {{"attributes", std::move(attributes)},
                  {"indices", add_indices(primitive.indices, draft_)},

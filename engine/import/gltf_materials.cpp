@@ -65,10 +65,9 @@ int image_of(const Json& texture) {
     return plain >= 0 ? plain : added_by(basisu_extension);
 }
 
-/// What KHR_texture_transform of a textureInfo does to (u, v, 1): scales, then rotates, then moves. `use` may
-/// be null.
-glm::mat3 transform_of(const Json* use) {
-    const Json* const transform = use ? use->find_path("extensions/KHR_texture_transform") : nullptr;
+/// What KHR_texture_transform of a textureInfo does to (u, v, 1): scales, then rotates, then moves.
+glm::mat3 transform_of(const Json& use) {
+    const Json* const transform = use.find_path("extensions/KHR_texture_transform");
     if (!transform) return glm::mat3(1.0F);
     const auto scale = vector_in(*transform, "scale", glm::vec2(1.0F));
     const auto offset = vector_in(*transform, "offset", glm::vec2(0.0F));
@@ -79,9 +78,10 @@ glm::mat3 transform_of(const Json* use) {
             glm::vec3(sine * scale.y, cosine * scale.y, 0.0F), glm::vec3(offset, 1.0F)};
 }
 
-/// The set of texture coordinates of a textureInfo.
-int coordinate_set_of(const Json& use) {
-    return number_in(use, "extensions/KHR_texture_transform/texCoord", number_in(use, "texCoord", 0));
+/// The texture coordinates of a textureInfo. The extension's set replaces that of the textureInfo.
+Coordinates coordinates_of(const Json& use) {
+    const int set = number_in(use, "texCoord", 0);
+    return {number_in(use, "extensions/KHR_texture_transform/texCoord", set), transform_of(use)};
 }
 
 /// Reads the images of materials. Textures with the same bytes and wrapping share one.
@@ -90,18 +90,13 @@ class ImageReader {
     ImageReader(Document& document, ImportFiles& files, ImportBudget& budget)
         : document_(document), files_(files), budget_(budget) {}
 
-    /// The image of a textureInfo; null, with a warning that starts with `label`, if it cannot be used. What
-    /// stands in for an image that cannot be read comes with one warning for that image. `use` may be null.
-    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, StandIn stand_in,
-                                      const std::string& label) {
+    /// The image of a textureInfo. What stands in for an image that cannot be read comes with one warning for
+    /// that image. `use` may be null.
+    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, StandIn stand_in) {
         if (!use) return nullptr;
         const int index = index_in(*use, "index");
         const Json& texture = document_.at("textures", index);
         const int image = image_of(texture);
-        if (const int set = coordinate_set_of(*use); set != 0) {
-            warn(fmt::format("{} uses coordinate set {}; only set 0 is read; ignored", label, set));
-            return nullptr;
-        }
         const Wraps wraps = wraps_of(document_, texture);
         const std::string called =
             image < 0 ? fmt::format("texture {}", index) : fmt::format("image {}", image);
@@ -198,44 +193,65 @@ void show_unlit(Material& material) {
     material.base_colour = glm::vec4(0.0F, 0.0F, 0.0F, material.base_colour.a);
 }
 
-/// Reads the textures of a material. All are transformed like the first one that is read, with a warning if
-/// another is to be transformed in another way.
+/// Reads the textures of a material, and what coordinates they have. There are at most two kinds of these:
+/// those of the first texture that is read, and the first others.
 class TextureReader {
  public:
     TextureReader(ImageReader& images, std::string label) : images_(images), label_(std::move(label)) {}
 
-    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, StandIn stand_in,
-                                      const char* name) {
-        std::shared_ptr<const Image> image =
-            images_.read(use, encoding, stand_in, fmt::format("{}: its {}", label_, name));
+    /// `is_second` becomes whether the texture has the second kind of coordinates.
+    std::shared_ptr<const Image> read(const Json* use, Encoding encoding, StandIn stand_in, const char* name,
+                                      bool& is_second) {
+        std::shared_ptr<const Image> image = images_.read(use, encoding, stand_in);
         if (!image) return nullptr;
-        const glm::mat3 transform = transform_of(use);
-        if (!first_) first_ = {name, transform};
-        if (first_->transform != transform) {
-            images_.warn(fmt::format("{}: its {} is transformed like its {}", label_, name, first_->name));
+        const Coordinates coordinates = coordinates_of(*use);
+        for (std::size_t i = 0; i < uses_.size(); ++i) {
+            if (uses_[i].coordinates != coordinates) continue;
+            is_second = i == 1;
+            return image;
         }
+        if (uses_.size() < 2) {
+            is_second = uses_.size() == 1;
+            uses_.push_back({name, coordinates});
+            return image;
+        }
+        is_second = nearer_to(coordinates) == 1;
+        images_.warn(
+            fmt::format("{}: its {} is placed like its {}: two kinds of texture coordinates are read", label_,
+                        name, uses_[is_second ? 1 : 0].name));
         return image;
     }
 
-    [[nodiscard]] glm::mat3 transform() const { return first_ ? first_->transform : glm::mat3(1.0F); }
+    [[nodiscard]] Coordinates first() const { return uses_.empty() ? Coordinates{} : uses_[0].coordinates; }
+    [[nodiscard]] std::optional<Coordinates> second() const {
+        return uses_.size() < 2 ? std::nullopt : std::optional(uses_[1].coordinates);
+    }
 
  private:
     struct Use {
         const char* name;
-        glm::mat3 transform;
+        Coordinates coordinates;
     };
+
+    /// The kind of the same set; of both or none, the second.
+    [[nodiscard]] std::size_t nearer_to(const Coordinates& coordinates) const {
+        const auto has_set = [&](std::size_t i) { return uses_[i].coordinates.set == coordinates.set; };
+        return has_set(0) && !has_set(1) ? 0 : 1;
+    }
+
     ImageReader& images_;
     std::string label_;
-    std::optional<Use> first_;
+    std::vector<Use> uses_;
 };
 
 /// Normal and occlusion textures.
 void read_bumps(const Json& source, TextureReader& textures, Material& material) {
-    material.normal_texture =
-        textures.read(source.find("normalTexture"), Encoding::linear, StandIn::nothing, "normal texture");
+    material.normal_texture = textures.read(source.find("normalTexture"), Encoding::linear, StandIn::nothing,
+                                            "normal texture", material.second_uvs.normal);
     material.normal_scale = number_in(source, "normalTexture/scale", 1.0F);
-    material.occlusion_texture = textures.read(source.find("occlusionTexture"), Encoding::linear,
-                                               StandIn::nothing, "occlusion texture");
+    material.occlusion_texture =
+        textures.read(source.find("occlusionTexture"), Encoding::linear, StandIn::nothing,
+                      "occlusion texture", material.second_uvs.occlusion);
     material.occlusion_strength = number_in(source, "occlusionTexture/strength", 1.0F);
 }
 
@@ -244,26 +260,29 @@ ReadMaterial read_material(const Json& source, const std::string& label, ImageRe
     TextureReader textures(images, label);
     material.name = text_in(source, "name");
     material.base_colour = vector_in(source, "pbrMetallicRoughness/baseColorFactor", glm::vec4(1.0F));
-    material.base_colour_texture = textures.read(source.find_path("pbrMetallicRoughness/baseColorTexture"),
-                                                 Encoding::srgb, StandIn::checker, "base colour texture");
+    bool is_second = false;  // never: this texture is the first
+    material.base_colour_texture =
+        textures.read(source.find_path("pbrMetallicRoughness/baseColorTexture"), Encoding::srgb,
+                      StandIn::checker, "base colour texture", is_second);
     read_emission(source, label, material);
     if (source.find_path("extensions/KHR_materials_unlit")) {
         show_unlit(material);
     } else {
         read_gloss(source, material);
         if (emits(material)) {
-            material.emissive_texture = textures.read(source.find("emissiveTexture"), Encoding::srgb,
-                                                      StandIn::black, "emissive texture");
+            material.emissive_texture =
+                textures.read(source.find("emissiveTexture"), Encoding::srgb, StandIn::black,
+                              "emissive texture", material.second_uvs.emissive);
         }
-        material.metal_roughness_texture =
-            textures.read(source.find_path("pbrMetallicRoughness/metallicRoughnessTexture"), Encoding::linear,
-                          StandIn::nothing, "metallic-roughness texture");
+        material.metal_roughness_texture = textures.read(
+            source.find_path("pbrMetallicRoughness/metallicRoughnessTexture"), Encoding::linear,
+            StandIn::nothing, "metallic-roughness texture", material.second_uvs.metal_roughness);
         read_bumps(source, textures, material);
     }
     material.double_sided = flag_in(source, "doubleSided", false);
     material.alpha_mode = to_alpha_mode(text_in(source, "alphaMode"));
     material.alpha_cutoff = number_in(source, "alphaCutoff", 0.5F);
-    return {std::make_shared<const Material>(std::move(material)), textures.transform()};
+    return {std::make_shared<const Material>(std::move(material)), textures.first(), textures.second()};
 }
 
 std::vector<bool> used_materials(const Document& document, const std::vector<bool>& used_meshes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -11,10 +12,19 @@
 
 namespace candela::gltf {
 
-/// A material, and what KHR_texture_transform does to the texture coordinates of surfaces that have it.
+/// Where texture coordinates of surfaces come from: a set of the file's, and what KHR_texture_transform does
+/// to it.
+struct Coordinates {
+    int set = 0;                ///< of TEXCOORD_0, TEXCOORD_1, ...
+    glm::mat3 transform{1.0F};  ///< of (u, v, 1)
+    bool operator==(const Coordinates&) const = default;
+};
+
+/// A material, and the texture coordinates of surfaces that have it.
 struct ReadMaterial {
     std::shared_ptr<const Material> material;
-    glm::mat3 uv_transform{1.0F};  ///< of (u, v, 1)
+    Coordinates uv{};                         ///< of Vertex::uv
+    std::optional<Coordinates> second_uvs{};  ///< of Primitive::second_uvs, if the material needs them
 };
 
 /// The document's materials in its order, followed by the default material (rough white metal, single-sided).

@@ -49,9 +49,10 @@ int indices_of(const Json& source) {
 
 /// Sets an attribute, if the primitive has it, of the selected vertices. It must have one element for each
 /// position.
-template <class Read, class Set>
-void read_attribute(const Document& document, const Json& source, const char* name, std::string_view plural,
-                    const Selection& selection, std::vector<Vertex>& vertices, Read read, Set set) {
+template <class Element, class Read, class Set>
+void read_attribute(const Document& document, const Json& source, std::string_view name,
+                    std::string_view plural, const Selection& selection, std::vector<Element>& vertices,
+                    Read read, Set set) {
     const auto accessor = find_attribute(source, name);
     if (!accessor) return;
     const std::size_t positions = element_count(document, *find_attribute(source, "POSITION"));
@@ -84,8 +85,32 @@ void set_tangent(Vertex& vertex, const glm::vec4& tangent) {
     vertex.tangent = packed_tangent(glm::vec4(glm::vec3(unit), tangent.w < 0.0F ? -1.0F : 1.0F));
 }
 
+/// Reads texture coordinates of this kind; zero where the file has none.
+template <class Element, class Set>
+void read_uvs(const Document& document, const Json& source, const Coordinates& coordinates,
+              const Selection& selection, std::vector<Element>& into, Set set) {
+    read_attribute(document, source, fmt::format("TEXCOORD_{}", coordinates.set), "texture coordinates",
+                   selection, into, read_texture_coordinates, set);
+}
+
+glm::vec2 transformed(const Coordinates& coordinates, glm::vec2 uv) {
+    return glm::vec2(coordinates.transform * glm::vec3(uv, 1.0F));
+}
+
+/// By selected vertex.
+std::vector<glm::vec2> read_second_uvs(const Document& document, const Json& source,
+                                       const Coordinates& coordinates, const Selection& selection,
+                                       ImportBudget& budget) {
+    budget.add_memory(selection.count() * sizeof(glm::vec2));
+    std::vector<glm::vec2> uvs(selection.count(), glm::vec2(0.0F));
+    read_uvs(document, source, coordinates, selection, uvs, [](glm::vec2& into, glm::vec2 uv) { into = uv; });
+    for (glm::vec2& uv : uvs) uv = transformed(coordinates, uv);
+    return uvs;
+}
+
 /// The selected vertices. A missing normal is zero until the faces provide one.
-std::vector<Vertex> read_vertices(const Document& document, const Json& source, const Selection& selection) {
+std::vector<Vertex> read_vertices(const Document& document, const Json& source,
+                                  const Coordinates& coordinates, const Selection& selection) {
     std::vector<Vertex> vertices;
     vertices.reserve(selection.count());
     for (const glm::vec3& position :
@@ -93,8 +118,8 @@ std::vector<Vertex> read_vertices(const Document& document, const Json& source, 
         vertices.push_back({position, glm::vec3(0.0F), glm::vec2(0.0F)});
     }
     read_attribute(document, source, "NORMAL", "normals", selection, vertices, read_normals, set_normal);
-    read_attribute(document, source, "TEXCOORD_0", "texture coordinates", selection, vertices,
-                   read_texture_coordinates, [](Vertex& vertex, glm::vec2 uv) { vertex.uv = uv; });
+    read_uvs(document, source, coordinates, selection, vertices,
+             [](Vertex& vertex, glm::vec2 uv) { vertex.uv = uv; });
     read_attribute(document, source, "COLOR_0", "colours", selection, vertices, read_colours,
                    [](Vertex& vertex, glm::u16vec4 colour) { vertex.colour = colour; });
     return vertices;
@@ -167,6 +192,7 @@ void unshare(std::vector<T>& list, const std::vector<Corners>& triangles) {
 /// Gives each corner of the triangles a vertex of its own.
 void unshare_vertices(Primitive& primitive, std::vector<Corners>& triangles) {
     unshare(primitive.vertices, triangles);
+    unshare(primitive.second_uvs, triangles);
     for (std::vector<Influences>& set : primitive.influences) {
         unshare(set, triangles);
     }
@@ -251,10 +277,11 @@ void count_triangles(const Document& document, const Json& source, ImportBudget&
 }
 
 /// Whether the file's tangents may be used: by glTF, those without normals are to be ignored. Tangents belong
-/// to the file's texture coordinates; a transform may turn these.
+/// to the file's coordinates of the normal texture; a transform may turn these.
 bool has_tangents(const Json& source, const ReadMaterial& material) {
+    const Coordinates& bumps = material.material->second_uvs.normal ? *material.second_uvs : material.uv;
     return find_attribute(source, "TANGENT") && find_attribute(source, "NORMAL") &&
-           material.uv_transform == glm::mat3(1.0F);
+           bumps.transform == glm::mat3(1.0F);
 }
 
 /// Derives what tangents a normal texture needs and the file does not have.
@@ -282,7 +309,10 @@ Primitive read_primitive(const Document& document, const Json& source, const Rea
 
     Primitive primitive;
     primitive.material = material.material;
-    primitive.vertices = read_vertices(document, source, selection);
+    primitive.vertices = read_vertices(document, source, material.uv, selection);
+    if (material.second_uvs) {
+        primitive.second_uvs = read_second_uvs(document, source, *material.second_uvs, selection, budget);
+    }
     const bool needs_tangents = material.material->normal_texture != nullptr;
     const bool uses_tangents = needs_tangents && has_tangents(source, material);
     if (uses_tangents) {
@@ -307,7 +337,7 @@ Primitive read_primitive(const Document& document, const Json& source, const Rea
         primitive.indices.insert(primitive.indices.end(), corners.begin(), corners.end());
     }
     for (Vertex& vertex : primitive.vertices) {
-        vertex.uv = glm::vec2(material.uv_transform * glm::vec3(vertex.uv, 1.0F));
+        vertex.uv = transformed(material.uv, vertex.uv);
     }
     if (needs_tangents && !triangles.empty()) complete_tangents(primitive, budget);
     return primitive;

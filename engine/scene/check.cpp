@@ -187,6 +187,19 @@ Fault fault_of_tangents(const std::vector<Vertex>& vertices, const Material& mat
                        without - vertices.begin());
 }
 
+Fault fault_of_second_uvs(const Primitive& primitive) {
+    const std::size_t count = primitive.second_uvs.size();
+    const bool may_be_empty = !uses_second_uvs(*primitive.material);
+    if (count != primitive.vertices.size() && !(count == 0 && may_be_empty)) {
+        return fmt::format("{} second texture coordinates for {} vertices", count, primitive.vertices.size());
+    }
+    const auto wrong =
+        std::ranges::find_if_not(primitive.second_uvs, [](glm::vec2 uv) { return is_finite(uv); });
+    if (wrong == primitive.second_uvs.end()) return {};
+    return fmt::format("vertex {}: its second texture coordinates are not finite",
+                       wrong - primitive.second_uvs.begin());
+}
+
 Fault fault_of(const Primitive& primitive, Strictness strictness) {
     if (!primitive.material) return "it has no material";
     if (const Fault fault = fault_of(*primitive.material)) {
@@ -200,6 +213,7 @@ Fault fault_of(const Primitive& primitive, Strictness strictness) {
         return fmt::format("index {}, but there are {} vertices", *largest, primitive.vertices.size());
     }
     if (Fault fault = fault_of(primitive.vertices, strictness)) return fault;
+    if (Fault fault = fault_of_second_uvs(primitive)) return fault;
     return fault_of_tangents(primitive.vertices, *primitive.material);
 }
 

@@ -30,22 +30,44 @@ using Places = std::array<std::uint32_t, 2>;
 constexpr std::uint32_t nowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// What makes two vertices one, as bits, which have an order whatever the numbers are.
-std::array<std::uint32_t, 8> key_of(const Vertex& vertex) {
+std::array<std::uint32_t, 8> key_of(const Vertex& vertex, glm::vec2 uv) {
     const auto bits = [](float number) {
         return std::bit_cast<std::uint32_t>(number + 0.0F);  // makes -0 a 0
     };
-    return {bits(vertex.position.x), bits(vertex.position.y), bits(vertex.position.z), bits(vertex.normal.x),
-            bits(vertex.normal.y),   bits(vertex.normal.z),   bits(vertex.uv.x),       bits(vertex.uv.y)};
+    return {bits(vertex.position.x),
+            bits(vertex.position.y),
+            bits(vertex.position.z),
+            bits(vertex.normal.x),
+            bits(vertex.normal.y),
+            bits(vertex.normal.z),
+            bits(uv.x),
+            bits(uv.y)};
+}
+
+/// Whether the normal texture lies by Primitive::second_uvs.
+bool bumps_by_second_uvs(const Primitive& primitive) {
+    return primitive.material && primitive.material->second_uvs.normal && !primitive.second_uvs.empty();
+}
+
+/// The coordinates of the normal texture at each vertex.
+std::vector<glm::vec2> uvs_of(const Primitive& primitive) {
+    if (bumps_by_second_uvs(primitive)) return primitive.second_uvs;
+    std::vector<glm::vec2> uvs;
+    uvs.reserve(primitive.vertices.size());
+    for (const Vertex& vertex : primitive.vertices) uvs.push_back(vertex.uv);
+    return uvs;
 }
 
 /// For each vertex, the number of the set of equal vertices that it belongs to.
-std::vector<std::uint32_t> sets_of_equals(const std::vector<Vertex>& vertices) {
+std::vector<std::uint32_t> sets_of_equals(const std::vector<Vertex>& vertices,
+                                          const std::vector<glm::vec2>& uvs) {
     std::vector<std::uint32_t> order(vertices.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::ranges::sort(order, {}, [&](std::uint32_t i) { return key_of(vertices[i]); });
+    const auto key = [&](std::uint32_t i) { return key_of(vertices[i], uvs[i]); };
+    std::ranges::sort(order, {}, key);
     std::vector<std::uint32_t> sets(vertices.size(), 0);
     for (std::size_t i = 1; i < order.size(); ++i) {
-        const bool is_new = key_of(vertices[order[i]]) != key_of(vertices[order[i - 1]]);
+        const bool is_new = key(order[i]) != key(order[i - 1]);
         sets[order[i]] = sets[order[i - 1]] + (is_new ? 1U : 0U);
     }
     return sets;
@@ -89,14 +111,15 @@ struct TriangleTangent {
 };
 
 /// Nullopt if the triangle has no area, in space or in the texture.
-std::optional<TriangleTangent> tangent_of(const std::array<const Vertex*, 3>& corners) {
+std::optional<TriangleTangent> tangent_of(const std::array<const Vertex*, 3>& corners,
+                                          const std::array<glm::dvec2, 3>& uv) {
     const auto& [a, b, c] = corners;
     const glm::dvec3 to_b = glm::dvec3(b->position) - glm::dvec3(a->position);
     const glm::dvec3 to_c = glm::dvec3(c->position) - glm::dvec3(a->position);
     // MikkTSpace's v grows upwards, glTF's downwards.
     const glm::dvec2 upwards(1.0, -1.0);
-    const glm::dvec2 uv_to_b = upwards * (glm::dvec2(b->uv) - glm::dvec2(a->uv));
-    const glm::dvec2 uv_to_c = upwards * (glm::dvec2(c->uv) - glm::dvec2(a->uv));
+    const glm::dvec2 uv_to_b = upwards * (uv[1] - uv[0]);
+    const glm::dvec2 uv_to_c = upwards * (uv[2] - uv[0]);
     const double area = uv_to_b.x * uv_to_c.y - uv_to_b.y * uv_to_c.x;
     if (area == 0.0 || glm::cross(to_b, to_c) == glm::dvec3(0.0)) return std::nullopt;
     const glm::dvec3 along = direction_of(uv_to_c.y * to_b - uv_to_b.y * to_c);
@@ -114,6 +137,7 @@ void repeat(std::vector<T>& list, std::size_t item) {
 /// Appends a copy of a vertex with all that belongs to it.
 void repeat_vertex(Primitive& primitive, std::size_t vertex) {
     repeat(primitive.vertices, vertex);
+    repeat(primitive.second_uvs, vertex);
     for (std::vector<Influences>& set : primitive.influences) repeat(set, vertex);
     for (MorphTarget& target : primitive.targets) {
         repeat(target.positions, vertex);
@@ -128,7 +152,8 @@ class TangentWriter {
         : primitive_(primitive),
           vertices_(primitive.vertices),
           indices_(primitive.indices),
-          sets_(sets_of_equals(vertices_)),
+          uvs_(uvs_of(primitive)),
+          sets_(sets_of_equals(vertices_, uvs_)),
           sums_(vertices_.size(), Sums{glm::dvec3(0.0), glm::dvec3(0.0)}),
           places_(vertices_.size(), Places{nowhere, nowhere}) {}
 
@@ -149,10 +174,12 @@ class TangentWriter {
     /// Adds the triangle's tangent to those of its corners. Returns its side, if it has one.
     std::optional<std::size_t> add_triangle(std::size_t first) {
         std::array<const Vertex*, 3> corners{};
+        std::array<glm::dvec2, 3> uv{};
         for (std::size_t i = 0; i < 3; ++i) {
             corners[i] = &vertices_[indices_[first + i]];
+            uv[i] = glm::dvec2(uvs_[indices_[first + i]]);
         }
-        const auto tangent = tangent_of(corners);
+        const auto tangent = tangent_of(corners, uv);
         if (!tangent) return std::nullopt;
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::dvec3 normal = direction_of(corners[i]->normal);
@@ -190,6 +217,7 @@ class TangentWriter {
     Primitive& primitive_;
     std::vector<Vertex>& vertices_;
     std::vector<std::uint32_t>& indices_;
+    std::vector<glm::vec2> uvs_;  // of the vertices that there were
     std::vector<std::uint32_t> sets_;
     std::vector<Sums> sums_;      // by set
     std::vector<Places> places_;  // by vertex

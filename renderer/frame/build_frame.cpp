@@ -16,7 +16,7 @@ namespace {
 
 LitScene add_scene(FrameGraph& graph, Gpu& gpu, const Configuration& configuration,
                    const FrameContents& contents, FrameHandles& frame) {
-    const SceneData scene = add_scene_upload(graph, gpu);
+    const SceneData scene = add_scene_upload(graph, gpu, contents.second_uvs);
     const Tracing tracing = add_bvh(graph, gpu, scene);
     frame.metrics = tracing.metrics;
     std::optional<Sky> sky;
@@ -267,12 +267,14 @@ WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t v
         const bool emitter = !of_frame.emitters && emits(*instance.mesh);
         const bool glossy = !of_frame.glossy && is_glossy(*instance.mesh);
         const bool bumpy = !of_frame.bumpy && is_bumpy(*instance.mesh);
-        if (!emitter && !glossy && !bumpy) continue;
+        const bool second_uvs = !of_frame.second_uvs && uses_second_uvs(*instance.mesh);
+        if (!emitter && !glossy && !bumpy && !second_uvs) continue;
         if (!is_placed(entity) || !check.accepts_at(world, entity, instance, world_matrices(entity)))
             continue;
         of_frame.emitters |= emitter;
         of_frame.glossy |= glossy;
         of_frame.bumpy |= bumpy;
+        of_frame.second_uvs |= second_uvs;
     }
     of_frame.shares_items = shares_items(reflecting_items(world, check), vpls);
     const Environment environment = accepted_environment(world, check);

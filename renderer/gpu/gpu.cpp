@@ -25,6 +25,12 @@ gl::VertexArray make_mesh_vertices(gl::Device& device) {
     return array;
 }
 
+gl::VertexArray make_mesh_vertices_with_second_uvs(gl::Device& device) {
+    gl::VertexArray array = make_mesh_vertices(device);
+    array.attribute(ATTRIBUTE_SECOND_UV, 2, GL_FLOAT, 0, 2);
+    return array;
+}
+
 gl::Texture make_white(gl::Device& device) {
     gl::Texture texture(device, "white", TextureDesc{});
     const std::array<std::byte, 4> texel{std::byte{255}, std::byte{255}, std::byte{255}, std::byte{255}};
@@ -70,6 +76,7 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererO
               [this](const gl::DebugMessage& message) { log_.warn("OpenGL: " + message.text); }),
       shaders_(std::move(shaders)),
       mesh_vertices_(make_mesh_vertices(device_)),
+      mesh_vertices_with_second_uvs_(make_mesh_vertices_with_second_uvs(device_)),
       no_vertices_(device_, "no vertices"),
       white_(make_white(device_)),
       nearest_(device_, "nearest", {.min_filter = GL_NEAREST, .mag_filter = GL_NEAREST}),

@@ -48,6 +48,8 @@ class Gpu {
 
     /// A vertex array for candela::Vertex (binding 0) and instance indices (binding 1): see draw_scene.hpp.
     [[nodiscard]] gl::VertexArray& mesh_vertices() { return mesh_vertices_; }
+    /// The same with second texture coordinates (binding 2).
+    [[nodiscard]] gl::VertexArray& mesh_vertices_with_second_uvs() { return mesh_vertices_with_second_uvs_; }
     /// A 1 × 1 white texture, for materials without an image.
     [[nodiscard]] const gl::Texture& white() const { return white_; }
     /// mirror_table as a texture, for scenes with glossy surfaces; made at the first request.
@@ -87,6 +89,7 @@ class Gpu {
     using ProgramKey = std::pair<std::vector<std::string>, std::vector<std::string>>;
     std::map<ProgramKey, gl::Program> programs_;
     gl::VertexArray mesh_vertices_;
+    gl::VertexArray mesh_vertices_with_second_uvs_;
     gl::VertexArray no_vertices_;  // for geometry that shaders generate
     gl::Texture white_;
     std::optional<gl::Texture> mirror_shares_;

@@ -64,6 +64,16 @@ Tangents placed_tangents(const Primitive& primitive, std::size_t first, const gl
     return tangents;
 }
 
+/// In the order of placed_corners.
+SecondUvs placed_second_uvs(const Primitive& primitive, std::size_t first, const glm::mat4& to_world) {
+    SecondUvs uvs{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        uvs[i] = primitive.second_uvs[primitive.indices[first + i]];
+    }
+    if (glm::determinant(glm::mat3(to_world)) < 0.0F) std::swap(uvs[1], uvs[2]);
+    return uvs;
+}
+
 std::size_t group_of(AlphaMode mode) {
     return static_cast<std::size_t>(mode);  // declared in this order
 }
@@ -140,6 +150,10 @@ void Geometry::add(const Primitive& primitive, const glm::mat4& to_world, std::u
         const float twice_area = glm::length(across);
         if (twice_area <= 0.0F) continue;
         triangles_.push_back({corners, across / twice_area, material, part, 0});
+        if (uses_second_uvs(*primitive.material)) {
+            triangles_.back().second_uvs = static_cast<std::uint32_t>(second_uvs_.size());
+            second_uvs_.push_back(placed_second_uvs(primitive, i, to_world));
+        }
         if (!primitive.material->normal_texture) continue;
         triangles_.back().tangents = static_cast<std::uint32_t>(tangents_.size());
         tangents_.push_back(placed_tangents(primitive, i, to_world));
@@ -247,6 +261,13 @@ bool Geometry::is_blocked(const Ray& ray) const {
     RTCRay query = to_embree(ray);
     embree::occluded(solids_.get(), query);
     return query.tfar < 0.0F;  // Embree's mark of a hit
+}
+
+ImagePlace Geometry::image_place(const Triangle& triangle, glm::vec2 weights) const {
+    const glm::vec2 uv = uv_at(triangle, weights);
+    if (!material(triangle).needs_second_uvs) return {uv, uv};
+    const auto& [a, b, c] = second_uvs_[triangle.second_uvs];
+    return {uv, a + weights.x * (b - a) + weights.y * (c - a)};
 }
 
 Sight Geometry::look(const Ray& ray) const {

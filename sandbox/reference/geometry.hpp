@@ -24,14 +24,17 @@ struct Triangle {
         glm::vec4 colour;  ///< multiplies that of the material
     };
     std::array<Corner, 3> corners;
-    glm::vec3 front;         ///< unit normal of the plane
-    std::uint32_t material;  ///< index
-    std::uint32_t part;      ///< one number per primitive of each placed mesh
-    std::uint32_t tangents;  ///< index; only if the material has a normal texture
+    glm::vec3 front;               ///< unit normal of the plane
+    std::uint32_t material;        ///< index
+    std::uint32_t part;            ///< one number per primitive of each placed mesh
+    std::uint32_t tangents;        ///< index; only if the material has a normal texture
+    std::uint32_t second_uvs = 0;  ///< index; only if the material needs them
 };
 
 /// Tangents of a triangle's corners in world space, not of unit length; w as in Vertex::tangent.
 using Tangents = std::array<glm::vec4, 3>;
+/// Second texture coordinates of a triangle's corners.
+using SecondUvs = std::array<glm::vec2, 3>;
 
 struct Ray {
     glm::vec3 origin;
@@ -85,6 +88,8 @@ class Geometry {
     [[nodiscard]] const Tangents& tangents(const Triangle& triangle) const {
         return tangents_[triangle.tangents];
     }
+    /// Where the images of its material lie.
+    [[nodiscard]] ImagePlace image_place(const Triangle& triangle, glm::vec2 weights) const;
     /// The distance in metres at which rays start above a surface: about 100 times the rounding of positions.
     [[nodiscard]] float ray_offset() const { return 1e-5F * bounds_.radius; }
     [[nodiscard]] const Sphere& bounds() const { return bounds_; }
@@ -120,6 +125,7 @@ class Geometry {
     std::vector<SurfaceMaterial> materials_;
     std::vector<Triangle> triangles_;
     std::vector<Tangents> tangents_;
+    std::vector<SecondUvs> second_uvs_;
     std::array<Group, 3> groups_{};  // opaque, masked, blended
     Sphere bounds_;
     Device device_;

@@ -61,7 +61,8 @@ glm::vec4 Texture::at(glm::vec2 uv) const {
     return glm::mix(upper, lower, share.y);
 }
 
-Gloss SurfaceMaterial::gloss(glm::vec3 colour, glm::vec2 uv) const {
+Gloss SurfaceMaterial::gloss(glm::vec3 colour, const ImagePlace& place) const {
+    const glm::vec2 uv = place.of(by_second.metal_roughness);
     const glm::vec4 texel = metal_roughness_texture ? metal_roughness_texture->at(uv) : glm::vec4(1.0F);
     const float metal = metalness * texel.b;
     const float rough = roughness * texel.g;
@@ -71,13 +72,14 @@ Gloss SurfaceMaterial::gloss(glm::vec3 colour, glm::vec2 uv) const {
             .alpha = rough * rough};
 }
 
-glm::vec3 SurfaceMaterial::bump(glm::vec2 uv) const {
-    const glm::vec3 stored = 2.0F * glm::vec3(normal_texture->at(uv)) - 1.0F;
+glm::vec3 SurfaceMaterial::bump(const ImagePlace& place) const {
+    const glm::vec3 stored = 2.0F * glm::vec3(normal_texture->at(place.of(by_second.normal))) - 1.0F;
     return {normal_scale * stored.x, normal_scale * stored.y, stored.z};
 }
 
-float SurfaceMaterial::openness(glm::vec2 uv) const {
-    return occlusion_texture ? glm::mix(1.0F, occlusion_texture->at(uv).r, occlusion_strength) : 1.0F;
+float SurfaceMaterial::openness(const ImagePlace& place) const {
+    if (!occlusion_texture) return 1.0F;
+    return glm::mix(1.0F, occlusion_texture->at(place.of(by_second.occlusion)).r, occlusion_strength);
 }
 
 std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& material) {
@@ -100,7 +102,9 @@ std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& mate
                               .normal_texture = texture_of(material->normal_texture),
                               .normal_scale = material->normal_scale,
                               .occlusion_texture = texture_of(material->occlusion_texture),
-                              .occlusion_strength = material->occlusion_strength});
+                              .occlusion_strength = material->occlusion_strength,
+                              .by_second = material->second_uvs,
+                              .needs_second_uvs = uses_second_uvs(*material)});
     }
     return found->second;
 }

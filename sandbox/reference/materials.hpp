@@ -30,6 +30,14 @@ class Texture {
     std::vector<glm::vec4> texels_;
 };
 
+/// Where the images of a material lie: by the first texture coordinates, or by the second.
+struct ImagePlace {
+    glm::vec2 first;
+    glm::vec2 second;  ///< the first again if no image needs it
+
+    [[nodiscard]] glm::vec2 of(bool by_second) const { return by_second ? second : first; }
+};
+
 /// The material of a surface.
 struct SurfaceMaterial {
     glm::vec4 base_colour;
@@ -49,21 +57,24 @@ struct SurfaceMaterial {
     float normal_scale;
     std::shared_ptr<const Texture> occlusion_texture;  ///< null: none
     float occlusion_strength;
+    SecondUvUse by_second;
+    bool needs_second_uvs;
 
     /// Linear RGB, with alpha.
     [[nodiscard]] glm::vec4 colour(glm::vec2 uv) const {
         return texture ? base_colour * texture->at(uv) : base_colour;
     }
     /// Radiance that it emits.
-    [[nodiscard]] glm::vec3 emission(glm::vec2 uv) const {
-        return emissive_texture ? emissive * glm::vec3(emissive_texture->at(uv)) : emissive;
+    [[nodiscard]] glm::vec3 emission(const ImagePlace& place) const {
+        if (!emissive_texture) return emissive;
+        return emissive * glm::vec3(emissive_texture->at(place.of(by_second.emissive)));
     }
     /// What it looks like where its base colour is `colour`.
-    [[nodiscard]] Gloss gloss(glm::vec3 colour, glm::vec2 uv) const;
+    [[nodiscard]] Gloss gloss(glm::vec3 colour, const ImagePlace& place) const;
     /// Normal in the space of tangent, bitangent and normal, not of unit length. There must be a texture.
-    [[nodiscard]] glm::vec3 bump(glm::vec2 uv) const;
+    [[nodiscard]] glm::vec3 bump(const ImagePlace& place) const;
     /// The share of the light from emitters, the sky and other surfaces that reaches it.
-    [[nodiscard]] float openness(glm::vec2 uv) const;
+    [[nodiscard]] float openness(const ImagePlace& place) const;
     [[nodiscard]] bool is_hole(glm::vec4 colour) const {
         return alpha_mode == AlphaMode::mask && colour.a < alpha_cutoff;
     }

@@ -22,7 +22,7 @@ glm::vec3 bumpy_normal(const Geometry& geometry, const Triangle& triangle, glm::
     const glm::vec4 tangent = tangent_at(geometry.tangents(triangle), weights);
     const glm::vec3 along = glm::normalize(glm::vec3(tangent));
     const glm::vec3 upwards = tangent.w * glm::cross(normal, along);
-    const glm::vec3 bump = material.bump(uv_at(triangle, weights));
+    const glm::vec3 bump = material.bump(geometry.image_place(triangle, weights));
     const glm::vec3 turned = bump.x * along + bump.y * upwards + bump.z * normal;
     const float length = glm::length(turned);
     return length > 0.0F ? turned / length : normal;  // where texels cancel each other, there is no direction
@@ -31,7 +31,7 @@ glm::vec3 bumpy_normal(const Geometry& geometry, const Triangle& triangle, glm::
 SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction, float light_through) {
     const Triangle& triangle = geometry.triangle(hit.triangle);
     const SurfaceMaterial& material = geometry.material(triangle);
-    const glm::vec2 uv = uv_at(triangle, hit.weights);
+    const ImagePlace place = geometry.image_place(triangle, hit.weights);
     const glm::vec4 colour = colour_at(triangle, material, hit.weights);
     const float side = glm::dot(triangle.front, direction) < 0.0F ? 1.0F : -1.0F;
     const float cover = material.alpha_mode == AlphaMode::blend ? colour.a : 1.0F;
@@ -39,11 +39,11 @@ SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 dir
                                  .face = side * triangle.front,
                                  .normal = side * bumpy_normal(geometry, triangle, hit.weights),
                                  .albedo = glm::vec3(colour),
-                                 .emission = material.emission(uv)},
+                                 .emission = material.emission(place)},
                      .weight = light_through * cover,
                      .part = triangle.part,
-                     .openness = material.openness(uv)};
-    if (material.is_glossy) add_gloss(seen.surface, material.gloss(glm::vec3(colour), uv), direction);
+                     .openness = material.openness(place)};
+    if (material.is_glossy) add_gloss(seen.surface, material.gloss(glm::vec3(colour), place), direction);
     return seen;
 }
 
@@ -67,15 +67,15 @@ Surface struck_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direc
     const bool shows_front = glm::dot(triangle.front, direction) < 0.0F;
     const glm::vec3 face = shows_front ? triangle.front : -triangle.front;
     const bool is_lit = shows_front || material.double_sided;
-    const glm::vec2 uv = uv_at(triangle, hit.weights);
+    const ImagePlace place = geometry.image_place(triangle, hit.weights);
     Surface surface{
         .position = position_at(triangle, hit.weights),
         .face = face,
         .normal = face,
         .albedo = is_lit ? glm::vec3(colour_at(triangle, material, hit.weights)) : glm::vec3(0.0F),
-        .emission = is_lit ? material.emission(uv) : glm::vec3(0.0F)};
+        .emission = is_lit ? material.emission(place) : glm::vec3(0.0F)};
     if (!is_lit || !material.is_glossy) return surface;
-    const Gloss gloss = material.gloss(surface.albedo, uv);
+    const Gloss gloss = material.gloss(surface.albedo, place);
     if (as_it_is) {
         add_gloss(surface, gloss, direction);
     } else {

@@ -1,9 +1,16 @@
 // The material of a surface that a ray has met, in the form of the G-buffer. Roughness and metalness are the means over their
 // texture.
 #include "maths.glsl"
+#include "scene/bvh.glsl"
 #include "scene/materials.glsl"
 #include "surfaces/surface.glsl"
 #include "types.glsl"
+
+// The triangle whose uv is that of this image.
+TraceTriangle with_uv_of(uint image, uint index) {
+    TraceTriangle triangle = triangles[index];
+    return has_second_uv(triangle.material, image) ? triangles[index + triangle.second] : triangle;
+}
 
 #ifdef MIRRORED_BUMPS
 

@@ -132,7 +132,7 @@ void meet(Hit hit, vec3 direction) {
     albedo.rgb = hit_colour(triangle, hit.barycentric).rgb;
     float spread = 0.0;
 #ifdef MIRRORED_BUMPS
-    vec3 turned = met_normal(material, triangle, hit.barycentric, across, spread);
+    vec3 turned = met_normal(material, with_uv_of(MATERIAL_SECOND_UV_NORMAL, hit.triangle), hit.barycentric, across, spread);
     PackedBumps packed_bumps = pack_bumps(side * turned, 1.0);
     bumps = vec4(packed_bumps.normal, packed_bumps.open, 0.0);
 #endif
@@ -140,7 +140,7 @@ void meet(Hit hit, vec3 direction) {
     mirror = packed_gloss.mirror;
     gloss = packed_gloss.gloss;
 #ifdef EMISSION
-    radiance_and_density.rgb = emission_at(material, hit_uv(triangle, hit.barycentric));
+    radiance_and_density.rgb = emission_at(material, hit_uv(with_uv_of(MATERIAL_SECOND_UV_EMISSIVE, hit.triangle), hit.barycentric));
 #endif
 }
 

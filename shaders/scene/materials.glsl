@@ -10,6 +10,8 @@ layout(std430, binding = BINDING_TEXELS) readonly restrict buffer Texels { uint 
 const uint WRAP_REPEAT = 0u;
 const uint WRAP_MIRRORED = 1u;
 
+bool has_second_uv(uint material, uint image) { return (materials[material].flags & image) != 0u; }
+
 bool is_double_sided(uint material) { return (materials[material].flags & MATERIAL_DOUBLE_SIDED) != 0u; }
 
 int wrap(int x, int size, uint mode) {

@@ -9,6 +9,9 @@ layout(location = ATTRIBUTE_COLOUR) in vec4 vertex_colour;
 #ifdef BUMPY
 layout(location = ATTRIBUTE_TANGENT) in vec4 vertex_tangent;
 #endif
+#ifdef SECOND_UV
+layout(location = ATTRIBUTE_SECOND_UV) in vec2 vertex_second_uv;
+#endif
 layout(location = ATTRIBUTE_INSTANCE) in uint vertex_instance;
 
 layout(std430, binding = BINDING_INSTANCES) readonly restrict buffer Instances { Instance instances[]; };

@@ -11,8 +11,24 @@ in vec3 normal;
 in vec4 tangent;  // as Vertex::tangent, world space
 #endif
 in vec2 uv;
+#ifdef SECOND_UV
+in vec2 second_uv;
+#endif
 in vec4 colour_off_white;  // of the vertices
 flat in uint material_index;
+
+// A texel of an image of the material that is MATERIAL_SECOND_UV_*.
+#ifdef SECOND_UV
+vec4 image_at(sampler2D image, uint which) {
+    // Derivatives come from the coordinates themselves: invocations beside the triangle may not see the material.
+    mat2 change = mat2(dFdx(uv), dFdy(uv));
+    mat2 second_change = mat2(dFdx(second_uv), dFdy(second_uv));
+    if (has_second_uv(material_index, which)) return textureGrad(image, second_uv, second_change[0], second_change[1]);
+    return textureGrad(image, uv, change[0], change[1]);
+}
+#else
+vec4 image_at(sampler2D image, uint which) { return texture(image, uv); }
+#endif
 
 // Base colour (linear) and alpha. With MASKED, discards the fragment in a hole of the material's alpha mask. Without it
 // there is no discard in the program, so the GPU can reject hidden fragments by an early depth test.
@@ -29,7 +45,7 @@ vec4 fragment_colour() {
 layout(binding = UNIT_EMISSION) uniform sampler2D emission;
 
 // Radiance that the surface emits.
-vec3 fragment_emission() { return materials[material_index].emissive * texture(emission, uv).rgb; }
+vec3 fragment_emission() { return materials[material_index].emissive * image_at(emission, MATERIAL_SECOND_UV_EMISSIVE).rgb; }
 
 #endif
 
@@ -40,7 +56,7 @@ layout(binding = UNIT_OCCLUSION) uniform sampler2D occlusion;
 
 // glTF 2.0, section 3.9.3: a normal in the space of tangent, bitangent and normal.
 vec3 mapped_normal(Material material) {
-    vec3 stored = 2.0 * texture(normal_map, uv).xyz - 1.0;
+    vec3 stored = 2.0 * image_at(normal_map, MATERIAL_SECOND_UV_NORMAL).xyz - 1.0;
     vec3 across = normalize(normal);
     vec2 aside = material.normal_scale * stored.xy;
     // Images have no exact zero, so that surfaces without one must not read it.
@@ -52,7 +68,7 @@ vec3 mapped_normal(Material material) {
 PackedBumps fragment_bumps() {
     Material material = materials[material_index];
     vec3 turned = mapped_normal(material);
-    float open = mix(1.0, texture(occlusion, uv).r, material.occlusion_strength);
+    float open = mix(1.0, image_at(occlusion, MATERIAL_SECOND_UV_OCCLUSION).r, material.occlusion_strength);
     return pack_bumps(gl_FrontFacing ? turned : -turned, open);
 }
 
@@ -64,9 +80,9 @@ layout(binding = UNIT_METAL_ROUGHNESS) uniform sampler2D metal_roughness;
 
 PackedGloss fragment_gloss() {
     Material material = materials[material_index];
-    vec2 gloss = texture(metal_roughness, uv).gb * vec2(material.roughness, material.metalness);
+    vec2 gloss = image_at(metal_roughness, MATERIAL_SECOND_UV_GLOSS).gb * vec2(material.roughness, material.metalness);
 #ifdef BUMPY
-    gloss.x = widened_roughness(gloss.x, material.normal_scale * texture(normal_map, uv).a);
+    gloss.x = widened_roughness(gloss.x, material.normal_scale * image_at(normal_map, MATERIAL_SECOND_UV_NORMAL).a);
 #endif
     return pack_gloss(material.mirror, gloss);
 }

@@ -8,6 +8,9 @@ out vec3 normal;
 out vec4 tangent;
 #endif
 out vec2 uv;
+#ifdef SECOND_UV
+out vec2 second_uv;
+#endif
 out vec4 colour_off_white;  // so that white is interpolated exactly
 flat out uint material_index;
 
@@ -18,6 +21,9 @@ void main() {
     tangent = world_tangent(instance);
 #endif
     uv = vertex_uv;
+#ifdef SECOND_UV
+    second_uv = vertex_second_uv;
+#endif
     colour_off_white = vertex_colour - 1.0;
     material_index = instance.material;
     gl_Position = view.clip_from_world * vec4(world_position(instance), 1.0);

@@ -166,7 +166,9 @@ void main() {
     if (id >= point_count) return;
     CellPoint point = cell_points[id];
     Material material = materials[point.material];
-    vec4 colour = colour_at(material, point.uv) * vertex_colour(point.colour);
+    bool is_emission_uv = has_second_uv(point.material, MATERIAL_SECOND_UV_EMISSIVE);
+    vec4 texture_colour = is_emission_uv ? material.base_colour : colour_at(material, point.uv);
+    vec4 colour = texture_colour * vertex_colour(point.colour);
     float area = colour.a < material.alpha_cutoff ? 0.0 : point.area;
     vec3 irradiance = vec3(0.0);
     uint end = min(light_count, part_first + part_size);

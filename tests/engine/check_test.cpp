@@ -86,6 +86,25 @@ TEST_SUITE("faults of bumpy meshes") {
         CHECK(fault_of(mesh, Strictness::usual) == "primitive 0 of mesh \"patch\": vertex 1" + missing);
     }
 
+    TEST_CASE("second texture coordinates: one for each vertex where a texture needs them, and finite") {
+        Material material = bumpy();
+        material.normal_texture = nullptr;
+        material.second_uvs.normal = true;  // of no texture
+        Mesh mesh = triangle(material);
+        CHECK(fault_of(mesh, Strictness::strict) == Fault{});
+        material.second_uvs.occlusion = true;
+        mesh = triangle(material);
+        const std::string primitive = "primitive 0 of mesh \"patch\": ";
+        CHECK(fault_of(mesh, Strictness::usual) == primitive + "0 second texture coordinates for 3 vertices");
+        mesh.primitives[0].second_uvs.resize(2);
+        CHECK(fault_of(mesh, Strictness::usual) == primitive + "2 second texture coordinates for 3 vertices");
+        mesh.primitives[0].second_uvs.resize(3);
+        CHECK(fault_of(mesh, Strictness::strict) == Fault{});
+        mesh.primitives[0].second_uvs[1].y = std::numeric_limits<float>::infinity();
+        CHECK(fault_of(mesh, Strictness::usual) ==
+              primitive + "vertex 1: its second texture coordinates are not finite");
+    }
+
     TEST_CASE("occlusion alone needs no tangents") {
         Material material = bumpy();
         material.normal_texture = nullptr;

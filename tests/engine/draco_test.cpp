@@ -166,6 +166,28 @@ TEST_SUITE("Draco") {
         }
     }
 
+    TEST_CASE("a second set of texture coordinates") {
+        const Grid grid;
+        GltfBuilder file = compressed(grid, encode_exactly(grid));
+        Json& attributes = file.primitive()["attributes"];
+        Json& packed = file.primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"];
+        attributes["TEXCOORD_1"] = attributes["TEXCOORD_0"];
+        attributes.erase("TEXCOORD_0");
+        packed["TEXCOORD_1"] = packed["TEXCOORD_0"];
+        packed.erase("TEXCOORD_0");
+        file.document["images"] = {{{"uri", sixteen_bit_png}}};
+        file.document["textures"] = Json::parse(R"([{"source": 0}])");
+        file.document["materials"] =
+            Json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+            "occlusionTexture": {"index": 0, "texCoord": 1}}])");
+        file.primitive()["material"] = 0;
+        const Imported imported(file);
+        const Imported plain(compressed(grid, encode_exactly(grid)));
+        std::vector<glm::vec2> expected;
+        for (const Vertex& vertex : plain.primitive().vertices) expected.push_back(vertex.uv);
+        CHECK(imported.primitive().second_uvs == expected);
+    }
+
     TEST_CASE("positions that Draco has rounded are within half a step") {
         const Grid grid;
         constexpr int bits = 12;

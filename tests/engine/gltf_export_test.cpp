@@ -262,6 +262,13 @@ Material any_material(const Stock& stock) {
     material.double_sided = any_bool();
     material.alpha_mode = *rc::gen::element(AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend);
     material.alpha_cutoff = any_bool() ? 0.5F : any_amount();
+    // The import calls those coordinates the first that the first texture has.
+    if (material.base_colour_texture) {
+        material.second_uvs = {.emissive = material.emissive_texture && any_bool(),
+                               .metal_roughness = material.metal_roughness_texture && any_bool(),
+                               .normal = material.normal_texture && any_bool(),
+                               .occlusion = material.occlusion_texture && any_bool()};
+    }
     return material;
 }
 
@@ -294,6 +301,7 @@ Primitive any_primitive(const Stock& stock) {
     primitive.vertices.push_back(any_vertex(is_white, has_tangents));  // one that no triangle uses
     for (Vertex& vertex : primitive.vertices) {
         vertex.position *= 1e-6F;  // at most 1e9 metres
+        if (uses_second_uvs(*primitive.material)) primitive.second_uvs.emplace_back(any_float(), any_float());
     }
     return primitive;
 }

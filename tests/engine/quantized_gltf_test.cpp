@@ -99,6 +99,27 @@ void check_positions_and_coordinates(bool normalized) {
     }
 }
 
+template <class Integer>
+void check_second_coordinates() {
+    const float step = 1.0F / static_cast<float>(std::numeric_limits<Integer>::max());
+    const std::vector<float> coordinates = values<Integer>(6);
+    GltfBuilder file = quantized_triangle();
+    file.primitive()["attributes"]["TEXCOORD_1"] = add_quantized<Integer>(file, coordinates, 2, step, true);
+    file.document["images"] = {{{"uri", sixteen_bit_png}}};
+    file.document["textures"] = Json::parse(R"([{"source": 0}])");
+    file.document["materials"] = Json::parse(R"([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "occlusionTexture": {"index": 0, "texCoord": 1}}])");
+    file.primitive()["material"] = 0;
+    const Imported imported(file);
+    REQUIRE(imported.primitive().second_uvs.size() == 3);
+    // As those of the first set.
+    const float tolerance = 0.5F * step + 3.0F * std::numeric_limits<float>::epsilon();
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(std::abs(imported.primitive().second_uvs[i].x - coordinates[2 * i]) <= tolerance);
+        CHECK(std::abs(imported.primitive().second_uvs[i].y - coordinates[2 * i + 1]) <= tolerance);
+    }
+}
+
 /// Normals and tangents at right angles to each other, of unit length.
 template <class Integer>
 void check_directions() {
@@ -138,6 +159,8 @@ TEST_SUITE("quantized glTF") {
             check_positions_and_coordinates<std::int16_t>(normalized);
             check_positions_and_coordinates<std::uint16_t>(normalized);
         }
+        check_second_coordinates<std::uint8_t>();
+        check_second_coordinates<std::uint16_t>();
     }
 
     TEST_CASE("normals and tangents of both types are within half a step of the floats") {

@@ -143,11 +143,6 @@ TEST_SUITE("glTF materials") {
         set_material(R"({"emissiveTexture": {"index": 0}})");
         CHECK(Imported(file).primitive().material->emissive_texture == nullptr);
 
-        set_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "texCoord": 1}})");
-        CHECK(
-            Imported(file).report.warnings ==
-            std::vector<std::string>{"material 0: its emissive texture uses coordinate set 1; only set 0 is "
-                                     "read; ignored"});
         set_material(R"({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 1}})");
         CHECK(Imported(file).report.warnings ==
               std::vector<std::string>{
@@ -185,13 +180,111 @@ TEST_SUITE("glTF materials") {
         // Scaled first, moved last.
         check(R"({"rotation": 1.5707963267948966, "scale": [2, 3], "offset": [0.5, 0]})",
               [](glm::vec2 uv) { return glm::vec2(3.0F * uv.y + 0.5F, -2.0F * uv.x); });
+    }
 
-        // Only one set of texture coordinates is kept.
-        file.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
-        file.document["materials"][0]["emissiveTexture"]["index"] = 0;
-        CHECK(Imported(file).report.warnings ==
-              std::vector<std::string>{
-                  "material 0: its emissive texture is transformed like its base colour texture"});
+    TEST_CASE("textures of one material may have two kinds of coordinates") {
+        const std::vector<float> set_0{0, 0, 1, 0, 0.25F, 1};
+        const std::vector<float> set_1{0.5F, 0, 0.75F, 0.125F, 0, 0.5F};
+        const auto imported_with = [&](const char* material) {
+            GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+            file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor(set_0, 5126, "VEC2", 2);
+            file.primitive()["attributes"]["TEXCOORD_1"] = file.add_accessor(set_1, 5126, "VEC2", 2);
+            file.document["extensionsUsed"] = Json::parse(R"(["KHR_texture_transform"])");
+            file.document["materials"] = Json::array({Json::parse(material)});
+            return Imported(file);
+        };
+        const auto has_uvs = [](const Primitive& primitive, const std::vector<float>& expected) {
+            for (std::size_t i = 0; i < primitive.vertices.size(); ++i) {
+                if (primitive.vertices[i].uv != glm::vec2(expected[2 * i], expected[2 * i + 1])) return false;
+            }
+            return 2 * primitive.vertices.size() == expected.size();
+        };
+        const auto has_second = [](const Primitive& primitive, const std::vector<float>& expected) {
+            std::vector<float> flat;
+            for (const glm::vec2 uv : primitive.second_uvs) flat.insert(flat.end(), {uv.x, uv.y});
+            return flat == expected;
+        };
+
+        // Occlusion by the second set.
+        {
+            const Imported imported = imported_with(R"({
+                "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0}},
+                "occlusionTexture": {"index": 0, "texCoord": 1}})");
+            CHECK(imported.report.warnings.empty());
+            CHECK(has_uvs(imported.primitive(), set_0));
+            CHECK(has_second(imported.primitive(), set_1));
+            CHECK(imported.primitive().material->second_uvs == SecondUvUse{.occlusion = true});
+        }
+        // All by the second set: no other coordinates are needed.
+        {
+            const Imported imported = imported_with(R"({
+                "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}},
+                "occlusionTexture": {"index": 0, "texCoord": 1}})");
+            CHECK(imported.report.warnings.empty());
+            CHECK(has_uvs(imported.primitive(), set_1));
+            CHECK(imported.primitive().second_uvs.empty());
+            CHECK_FALSE(uses_second_uvs(*imported.primitive().material));
+        }
+        // The extension's set replaces that of the textureInfo, and its transform is that of this texture.
+        {
+            const Imported imported = imported_with(R"({
+                "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+                "emissiveFactor": [1, 1, 1],
+                "emissiveTexture": {"index": 0, "texCoord": 0, "extensions":
+                    {"KHR_texture_transform": {"texCoord": 1, "scale": [2, 4], "offset": [1, 0.5]}}}})");
+            CHECK(imported.report.warnings.empty());
+            CHECK(has_uvs(imported.primitive(), set_0));
+            CHECK(has_second(imported.primitive(), {2, 0.5F, 2.5F, 1, 1, 2.5F}));
+            CHECK(imported.primitive().material->second_uvs == SecondUvUse{.emissive = true});
+        }
+        // Two transforms of one set.
+        {
+            const Imported imported = imported_with(R"({
+                "pbrMetallicRoughness": {
+                    "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}},
+                    "metallicRoughnessTexture": {"index": 0}}})");
+            CHECK(imported.report.warnings.empty());
+            CHECK(has_uvs(imported.primitive(), {0, 0, 2, 0, 0.5F, 2}));
+            CHECK(has_second(imported.primitive(), set_0));
+            CHECK(imported.primitive().material->second_uvs == SecondUvUse{.metal_roughness = true});
+        }
+        // A third kind is placed like another one of its set.
+        {
+            const Imported imported = imported_with(R"({
+                "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+                "emissiveFactor": [1, 1, 1],
+                "emissiveTexture": {"index": 0, "texCoord": 1},
+                "occlusionTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [1, 0]}}}})");
+            CHECK(
+                imported.report.warnings ==
+                std::vector<std::string>{
+                    "material 0: its occlusion texture is placed like its base colour texture: two kinds of "
+                    "texture coordinates are read"});
+            CHECK(imported.primitive().material->second_uvs == SecondUvUse{.emissive = true});
+        }
+    }
+
+    TEST_CASE("second coordinates that the file lacks are zero, and stay with vertices that are unshared") {
+        GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
+        file.document["materials"][0]["occlusionTexture"] = {{"index", 0}, {"texCoord", 3}};
+        const Imported without(file);
+        CHECK(without.primitive().second_uvs == std::vector<glm::vec2>(3, glm::vec2(0.0F)));
+
+        // Two triangles that share an edge and have no normals.
+        GltfBuilder pair = textured(data_uri(png(four_colours, 2, 2)));
+        pair.document["materials"][0]["occlusionTexture"] = {{"index", 0}, {"texCoord", 1}};
+        Json& attributes = pair.primitive()["attributes"];
+        attributes["POSITION"] = pair.add_vectors({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 1});
+        attributes["TEXCOORD_1"] =
+            pair.add_accessor(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, 5126, "VEC2", 2);
+        pair.primitive()["indices"] = pair.add_indices({0, 1, 2, 0, 2, 3});
+        const Imported imported(pair);
+        const Primitive& primitive = imported.primitive();
+        REQUIRE(primitive.vertices.size() == 6);
+        REQUIRE(primitive.second_uvs.size() == 6);
+        for (std::size_t i = 0; i < 6; ++i) {
+            CHECK(primitive.second_uvs[i] == glm::vec2(primitive.vertices[i].position));
+        }
     }
 
     TEST_CASE("one warning for each kind of thing that materials ask for and that is ignored") {
@@ -415,12 +508,6 @@ TEST_SUITE("glTF materials") {
 
     TEST_CASE("unsupported features are reported") {
         GltfBuilder file = textured(data_uri(png(four_colours, 2, 2)));
-        SUBCASE("a second set of texture coordinates") {
-            file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
-            CHECK(Imported(file).report.warnings ==
-                  std::vector<std::string>{"material 0: its base colour texture uses coordinate set 1; only "
-                                           "set 0 is read; ignored"});
-        }
         SUBCASE("a texture whose image comes from an extension") {
             file.document["textures"][0].erase("source");
             CHECK(Imported(file).report.warnings ==

@@ -105,6 +105,29 @@ TEST_SUITE("tangents") {
         check_all(with_uv([](glm::vec2 uv) { return glm::vec2(uv.x + 2.0F * uv.y, uv.y); }), {1, 0, 0, 1});
     }
 
+    TEST_CASE("they belong to the coordinates of the normal texture, and splitting keeps the others") {
+        Material material;
+        material.normal_texture = std::make_shared<const Image>();
+        material.second_uvs.normal = true;
+        Primitive primitive = square();
+        primitive.material = std::make_shared<const Material>(material);
+        for (const Vertex& vertex : primitive.vertices) {
+            primitive.second_uvs.emplace_back(1.0F - vertex.uv.y, vertex.uv.x);
+        }
+        check_all(derived(primitive), {0, 1, 0, 1});
+
+        // Mirrored in the second triangle alone: the vertices of its diagonal are split.
+        material.second_uvs.normal = false;
+        primitive.material = std::make_shared<const Material>(material);
+        primitive.vertices[3].uv = {1, 1};
+        const Primitive split = derived(primitive);
+        REQUIRE(split.vertices.size() == 6);
+        REQUIRE(split.second_uvs.size() == 6);
+        for (std::size_t i = 0; i < split.indices.size(); ++i) {
+            CHECK(split.second_uvs[split.indices[i]] == primitive.second_uvs[primitive.indices[i]]);
+        }
+    }
+
     TEST_CASE("sizes do not matter, however small or large") {
         for (const float size : {1e-20F, 1e-3F, 1e9F, 1e15F}) {
             for (const float in_texture : {1e-20F, 1.0F, 1e15F}) {

@@ -135,6 +135,8 @@ class WorldComparison {
         for (std::size_t i = 0; i < a.primitives.size() && i < b.primitives.size(); ++i) {
             expect(a.primitives[i].vertices == b.primitives[i].vertices, "its vertices");
             expect(a.primitives[i].indices == b.primitives[i].indices, "its indices");
+            expect(a.primitives[i].second_uvs == b.primitives[i].second_uvs,
+                   "its second texture coordinates");
             compare_shared(a.primitives[i].material, b.primitives[i].material, materials_, "its material");
         }
     }
@@ -150,6 +152,7 @@ class WorldComparison {
         expect(a.ior == b.ior, "its index of refraction");
         expect(a.normal_scale == b.normal_scale, "the scale of its normal texture");
         expect(a.occlusion_strength == b.occlusion_strength, "the strength of its occlusion");
+        expect(a.second_uvs == b.second_uvs, "which textures have second coordinates");
         compare_shared(a.base_colour_texture, b.base_colour_texture, images_, "its texture");
         compare_shared(a.metal_roughness_texture, b.metal_roughness_texture, images_,
                        "its metal-roughness texture");

@@ -415,10 +415,18 @@ class Writer {
             file_.add("samplers", {{"wrapS", wrap_mirrored}});
             file_.document["textures"][0]["sampler"] = 0;
         }
+        if (exhibit_.colour == Colour::texture_of_second_set) {
+            use["texCoord"] = 1;
+            add_coordinates("TEXCOORD_1", u);
+            u = 0.25F;
+        }
         if (masked) material["alphaMode"] = "MASK";
         material["pbrMetallicRoughness"]["baseColorTexture"] = use;
-        attributes()["TEXCOORD_0"] =
-            file_.add_accessor(for_each_vertex<float>({u, 0.5F}), type_float, "VEC2", 2);
+        add_coordinates("TEXCOORD_0", u);
+    }
+
+    void add_coordinates(const char* name, float u) {
+        attributes()[name] = file_.add_accessor(for_each_vertex<float>({u, 0.5F}), type_float, "VEC2", 2);
     }
 
     /// A triangle in front of all, in the transparent part of the picture.

@@ -21,6 +21,7 @@ struct Exhibit {
         texture,
         moved_texture,
         mirrored_texture,
+        texture_of_second_set,
         mask
     };
     enum class Motion { none, morphed, skinned };

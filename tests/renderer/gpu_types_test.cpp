@@ -173,7 +173,7 @@ const std::vector<Layout>& layouts() {
           MEMBER(TraceTriangle, id), MEMBER(TraceTriangle, edge_ac), MEMBER(TraceTriangle, colour_a),
           MEMBER(TraceTriangle, uv_a), MEMBER(TraceTriangle, uv_b), MEMBER(TraceTriangle, uv_c),
           MEMBER(TraceTriangle, colour_b), MEMBER(TraceTriangle, colour_c), MEMBER(TraceTriangle, normal_a),
-          MEMBER(TraceTriangle, normal_b), MEMBER(TraceTriangle, normal_c), MEMBER(TraceTriangle, pad0)}},
+          MEMBER(TraceTriangle, normal_b), MEMBER(TraceTriangle, normal_c), MEMBER(TraceTriangle, second)}},
         {"Path",
          sizeof(gpu::Path),
          {MEMBER(Path, flux), MEMBER(Path, light), MEMBER(Path, index), MEMBER(Path, seed),

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -56,6 +57,31 @@ void place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& u
                  uploaded.top_room);
 }
 
+/// The triangles of a drawable, and once more with their second texture coordinates if rays need these.
+void write_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                     std::span<const Vertex> vertices, const ObjectHierarchy& object,
+                     BufferWriter<gpu::TraceTriangle>& writer) {
+    const auto count = static_cast<std::uint32_t>(object.bvh.order.size());
+    const bool has_second = object.triangles.count > count;
+    const auto traced = [&](std::uint32_t i) {
+        return trace_triangle(layout, drawable, vertices, i, object.source.world, object.first_id + i);
+    };
+    for (const std::uint32_t i : object.bvh.order) {
+        gpu::TraceTriangle triangle = traced(i);
+        triangle.second = has_second ? count : 0;
+        writer.push_back(triangle);
+    }
+    if (!has_second) return;
+    for (const std::uint32_t i : object.bvh.order) {
+        const std::array<glm::vec2, 3> uvs = trace_second_uvs(layout, drawable, i);
+        gpu::TraceTriangle triangle = traced(i);
+        triangle.uv_a = uvs[0];
+        triangle.uv_b = uvs[1];
+        triangle.uv_c = uvs[2];
+        writer.push_back(triangle);
+    }
+}
+
 void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
                     UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed) {
     std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
@@ -69,10 +95,7 @@ void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buff
                       const ObjectHierarchy& object = objects[i];
                       const SceneLayout::Drawable& drawable = layout.drawables[i];
                       const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
-                      for (const std::uint32_t triangle : object.bvh.order) {
-                          writer.push_back(trace_triangle(layout, drawable, vertices, triangle,
-                                                          object.source.world, object.first_id + triangle));
-                      }
+                      write_triangles(layout, drawable, vertices, object, writer);
                   });
 }
 

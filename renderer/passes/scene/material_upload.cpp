@@ -95,11 +95,19 @@ std::uint32_t wrap_bits(const Image* image) {
                                                            << MATERIAL_WRAP_BITS;
 }
 
+std::uint32_t second_uv_flags(const Material& material) {
+    const SecondUvUse& use = material.second_uvs;
+    return (use.emissive && material.emissive_texture ? MATERIAL_SECOND_UV_EMISSIVE : 0U) |
+           (use.metal_roughness && material.metal_roughness_texture ? MATERIAL_SECOND_UV_GLOSS : 0U) |
+           (use.normal && material.normal_texture ? MATERIAL_SECOND_UV_NORMAL : 0U) |
+           (use.occlusion && material.occlusion_texture ? MATERIAL_SECOND_UV_OCCLUSION : 0U);
+}
+
 std::uint32_t material_flags(const Material& material) {
     return (material.double_sided ? MATERIAL_DOUBLE_SIDED : 0U) |
            wrap_bits(material.base_colour_texture.get()) << MATERIAL_BASE_COLOUR_WRAP_SHIFT |
            wrap_bits(material.emissive_texture.get()) << MATERIAL_EMISSIVE_WRAP_SHIFT |
-           wrap_bits(material.normal_texture.get()) << MATERIAL_NORMAL_WRAP_SHIFT;
+           wrap_bits(material.normal_texture.get()) << MATERIAL_NORMAL_WRAP_SHIFT | second_uv_flags(material);
 }
 
 bool is_masked(const Material& material) {

@@ -173,7 +173,9 @@ void SceneHierarchy::update(const SceneLayout& layout, const ScenePlacement& pla
             place_triangles(layout, drawable, vertices_of(drawable, placement.deformed), source.world);
         other_topology |= fit(object, triangles);
         object.area = area_of(triangles);
-        object.triangles.count = static_cast<std::uint32_t>(triangles.size());
+        // The second texture coordinates follow as triangles of their own.
+        const std::uint32_t records = traces_second_uvs(*drawable.primitive) ? 2 : 1;
+        object.triangles.count = records * static_cast<std::uint32_t>(triangles.size());
         object.nodes.uploaded = object.triangles.uploaded = false;
     }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cstddef>
 #include <glm/matrix.hpp>
 #include <memory>
 #include <numeric>
@@ -182,6 +183,19 @@ void upload_instances(const Gpu& gpu, Execution& run, const SceneData& scene) {
     upload<gpu::Instance>(gpu, run, scene.instances, instances);
 }
 
+/// At the places of the vertices that are drawn with them.
+std::vector<glm::vec2> second_uvs_of(const SceneLayout& layout) {
+    std::vector<glm::vec2> uvs(1);  // buffers must not be empty
+    for (std::size_t i = 0; i < layout.drawables.size(); ++i) {
+        const std::vector<glm::vec2>& added = layout.drawables[i].primitive->second_uvs;
+        const auto first = static_cast<std::size_t>(layout.draws[i].base_vertex);
+        if (added.empty()) continue;
+        uvs.resize(std::max(uvs.size(), first + added.size()));
+        std::ranges::copy(added, uvs.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+    return uvs;
+}
+
 template <class T>
 BufferHandle<T> write_upload(FrameGraph& graph, Pass& pass, std::string_view name) {
     return pass.write(growing_buffer<T>(graph, name), Usage::copy);
@@ -216,7 +230,7 @@ std::span<const SceneLayout::Group> SceneLayout::groups_of(AlphaMode alpha) cons
             std::ranges::upper_bound(groups, alpha, {}, alpha_of)};
 }
 
-SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
+SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu, bool second_uvs) {
     const Gathered gathered = add_scene_gather(graph, gpu.scene_check());
     SceneData scene = graph.add("scene-upload", [&](Pass& pass) {
         pass.keeps_state();  // where things lie in the buffers depends on what was there before
@@ -232,7 +246,8 @@ SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
                             .draws = write_upload<gpu::DrawCommand>(graph, pass, "draws"),
                             .materials = write_upload<gpu::Material>(graph, pass, "materials"),
                             .texels = update_upload<std::uint32_t>(graph, pass, "texels"),
-                            .instances = {}};
+                            .instances = {},
+                            .second_uvs = {}};
         pass.run([=, &gpu](Execution& run) {
             const std::shared_ptr<SceneStore> store =
                 run.has_result() ? *run.previous(kept) : std::make_shared<SceneStore>(gpu);
@@ -253,6 +268,15 @@ SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu) {
         scene.instances = write_upload<gpu::Instance>(graph, pass, "instances");
         pass.run([=, &gpu](Execution& run) { upload_instances(gpu, run, scene); });
     });
+    if (second_uvs) {
+        graph.add("second-uv-upload", [&](Pass& pass) {
+            pass.read(scene.layout);
+            scene.second_uvs = write_upload<glm::vec2>(graph, pass, "second uvs");
+            pass.run([=, &gpu](Execution& run) {
+                upload<glm::vec2>(gpu, run, *scene.second_uvs, second_uvs_of(run.value(scene.layout)));
+            });
+        });
+    }
     return scene;
 }
 

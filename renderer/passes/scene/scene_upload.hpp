@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -104,12 +105,15 @@ struct SceneData {
     BufferHandle<gpu::Material> materials;
     BufferHandle<std::uint32_t> texels;     ///< reduced images of the materials, for tracing
     BufferHandle<gpu::Instance> instances;  ///< by drawable: world matrix and material
+    /// By vertex, of those that have them; none where no surface needs them.
+    std::optional<BufferHandle<glm::vec2>> second_uvs{};
 };
 
 /// Adds nodes `scene-gather` (CPU: items that SceneCheck accepts, where they are and how they are
 /// deformed, from MeshInstance, Transform and DeformedMesh), `scene-upload` (CPU, then upload: meshes and
 /// materials, when the set of items changes, only those that the scene had not before; and deformed vertices,
-/// when they change) and `instance-upload` (CPU, then upload: world matrices, when something moves).
-[[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu);
+/// when they change) and `instance-upload` (CPU, then upload: world matrices, when something moves). With
+/// `second_uvs` also `second-uv-upload` (CPU, then upload: all of them, when the set of items changes).
+[[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu, bool second_uvs = false);
 
 }  // namespace candela

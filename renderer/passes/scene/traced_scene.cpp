@@ -10,27 +10,16 @@
 #include <glm/vec2.hpp>
 
 #include "engine/bvh/traverse.hpp"
+#include "renderer/passes/scene/image_texel.hpp"
 #include "renderer/passes/scene/world_triangles.hpp"
 
 namespace candela {
 namespace {
 
-/// Index of the texel at `at`, in widths of an image of `size` texels.
-std::uint32_t wrapped(float at, std::uint32_t size, Wrap wrap) {
-    float inside = at - std::floor(at);
-    if (wrap == Wrap::clamp_to_edge) inside = std::clamp(at, 0.0F, 1.0F);
-    if (wrap == Wrap::mirrored_repeat)
-        inside = 1.0F - std::abs(1.0F - 2.0F * (0.5F * at - std::floor(0.5F * at)));
-    if (!(inside < 1.0F)) return size - 1;  // or not a number
-    return std::min(static_cast<std::uint32_t>(inside * static_cast<float>(size)), size - 1);
-}
-
 float alpha_at(const Material& material, glm::vec2 uv) {
     const Image* const image = material.base_colour_texture.get();
     if (image == nullptr) return material.base_colour.a;
-    const std::size_t x = wrapped(uv.x, image->width, image->wrap_u);
-    const std::size_t y = wrapped(uv.y, image->height, image->wrap_v);
-    return material.base_colour.a * static_cast<float>(image->texels[y * image->width + x].a) / 255.0F;
+    return material.base_colour.a * static_cast<float>(texel_at(*image, uv).a) / 255.0F;
 }
 
 /// One solid drawable of a scene, as rays meet it.

@@ -77,6 +77,19 @@ Box place_box(const Box& box, const glm::mat4& world) {
     return around;
 }
 
+bool traces_second_uvs(const Primitive& primitive) {
+    const Material& material = *primitive.material;
+    return (material.second_uvs.emissive && material.emissive_texture) ||
+           (material.second_uvs.normal && material.normal_texture);
+}
+
+std::array<glm::vec2, 3> trace_second_uvs(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
+                                          std::uint32_t i) {
+    const std::vector<glm::vec2>& uvs = drawable.primitive->second_uvs;
+    const glm::uvec3 corner = corners(layout, drawable, i);
+    return {uvs[corner.x], uvs[corner.y], uvs[corner.z]};
+}
+
 gpu::TraceTriangle trace_triangle(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
                                   std::span<const Vertex> vertices, std::uint32_t i, const glm::mat4& world,
                                   std::uint32_t id) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +23,14 @@ namespace candela {
 
 /// The box around a placed box, in world space; empty if it is.
 [[nodiscard]] Box place_box(const Box& box, const glm::mat4& world);
+
+/// Whether rays need second texture coordinates of the primitive: those of emission or normals.
+[[nodiscard]] bool traces_second_uvs(const Primitive& primitive);
+
+/// The second texture coordinates of triangle i, by corner as trace_triangle has them.
+[[nodiscard]] std::array<glm::vec2, 3> trace_second_uvs(const SceneLayout& layout,
+                                                        const SceneLayout::Drawable& drawable,
+                                                        std::uint32_t i);
 
 /// Triangle i in the form that shaders read, with this id.
 [[nodiscard]] gpu::TraceTriangle trace_triangle(const SceneLayout& layout,

@@ -13,7 +13,7 @@ TextureHandle add_emission(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         read_meshes(pass, scene);
         read_view(pass, view);
         test_depth(pass, surfaces);
-        const SurfacePrograms programs = surface_programs(gpu, "shading/emission.frag", {"EMISSION"});
+        const SurfacePrograms programs = surface_programs(gpu, scene, "shading/emission.frag", {"EMISSION"});
         const TextureHandle out = pass.write(radiance, Usage::colour_target);
         pass.run([=, &gpu](Execution& run) {
             draw_surfaces(gpu, run, scene, programs, visible_surfaces_again, {},

@@ -14,7 +14,7 @@ ForwardResults add_forward(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         read_lighting(pass, lighting);
         read_view(pass, view);
         const SurfacePrograms programs =
-            surface_programs(gpu, "shading/forward.frag", lighting_variant(lighting));
+            surface_programs(gpu, scene, "shading/forward.frag", lighting_variant(lighting));
         ForwardResults out{.surfaces = surfaces,
                            .radiance = pass.write(graph.texture("radiance", {view.size, Format::rgba32f}),
                                                   Usage::colour_target)};

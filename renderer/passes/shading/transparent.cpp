@@ -70,7 +70,7 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         pass.read(view.camera);
         read_view(pass, view);
         test_depth(pass, surfaces);
-        std::vector<std::string> variant = lighting_variant(lighting);
+        std::vector<std::string> variant = mesh_variant(scene, lighting_variant(lighting));
         variant.emplace_back("BLENDED");
         if (emission) variant.emplace_back("EMISSION");
         const gl::Program& program =

@@ -12,7 +12,7 @@ Surfaces add_depth_prepass(FrameGraph& graph, Gpu& gpu, const SceneData& scene, 
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =
-            surface_programs(gpu, "surfaces/depth_prepass.frag", {"WITH_NORMALS"});
+            surface_programs(gpu, scene, "surfaces/depth_prepass.frag", {"WITH_NORMALS"});
         const Surfaces out = write_geometry(graph, pass, view);
         pass.run([=, &gpu](Execution& run) {
             gpu.clear_colour_and_depth();

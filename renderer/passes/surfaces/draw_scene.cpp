@@ -22,12 +22,18 @@ std::vector<ResourceHandle> read_meshes(Pass& pass, const SceneData& scene) {
     pass.read(scene.draws, Usage::indirect);
     pass.read(scene.instances, {Usage::storage, BINDING_INSTANCES});
     pass.read(scene.materials, {Usage::storage, BINDING_MATERIALS});
-    return {scene.layout, scene.vertices,  scene.instance_ids, scene.indices,
-            scene.draws,  scene.instances, scene.materials};
+    std::vector<ResourceHandle> read{scene.layout, scene.vertices,  scene.instance_ids, scene.indices,
+                                     scene.draws,  scene.instances, scene.materials};
+    if (scene.second_uvs) {
+        pass.read(*scene.second_uvs, Usage::vertex);
+        read.emplace_back(*scene.second_uvs);
+    }
+    return read;
 }
 
 void bind_meshes(Gpu& gpu, Execution& run, const SceneData& scene) {
-    gl::VertexArray& vertices = gpu.mesh_vertices();
+    gl::VertexArray& vertices = scene.second_uvs ? gpu.mesh_vertices_with_second_uvs() : gpu.mesh_vertices();
+    if (scene.second_uvs) vertices.vertex_buffer(run.object(*scene.second_uvs), sizeof(glm::vec2), 0, 2);
     vertices.vertex_buffer(run.object(scene.vertices), sizeof(Vertex), 0, 0);
     vertices.vertex_buffer(run.object(scene.instance_ids), sizeof(std::uint32_t), 0, 1);
     vertices.index_buffer(run.object(scene.indices));
@@ -46,8 +52,14 @@ void draw_group(Gpu& gpu, const SceneLayout::Group& group, gl::RasterState state
     multi_draw(gpu.gl(), group.first_draw, group.draw_count);
 }
 
-SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
+std::vector<std::string> mesh_variant(const SceneData& scene, std::vector<std::string> words) {
+    if (scene.second_uvs) words.emplace_back("SECOND_UV");
+    return words;
+}
+
+SurfacePrograms surface_programs(Gpu& gpu, const SceneData& scene, const std::string& fragment_stage,
                                  std::vector<std::string> defined) {
+    defined = mesh_variant(scene, std::move(defined));
     const std::vector<std::string> stages{"surfaces/mesh_surface.vert", fragment_stage};
     const gl::Program& opaque = gpu.program(stages, defined);
     defined.emplace_back("MASKED");

@@ -40,9 +40,13 @@ struct SurfacePrograms {
     const gl::Program* masked;
 };
 
-/// Both variants of a program from mesh_surface.vert and `fragment_stage`, with the names in `defined`
+/// The names in `words`, and those that programs with mesh_surface.vert need for the vertices of the scene.
+[[nodiscard]] std::vector<std::string> mesh_variant(const SceneData& scene, std::vector<std::string> words);
+
+/// Both variants of a program from mesh_surface.vert and `fragment_stage`, with the names of mesh_variant
 /// defined.
-[[nodiscard]] SurfacePrograms surface_programs(Gpu& gpu, const std::string& fragment_stage,
+[[nodiscard]] SurfacePrograms surface_programs(Gpu& gpu, const SceneData& scene,
+                                               const std::string& fragment_stage,
                                                std::vector<std::string> defined = {});
 
 /// Draws the opaque and masked surfaces, of groups for which `is_drawn` holds. Culls the back faces of

@@ -13,7 +13,7 @@ Surfaces add_gbuffer(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const 
         read_meshes(pass, scene);
         read_view(pass, view);
         const SurfacePrograms programs =
-            surface_programs(gpu, "surfaces/gbuffer.frag", material_variant(parts));
+            surface_programs(gpu, scene, "surfaces/gbuffer.frag", material_variant(parts));
         const Surfaces out = write_geometry_and_material(graph, pass, view, parts);
         pass.run([=, &gpu](Execution& run) {
             gpu.clear_colour_and_depth();

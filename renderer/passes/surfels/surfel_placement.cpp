@@ -3,12 +3,15 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/gtc/color_space.hpp>
 #include <glm/packing.hpp>
 #include <iterator>
 #include <map>
 #include <queue>
 #include <tuple>
 #include <utility>
+
+#include "renderer/passes/scene/image_texel.hpp"
 
 namespace candela {
 namespace {
@@ -27,17 +30,36 @@ std::uint32_t colour_at(const gpu::TraceTriangle& triangle, glm::vec2 b) {
                              b.y * glm::unpackUnorm4x8(triangle.colour_c));
 }
 
-gpu::CellPoint cell_point(const gpu::TraceTriangle& triangle, const SurfacePoint& place, double area,
-                          std::uint32_t surfel) {
+template <class Values>
+auto between(const Values& a, const Values& b, const Values& c, glm::vec2 weights) {
+    return a + weights.x * (b - a) + weights.y * (c - a);
+}
+
+/// A colour, in sRGB, times what the image shows at `uv`.
+std::uint32_t textured(std::uint32_t colour, const Image* image, glm::vec2 uv) {
+    if (image == nullptr) return colour;
+    const glm::vec4 own = glm::unpackUnorm4x8(colour);
+    const glm::vec4 texel = glm::vec4(texel_at(*image, uv)) / 255.0F;
+    const glm::vec3 product =
+        glm::convertSRGBToLinear(glm::vec3(own)) * glm::convertSRGBToLinear(glm::vec3(texel));
+    return glm::packUnorm4x8(glm::vec4(glm::convertLinearToSRGB(product), own.a * texel.a));
+}
+
+/// `second`: of the triangle; null: none.
+gpu::CellPoint cell_point(const gpu::TraceTriangle& triangle, const SecondEmission* second,
+                          const SurfacePoint& place, double area, std::uint32_t surfel) {
     const glm::vec2 b = place.weights;
-    return {
-        .position = position_of(triangle, b),
-        .material = triangle.material,
-        .normal = normal_of(triangle, place.back),
-        .area = static_cast<float>(area),
-        .uv = triangle.uv_a + b.x * (triangle.uv_b - triangle.uv_a) + b.y * (triangle.uv_c - triangle.uv_a),
-        .surfel = surfel,
-        .colour = colour_at(triangle, b)};
+    gpu::CellPoint point{.position = position_of(triangle, b),
+                         .material = triangle.material,
+                         .normal = normal_of(triangle, place.back),
+                         .area = static_cast<float>(area),
+                         .uv = between(triangle.uv_a, triangle.uv_b, triangle.uv_c, b),
+                         .surfel = surfel,
+                         .colour = colour_at(triangle, b)};
+    if (second == nullptr) return point;
+    point.colour = textured(point.colour, second->base_colour.get(), point.uv);
+    point.uv = between(second->uvs[0], second->uvs[1], second->uvs[2], b);
+    return point;
 }
 
 /// Density of surfels at the place of a box where it is greatest.
@@ -181,7 +203,10 @@ void SurfelPlacement::append(SurfelSet& set, const Cell& cell, std::uint32_t poi
     for (const Cell& part : parts) {
         const Patch& of_part = tree_[part.patch];
         const gpu::TraceTriangle& triangle = scene_.triangles[of_part.point.triangle];
-        set.points.push_back(cell_point(triangle, of_part.point, of_part.area * cell.scale, index));
+        const auto second = scene_.second_emission.find(of_part.point.triangle);
+        set.points.push_back(cell_point(triangle,
+                                        second == scene_.second_emission.end() ? nullptr : &second->second,
+                                        of_part.point, of_part.area * cell.scale, index));
         set.point_places.push_back(of_part.point);
     }
     const auto middle = std::ranges::min_element(

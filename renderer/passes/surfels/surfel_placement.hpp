@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,11 +32,18 @@ struct SurfelSet {
 };
 
 /// The triangles of a scene, on which surfels are placed.
+/// What a triangle looks like whose emission lies by second texture coordinates.
+struct SecondEmission {
+    std::array<glm::vec2, 3> uvs{};            ///< the second, by corner
+    std::shared_ptr<const Image> base_colour;  ///< which lies by those of the triangle; null: none
+};
+
 struct SceneTriangles {
     std::vector<gpu::TraceTriangle> triangles;
     std::vector<std::uint32_t> item_of;  ///< by triangle: index into SceneGeometry::items
     std::vector<bool> double_sided;      ///< by material index
     std::vector<bool> emits;             ///< by material index
+    std::map<std::uint32_t, SecondEmission> second_emission{};  ///< by triangle, of those that have it
 };
 
 /// Where more cells are wanted, the trees are first cut into so many branches: pixels far from the surfels of

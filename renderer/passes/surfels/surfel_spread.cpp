@@ -22,6 +22,11 @@ std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
     return shapes;
 }
 
+/// Whether the emission lies by second texture coordinates.
+bool has_second_emission(const Material& material) {
+    return material.second_uvs.emissive && material.emissive_texture != nullptr;
+}
+
 /// The triangles of the meshes, also where they are deformed: where surfels are must not depend on which
 /// deformation came first.
 SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) {
@@ -33,6 +38,9 @@ SceneTriangles triangles_of(const SceneLayout& layout, const PlacementKey& key) 
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto id = static_cast<std::uint32_t>(scene.triangles.size());
             scene.triangles.push_back(trace_triangle(layout, drawable, vertices, i, shape, id));
+            if (!has_second_emission(*drawable.primitive->material)) continue;
+            scene.second_emission[id] = {trace_second_uvs(layout, drawable, i),
+                                         drawable.primitive->material->base_colour_texture};
         }
         scene.item_of.insert(scene.item_of.end(), count, drawable.item);
     }

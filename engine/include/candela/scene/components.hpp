@@ -67,6 +67,16 @@ enum class AlphaMode : std::uint8_t {
     blend    ///< alpha is the fraction of the light behind the surface that it blocks; see add_transparent
 };
 
+/// Which images of a material lie on its surfaces by Primitive::second_uvs; the others by Vertex::uv. So does
+/// that of the base colour in any case: holes of alpha masks need no second coordinates.
+struct SecondUvUse {
+    bool emissive = false;
+    bool metal_roughness = false;
+    bool normal = false;
+    bool occlusion = false;
+    bool operator==(const SecondUvUse&) const = default;
+};
+
 /// A surface of glTF's metallic-roughness model (glTF 2.0, appendix B). Its base colour and alpha are
 /// `base_colour` × the decoded texture × the colour of the vertices, each channel in [0, 1]. By default it is
 /// Lambertian, and the base colour is its albedo. The back of a single-sided surface is not drawn and
@@ -99,6 +109,7 @@ struct Material {
     /// >= 0 and finite: from the front, and from the back if it is double-sided. Multiplied by the texture.
     glm::vec3 emissive{0.0F};
     std::shared_ptr<const Image> emissive_texture;  ///< sRGB; null: none; alpha is ignored
+    SecondUvUse second_uvs{};
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;  ///< of AlphaMode::mask, >= 0
@@ -119,10 +130,18 @@ struct Material {
     return material.normal_texture != nullptr || material.occlusion_texture != nullptr;
 }
 
+/// Whether the material has images that need Primitive::second_uvs.
+[[nodiscard]] inline bool uses_second_uvs(const Material& material) {
+    const SecondUvUse& use = material.second_uvs;
+    return (use.emissive && material.emissive_texture) ||
+           (use.metal_roughness && material.metal_roughness_texture) ||
+           (use.normal && material.normal_texture) || (use.occlusion && material.occlusion_texture);
+}
+
 /// Vertex of a mesh in its local space. `normal` is unit length; `uv` has its origin at the image's top left.
 /// `colour` multiplies the material's base colour and alpha; linear, 65535 is 1. `tangent` is the direction
-/// of increasing u, as a unit vector, and w is 1 or -1: w cross(normal, tangent) is the direction of
-/// decreasing v. 32767 is 1. Only normal textures need it; zero means that there is none.
+/// of increasing u of the normal texture, as a unit vector, and w is 1 or -1: w cross(normal, tangent) is the
+/// direction of decreasing v. 32767 is 1. Only normal textures need it; zero means that there is none.
 struct Vertex {
     glm::vec3 position;
     glm::vec3 normal;
@@ -157,6 +176,9 @@ struct Primitive {
     /// Lists with one item for each vertex, which has the joints of all lists. None: no skeleton moves it.
     std::vector<std::vector<Influences>> influences{};
     std::vector<MorphTarget> targets{};
+    /// Other texture coordinates, by vertex, as Vertex::uv; needed if uses_second_uvs(*material), else empty
+    /// or not looked at. A DeformedMesh keeps them.
+    std::vector<glm::vec2> second_uvs{};
 };
 
 /// Immutable geometry, shared by its instances.
@@ -182,6 +204,12 @@ struct Mesh {
 [[nodiscard]] inline bool is_bumpy(const Mesh& mesh) {
     return std::ranges::any_of(mesh.primitives,
                                [](const Primitive& primitive) { return is_bumpy(*primitive.material); });
+}
+
+/// Whether surfaces of the mesh have images that need Primitive::second_uvs.
+[[nodiscard]] inline bool uses_second_uvs(const Mesh& mesh) {
+    return std::ranges::any_of(
+        mesh.primitives, [](const Primitive& primitive) { return uses_second_uvs(*primitive.material); });
 }
 
 /// A mesh placed by the entity's Transform. `mesh` is never null.

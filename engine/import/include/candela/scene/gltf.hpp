@@ -64,7 +64,12 @@ struct ImportOptions {
 /// to this one, within `options.root`; images are PNG, JPEG or (if Candela was built with libwebp) WebP,
 /// reduced to 8 bits per channel. Meshes, materials and images that the scene does not use are not read.
 /// Tangents that a normal texture needs and the file lacks are derived, as are all of a primitive whose
-/// texture coordinates are transformed.
+/// normal texture is transformed.
+///
+/// The textures of a material may have two kinds of coordinates: sets of the file, each with its
+/// KHR_texture_transform, which are applied here. The first, that of the base colour if it has a texture,
+/// becomes Vertex::uv, the second Primitive::second_uvs. A texture of a third kind is a warning, and is
+/// placed like one of the others.
 ///
 /// What moves (see animation.hpp): nodes with a mesh and a skin get a Skin, and, if the mesh has morph
 /// targets, MorphWeights. They also get a DeformedMesh, the shape that the nodes of the file give them, so
@@ -91,12 +96,12 @@ struct ImportOptions {
 /// - CANDELA_light of a light, {"castsShadow": false}
 ///
 /// Any other extension is a warning, also if the file requires it; primitives whose positions or indices it
-/// holds are skipped. Also left out with a warning: points and lines, further sets of texture coordinates and
-/// colours, skins with joints outside of the scene or of instances, and what animates no node of the scene, a
-/// node with a matrix, or another value than a translation, rotation, scale or weight. A figure that cannot
-/// be deformed keeps the shape of its mesh, with a warning. Triangles without area are dropped, except of
-/// meshes that change their shape. A node with a sheared matrix, which a Transform cannot represent, becomes
-/// two entities, one the parent of the other (see decompose); a joint is the lower one.
+/// holds are skipped. Also left out with a warning: points and lines, further sets of colours, skins with
+/// joints outside of the scene or of instances, and what animates no node of the scene, a node with a matrix,
+/// or another value than a translation, rotation, scale or weight. A figure that cannot be deformed keeps the
+/// shape of its mesh, with a warning. Triangles without area are dropped, except of meshes that change their
+/// shape. A node with a sheared matrix, which a Transform cannot represent, becomes two entities, one the
+/// parent of the other (see decompose); a joint is the lower one.
 ///
 /// An image that is missing, damaged or of another kind is one warning. A checker of magenta and black takes
 /// its place in base colours, black in emission; other textures are left out. It is still an error if its
