@@ -48,37 +48,57 @@ std::vector<int> find_parents(const Document& document) {
     return parents;
 }
 
-/// Checks that every node is a root or below one, and that the scene lists only roots, each once.
-void check_hierarchy(const Document& document) {
-    const std::vector<int> parents = find_parents(document);
+/// All nodes, parents before their children.
+std::vector<int> from_the_top(const Document& document, const std::vector<int>& parents) {
+    std::vector<int> order;
     std::vector<int> reached;
     for (int node = 0; node < static_cast<int>(parents.size()); ++node) {
         if (parents[static_cast<std::size_t>(node)] < 0) reached.push_back(node);
     }
-    std::vector<bool> below_a_root(parents.size(), false);
+    std::vector<bool> found(parents.size(), false);
     while (!reached.empty()) {
         const int node = reached.back();
         reached.pop_back();
-        below_a_root[static_cast<std::size_t>(node)] = true;
+        found[static_cast<std::size_t>(node)] = true;
+        order.push_back(node);
         for (const Json& child : children_of(document, node).items()) {
             reached.push_back(child.whole<int>());
         }
     }
-    if (const auto lost = std::ranges::find(below_a_root, false); lost != below_a_root.end()) {
-        throw SceneError(
-            fmt::format("node {} is its own ancestor or has one that is", lost - below_a_root.begin()));
+    if (const auto lost = std::ranges::find(found, false); lost != found.end()) {
+        throw SceneError(fmt::format("node {} is its own ancestor or has one that is", lost - found.begin()));
     }
+    return order;
+}
 
-    std::vector<bool> listed(parents.size(), false);
-    for (const Json& root : list_in(default_scene(document), "nodes").items()) {
-        const int node = root.whole<int>();
-        const auto i = root.whole<std::size_t>();
-        if (parents[i] >= 0) {
-            throw SceneError(fmt::format("node {} is a root of the scene but has a parent", node));
-        }
-        if (listed[i]) throw SceneError(fmt::format("node {} is a root of the scene twice", node));
-        listed[i] = true;
+/// The roots of the scene, each once. Some files list nodes that are below others, too. Such a node belongs
+/// to the scene anyway if the scene lists an ancestor; else it is a root, without its ancestors.
+std::vector<int> roots_of_scene(Document& document) {
+    const std::vector<int> parents = find_parents(document);
+    const Json& listed = list_in(default_scene(document), "nodes");
+    std::vector<bool> is_listed(parents.size(), false);
+    for (const Json& node : listed.items()) is_listed[node.whole<std::size_t>()] = true;
+    std::vector<bool> is_there(parents.size(), false);  // by an ancestor, or because it was added
+    for (const int node : from_the_top(document, parents)) {
+        const int parent = parents[static_cast<std::size_t>(node)];
+        if (parent < 0) continue;
+        const auto p = static_cast<std::size_t>(parent);
+        is_there[static_cast<std::size_t>(node)] = is_there[p] || is_listed[p];
     }
+    std::vector<int> roots;
+    bool is_odd = false;
+    for (const Json& node : listed.items()) {
+        const auto i = node.whole<std::size_t>();
+        is_odd = is_odd || is_there[i] || parents[i] >= 0;
+        if (is_there[i]) continue;
+        is_there[i] = true;
+        roots.push_back(node.whole<int>());
+    }
+    if (is_odd) {
+        document.warnings.emplace_back(
+            "the scene lists nodes twice, or nodes below others, as its roots; each is there once");
+    }
+    return roots;
 }
 
 bool is_finite(const Transform& transform) {
@@ -209,15 +229,13 @@ const Json& default_scene(const Document& document) {
     return document.at("scenes", number_in(document.json, "scene", 0));
 }
 
-std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
-                                     const Progress& progress) {
-    check_hierarchy(document);
+std::vector<StagedEntity> read_nodes(Document& document, ImportBudget& budget, const Progress& progress) {
+    const std::vector<int> roots = roots_of_scene(document);
     std::vector<StagedEntity> entities;
     std::vector<Visit> ahead;  // the next one last
     std::uint64_t counted = document.all("nodes").size();
-    const Json& roots = list_in(default_scene(document), "nodes");
     for (std::size_t i = roots.size(); i-- > 0;) {
-        ahead.push_back({roots[i].whole<int>(), 1, {}});
+        ahead.push_back({roots[i], 1, {}});
     }
     while (!ahead.empty()) {
         auto [node, level, parent] = ahead.back();

@@ -37,7 +37,7 @@ struct StagedEntity {
 /// `node N`. Of a node with instances (EXT_mesh_gpu_instancing), each becomes an entity below the node's,
 /// with its name and its mesh, which the node's entity then does not have. Throws SceneError, which names the
 /// node, camera or light and the problem, such as two parents, a cycle or no scene.
-[[nodiscard]] std::vector<StagedEntity> read_nodes(const Document& document, ImportBudget& budget,
+[[nodiscard]] std::vector<StagedEntity> read_nodes(Document& document, ImportBudget& budget,
                                                    const Progress& progress);
 
 }  // namespace candela::gltf

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -49,10 +51,11 @@ struct EmittingTriangle {
 /// The surfaces of a world that emit light.
 struct Emission {
     std::vector<EmittingTriangle> triangles;
-    std::vector<double> flux;  ///< of each, lm, by the front
-    double area = 0.0;         ///< of all surfaces of the world, m²
+    std::vector<double> flux;        ///< of each, lm
+    std::vector<LitObject> objects;  ///< all of the world, not lit yet
 };
 
+/// Of the last of the objects.
 void add_primitive(const Primitive& primitive, const glm::mat4& to_world, Emission& emission) {
     const float radiance = mean_emission(*primitive.material);
     const auto place = [&](std::uint32_t vertex) {
@@ -62,10 +65,11 @@ void add_primitive(const Primitive& primitive, const glm::mat4& to_world, Emissi
         const glm::vec3 a = place(primitive.indices[i]);
         const glm::vec3 ab = place(primitive.indices[i + 1]) - a, ac = place(primitive.indices[i + 2]) - a;
         const double area = 0.5 * static_cast<double>(glm::length(glm::cross(ab, ac)));
-        emission.area += area;
+        emission.objects.back().area += area;
         if (radiance == 0.0F || area == 0.0) continue;
+        const double sides = primitive.material->double_sided ? 2.0 : 1.0;
         emission.triangles.push_back({a, ab, ac, primitive.material->double_sided});
-        emission.flux.push_back(static_cast<double>(radiance * pi) * area);
+        emission.flux.push_back(sides * static_cast<double>(radiance * pi) * area);
     }
 }
 
@@ -73,6 +77,7 @@ Emission emission_of(const World& world) {
     Emission emission;
     WorldMatrices matrices(world);
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
+        emission.objects.push_back({.entity = entity});
         for (const Primitive& primitive : instance.mesh->primitives) {
             add_primitive(primitive, matrices(entity), emission);
         }
@@ -142,26 +147,38 @@ glm::vec3 forward_of(const World& world) {
 
 }  // namespace
 
-float light_by_emission(const World& world) {
-    const Emission emission = emission_of(world);
-    if (emission.triangles.empty()) return 0.0F;
+std::vector<LitObject> light_by_emission(const World& world) {
+    Emission emission = emission_of(world);
+    if (emission.triangles.empty()) return {};
     SceneRays surfaces;
     surfaces.update_and_wait(world);
     EmittedRays rays(emission);
     constexpr int count = 1024;
-    int met = 0;
-    for (int i = 0; i < count; ++i) met += surfaces.first_hit(rays()) ? 1 : 0;
-    double flux = 0.0;
-    for (std::size_t i = 0; i < emission.flux.size(); ++i) {
-        flux += emission.triangles[i].double_sided ? 2.0 * emission.flux[i] : emission.flux[i];
+    std::map<Entity, int> met;
+    for (int i = 0; i < count; ++i) {
+        if (const auto hit = surfaces.first_hit(rays())) ++met[hit->entity];
     }
-    return static_cast<float>(flux * met / count / emission.area) / pi;
+    const double flux = std::reduce(emission.flux.begin(), emission.flux.end()) / count;  // of a ray
+    for (LitObject& object : emission.objects) {
+        const double irradiance = object.area > 0.0 ? flux * met[object.entity] / object.area : 0.0;
+        object.radiance = irradiance / std::numbers::pi;
+    }
+    return std::move(emission.objects);
 }
 
 bool is_lit(const World& world) {
-    // A helmet with a glowing visor has 0.001, rooms with lamps have 0.1 and more.
-    constexpr float least = 0.02F;
-    return has_lights(world) || light_by_emission(world) > least;
+    if (has_lights(world)) return true;
+    // A helmet with a glowing visor has 0.001, objects in rooms with lamps mostly 0.1 and more.
+    constexpr double least = 0.02;
+    // A bulb around a filament is lit well, and hides it from all else.
+    constexpr double least_share = 1.0 / 3.0;
+    double area = 0.0;
+    double lit = 0.0;
+    for (const LitObject& object : light_by_emission(world)) {
+        area += object.area;
+        if (object.radiance > least) lit += object.area;
+    }
+    return area > 0.0 && lit >= least_share * area;
 }
 
 std::vector<Entity> touched_by_studio(Scene& scene) {

@@ -7,12 +7,19 @@
 
 namespace candela::sandbox {
 
-/// The radiance that white surfaces of a world would have on average by what its surfaces emit, without
-/// bounces and without shadows' edges: 1,024 rays, the same at each call; cd/m². Of textures, the mean
-/// counts.
-[[nodiscard]] float light_by_emission(const World& world);
+/// An entity with a mesh, and how much of what surfaces of the world emit arrives there.
+struct LitObject {
+    Entity entity;
+    double area = 0.0;      ///< m²
+    double radiance = 0.0;  ///< that it would have on average if it were white, without bounces; cd/m²
+};
 
-/// Whether a world has a light, a sky, or surfaces that emit enough to light it.
+/// All objects of a world that has surfaces which emit light; else none. By 1,024 rays, the same at each
+/// call. Of textures, the mean counts.
+[[nodiscard]] std::vector<LitObject> light_by_emission(const World& world);
+
+/// Whether a world has a light, a sky, or surfaces that emit so much that objects with a third of all surface
+/// are lit by it.
 [[nodiscard]] bool is_lit(const World& world);
 
 /// Replaces the sky of a scene by one that is brighter above than below, and adds a directional light with a

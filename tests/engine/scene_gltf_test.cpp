@@ -269,6 +269,32 @@ TEST_SUITE("glTF scenes") {
         CHECK(glm::distance(in_world("by matrix", {1, 1, 1}), glm::vec3(5, 18, -19)) < 1e-4F);
     }
 
+    TEST_CASE("roots that are below others, or listed twice, are there once, with a warning") {
+        struct Case {
+            const char* roots;
+            std::vector<std::string> names;
+            bool has_parent;  // the last of them
+        };
+        for (const Case& each : {Case{"[1]", {"low"}, false}, Case{"[1, 0]", {"high", "low"}, true},
+                                 Case{"[0, 1]", {"high", "low"}, true}, Case{"[0, 0]", {"high", "low"}, true},
+                                 Case{"[1, 1]", {"low"}, false}}) {
+            CAPTURE(each.roots);
+            GltfBuilder file = right_triangle();
+            file.document["nodes"] = Json::parse(
+                R"([{"name": "high", "translation": [1, 0, 0], "children": [1]}, {"name": "low", "mesh": 0}])");
+            file.document["scenes"][0]["nodes"] = Json::parse(each.roots);
+            const Imported imported(file);
+            std::vector<std::string> names;
+            for (const Entity entity : imported.report.entities) {
+                names.push_back(imported.world.get<Name>(entity).value);
+            }
+            CHECK(names == each.names);
+            const auto& last = imported.world.get<Transform>(imported.report.entities.back());
+            CHECK((last.parent != Entity{}) == each.has_parent);
+            CHECK(imported.report.warnings.size() == 1);
+        }
+    }
+
     TEST_CASE("a sheared matrix is kept exactly, for the node and for its children") {
         GltfBuilder file = right_triangle();
         file.document["nodes"] = Json::parse(R"([

@@ -221,8 +221,6 @@ TEST_SUITE("malformed glTF") {
             {"/nodes/0/children", "[1, 1]", "node 1 has two parents, nodes 0 and 0"},
             {"/nodes/0/children", "[0]", "node 0 is its own ancestor or has one that is"},
             {"/nodes/1/children", "[0]", "node 0 is its own ancestor or has one that is"},
-            {"/scenes/0/nodes", "[1]", "node 1 is a root of the scene but has a parent"},
-            {"/scenes/0/nodes", "[0, 0]", "node 0 is a root of the scene twice"},
             {"/scenes", "", "scene is 0, but there are 0 scenes"},
             {"/scenes", "{}", "scenes is not an array"},
             {"/nodes", "[1]", "nodes[0] is not an object"},
