@@ -39,7 +39,7 @@ struct Material {
     uint first_normal_texel DEFAULT(0u);  // as first_texel, of its normal texture
     uint normal_width DEFAULT(0u);
     uint normal_height DEFAULT(0u);
-    uint pad0 DEFAULT(0u);
+    float transmission DEFAULT(0.0);
 };
 
 #define MATERIAL_DOUBLE_SIDED 1u
@@ -50,6 +50,7 @@ struct Material {
 #define MATERIAL_SECOND_UV_GLOSS 0x4000u
 #define MATERIAL_SECOND_UV_NORMAL 0x8000u
 #define MATERIAL_SECOND_UV_OCCLUSION 0x10000u
+#define MATERIAL_ALPHA_IGNORED 0x20000u  // of glass: its alpha blends nothing
 #define MATERIAL_WRAP_BITS 2u
 #define MATERIAL_WRAP_MASK 3u
 

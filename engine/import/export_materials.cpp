@@ -76,6 +76,10 @@ void write_gloss(const Material& material, Json& json, Draft& draft) {
         json["extensions"][ior_extension] = {{"ior", to_json(material.ior)}};
         draft.use_extension(ior_extension);
     }
+    if (material.transmission > 0.0F) {
+        json["extensions"][transmission_extension] = {{"transmissionFactor", to_json(material.transmission)}};
+        draft.use_extension(transmission_extension);
+    }
 }
 
 /// glTF's emissive factors are at most 1. Quotients and strength are written in double precision, so that

@@ -25,6 +25,7 @@ inline constexpr const char* lights_extension = "KHR_lights_punctual";
 inline constexpr const char* emissive_strength_extension = "KHR_materials_emissive_strength";
 inline constexpr const char* ior_extension = "KHR_materials_ior";
 inline constexpr const char* specular_extension = "KHR_materials_specular";
+inline constexpr const char* transmission_extension = "KHR_materials_transmission";
 inline constexpr const char* quantization_extension = "KHR_mesh_quantization";
 inline constexpr const char* basisu_extension = "KHR_texture_basisu";
 inline constexpr const char* webp_extension = "EXT_texture_webp";
@@ -36,10 +37,15 @@ inline constexpr const char* light_extension = "CANDELA_light";
 /// All extensions that are supported. KHR_texture_basisu is one of them because a texture has a fallback, or
 /// else a warning of its own; KHR_materials_variants because a file's other materials are its defaults.
 inline constexpr auto supported_extensions = std::to_array<std::string_view>(
-    {lights_extension, emissive_strength_extension, ior_extension, specular_extension, "KHR_materials_unlit",
-     "KHR_texture_transform", quantization_extension, basisu_extension, webp_extension, meshopt_extension,
-     draco_extension, instancing_extension, "KHR_materials_variants", environment_extension,
-     light_extension});
+    {lights_extension, emissive_strength_extension, ior_extension, specular_extension, transmission_extension,
+     "KHR_materials_unlit", "KHR_texture_transform", quantization_extension, basisu_extension, webp_extension,
+     meshopt_extension, draco_extension, instancing_extension, "KHR_materials_variants",
+     environment_extension, light_extension});
+
+/// Those that add layers or depth to materials, whose other members then say what surfaces mainly look like.
+inline constexpr auto approximated_extensions = std::to_array<std::string_view>(
+    {"KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_diffuse_transmission",
+     "KHR_materials_dispersion", "KHR_materials_iridescence", "KHR_materials_sheen", "KHR_materials_volume"});
 
 /// Whether Candela was built with what reads it.
 [[nodiscard]] inline bool is_built(std::string_view extension) {
@@ -50,6 +56,10 @@ inline constexpr auto supported_extensions = std::to_array<std::string_view>(
 [[nodiscard]] inline bool is_supported(std::string_view extension) {
     return is_built(extension) &&
            std::ranges::find(supported_extensions, extension) != supported_extensions.end();
+}
+
+[[nodiscard]] inline bool is_approximated(std::string_view extension) {
+    return std::ranges::find(approximated_extensions, extension) != approximated_extensions.end();
 }
 
 }  // namespace candela::gltf

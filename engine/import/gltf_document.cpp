@@ -89,14 +89,18 @@ std::vector<std::string> check_extensions(const Json& document) {
     const std::set<std::string> required = extensions_in(document, "extensionsRequired");
     std::vector<std::string> warnings;
     for (const std::string& name : required) {
-        if (!is_supported(name)) {
+        if (!is_supported(name) && !is_approximated(name)) {
             warnings.push_back(fmt::format(
                 "it requires the extension {}, which is not supported: what is shown may be wrong",
                 readable(name)));
         }
     }
-    for (const std::string& name : extensions_in(document, "extensionsUsed")) {
-        if (!is_supported(name) && !required.contains(name)) {
+    std::set<std::string> used = extensions_in(document, "extensionsUsed");
+    used.insert(required.begin(), required.end());
+    for (const std::string& name : used) {
+        if (is_approximated(name)) {
+            warnings.push_back(fmt::format("{} is approximated by the base layer", name));
+        } else if (!is_supported(name) && !required.contains(name)) {
             warnings.push_back(
                 fmt::format("the extension {} is not supported and is ignored", readable(name)));
         }
@@ -155,6 +159,10 @@ std::vector<std::string> omissions(const Json& document) {
         if (any_material(document, fmt::format("extensions/{}/{}", specular_extension, texture))) {
             warnings.push_back(fmt::format("{}s of {} are ignored", texture, specular_extension));
         }
+    }
+    if (any_material(document, fmt::format("extensions/{}/transmissionTexture", transmission_extension))) {
+        warnings.push_back(fmt::format("transmissionTextures of {} are approximated by their factor",
+                                       transmission_extension));
     }
     return warnings;
 }

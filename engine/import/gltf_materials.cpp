@@ -167,7 +167,7 @@ AlphaMode to_alpha_mode(std::string_view name) {
     return name == "BLEND" ? AlphaMode::blend : AlphaMode::opaque;
 }
 
-/// Factors of pbrMetallicRoughness, KHR_materials_specular and KHR_materials_ior.
+/// Factors of pbrMetallicRoughness, KHR_materials_specular, KHR_materials_ior and KHR_materials_transmission.
 void read_gloss(const Json& source, Material& material) {
     material.metalness = number_in(source, "pbrMetallicRoughness/metallicFactor", 1.0F);
     material.roughness = number_in(source, "pbrMetallicRoughness/roughnessFactor", 1.0F);
@@ -175,6 +175,8 @@ void read_gloss(const Json& source, Material& material) {
     material.specular_colour =
         vector_in(source, "extensions/KHR_materials_specular/specularColorFactor", glm::vec3(1.0F));
     material.ior = number_in(source, "extensions/KHR_materials_ior/ior", 1.5F);
+    material.transmission =
+        number_in(source, "extensions/KHR_materials_transmission/transmissionFactor", 0.0F);
 }
 
 void read_emission(const Json& source, const std::string& label, Material& material) {

@@ -259,6 +259,7 @@ std::vector<Rule> rules() {
         {"materials.[].pbrMetallicRoughness.roughnessFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_emissive_strength.emissiveStrength", number(not_negative)},
         {"materials.[].extensions.KHR_materials_ior.ior", index_of_refraction()},
+        {"materials.[].extensions.KHR_materials_transmission.transmissionFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_specular.specularFactor", number(unit)},
         {"materials.[].extensions.KHR_materials_specular.specularColorFactor", numbers(3, not_negative)},
 

@@ -120,6 +120,7 @@ Fault fault_of_gloss(const Material& material) {
     if (!is_share(material.metalness)) return "the metalness is not between 0 and 1";
     if (!is_share(material.roughness)) return "the roughness is not between 0 and 1";
     if (!is_share(material.specular)) return "the specular strength is not between 0 and 1";
+    if (!is_share(material.transmission)) return "the transmission is not between 0 and 1";
     if (!is_amount(material.specular_colour)) return negative_or_infinite("the specular colour");
     if (!is_amount(material.ior) || (material.ior > 0.0F && material.ior < 1.0F)) {
         return "the index of refraction is neither 0 nor a finite number of at least 1";

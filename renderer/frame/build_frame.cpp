@@ -242,7 +242,7 @@ namespace {
 /// Objects with surfaces that only reflect light.
 std::size_t reflecting_items(const World& world, SceneCheck& check) {
     const auto reflects = [](const Primitive& primitive) {
-        return primitive.material->alpha_mode != AlphaMode::blend && !emits(*primitive.material);
+        return !is_seen_through(*primitive.material) && !emits(*primitive.material);
     };
     std::size_t count = 0;
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
@@ -268,13 +268,15 @@ WorldContents contents_of(const World& world, SceneCheck& check, std::uint32_t v
         const bool glossy = !of_frame.glossy && is_glossy(*instance.mesh);
         const bool bumpy = !of_frame.bumpy && is_bumpy(*instance.mesh);
         const bool second_uvs = !of_frame.second_uvs && uses_second_uvs(*instance.mesh);
-        if (!emitter && !glossy && !bumpy && !second_uvs) continue;
+        const bool glass = !of_frame.glass && is_glass(*instance.mesh);
+        if (!emitter && !glossy && !bumpy && !second_uvs && !glass) continue;
         if (!is_placed(entity) || !check.accepts_at(world, entity, instance, world_matrices(entity)))
             continue;
         of_frame.emitters |= emitter;
         of_frame.glossy |= glossy;
         of_frame.bumpy |= bumpy;
         of_frame.second_uvs |= second_uvs;
+        of_frame.glass |= glass;
     }
     of_frame.shares_items = shares_items(reflecting_items(world, check), vpls);
     const Environment environment = accepted_environment(world, check);

@@ -73,6 +73,7 @@ struct FrameContents {
     bool glossy = false;        ///< surfaces that may be glossy: is_glossy
     bool bumpy = false;         ///< surfaces with normal or occlusion textures: is_bumpy
     bool second_uvs = false;    ///< surfaces that need them: uses_second_uvs
+    bool glass = false;         ///< surfaces that light passes through: is_glass
     bool sky = false;           ///< an Environment that is not black
     bool shares_items = false;  ///< there are so many objects that a surfel stands for several
     bool operator==(const FrameContents&) const = default;

@@ -304,8 +304,9 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     extend(graph, shared, ExtensionPlace::after_shading, parts);
     if (!out.host) {
         const Lighting lighting = lighting_of_blended(graph, gpu, shared, out);
-        parts.radiance = add_transparent(graph, gpu, seen, lighting, view, surfaces_of(parts),
-                                         *parts.radiance, shows_emitters(shared));
+        parts.radiance =
+            add_transparent(graph, gpu, seen, lighting, view, surfaces_of(parts), *parts.radiance,
+                            {.emission = shows_emitters(shared), .glass = shared.contents.glass});
     }
     if (out.averaged) parts.radiance = add_accumulate(graph, gpu, *parts.radiance, *out.averaged, view.size);
     extend(graph, shared, ExtensionPlace::before_tone_map, parts);

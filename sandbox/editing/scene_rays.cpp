@@ -74,7 +74,7 @@ SceneRays::Patches SceneRays::build_patches(const Mesh& mesh, const std::stop_to
                 triangles_of(primitive, first, std::min(first + most_triangles, count));
             Bvh bvh = build_bvh(triangles);
             patches.push_back({std::move(triangles), std::move(bvh), primitive.material->double_sided,
-                               primitive.material->alpha_mode == AlphaMode::blend});
+                               is_seen_through(*primitive.material)});
         }
     }
     return patches;

@@ -86,25 +86,28 @@ std::uint32_t MaterialList::index_of(const std::shared_ptr<const Material>& mate
     const auto [found, is_new] =
         index_.try_emplace(material.get(), static_cast<std::uint32_t>(materials_.size()));
     if (is_new) {
-        materials_.push_back({.base_colour = material->base_colour,
-                              .texture = texture_of(material->base_colour_texture),
-                              .emissive = material->emissive,
-                              .emissive_texture = texture_of(material->emissive_texture),
-                              .double_sided = material->double_sided,
-                              .alpha_mode = material->alpha_mode,
-                              .alpha_cutoff = material->alpha_cutoff,
-                              .is_glossy = candela::is_glossy(*material),
-                              .metalness = material->metalness,
-                              .roughness = material->roughness,
-                              .dielectric_f0 = dielectric_f0(*material),
-                              .specular = material->specular,
-                              .metal_roughness_texture = texture_of(material->metal_roughness_texture),
-                              .normal_texture = texture_of(material->normal_texture),
-                              .normal_scale = material->normal_scale,
-                              .occlusion_texture = texture_of(material->occlusion_texture),
-                              .occlusion_strength = material->occlusion_strength,
-                              .by_second = material->second_uvs,
-                              .needs_second_uvs = uses_second_uvs(*material)});
+        materials_.push_back(
+            {.base_colour = material->base_colour,
+             .texture = texture_of(material->base_colour_texture),
+             .emissive = material->emissive,
+             .emissive_texture = texture_of(material->emissive_texture),
+             .double_sided = material->double_sided,
+             .alpha_mode = is_seen_through(*material) ? AlphaMode::blend : material->alpha_mode,
+             .own_alpha_mode = material->alpha_mode,
+             .transmission = material->transmission,
+             .alpha_cutoff = material->alpha_cutoff,
+             .is_glossy = candela::is_glossy(*material),
+             .metalness = material->metalness,
+             .roughness = material->roughness,
+             .dielectric_f0 = dielectric_f0(*material),
+             .specular = material->specular,
+             .metal_roughness_texture = texture_of(material->metal_roughness_texture),
+             .normal_texture = texture_of(material->normal_texture),
+             .normal_scale = material->normal_scale,
+             .occlusion_texture = texture_of(material->occlusion_texture),
+             .occlusion_strength = material->occlusion_strength,
+             .by_second = material->second_uvs,
+             .needs_second_uvs = uses_second_uvs(*material)});
     }
     return found->second;
 }

@@ -45,7 +45,9 @@ struct SurfaceMaterial {
     glm::vec3 emissive;
     std::shared_ptr<const Texture> emissive_texture;  ///< null: none
     bool double_sided;
-    AlphaMode alpha_mode;
+    AlphaMode alpha_mode;      ///< blended if it is seen through
+    AlphaMode own_alpha_mode;  ///< the material's
+    float transmission;
     float alpha_cutoff;
     bool is_glossy;
     float metalness;
@@ -75,6 +77,12 @@ struct SurfaceMaterial {
     [[nodiscard]] glm::vec3 bump(const ImagePlace& place) const;
     /// The share of the light from emitters, the sky and other surfaces that reaches it.
     [[nodiscard]] float openness(const ImagePlace& place) const;
+    /// The share of what is behind that a surface that is seen through hides, but for what glass lets
+    /// through.
+    [[nodiscard]] float cover(float alpha) const {
+        if (own_alpha_mode == AlphaMode::blend) return alpha;
+        return own_alpha_mode == AlphaMode::mask && alpha < alpha_cutoff ? 0.0F : 1.0F;
+    }
     [[nodiscard]] bool is_hole(glm::vec4 colour) const {
         return alpha_mode == AlphaMode::mask && colour.a < alpha_cutoff;
     }

@@ -100,8 +100,8 @@ void trace_pixel(Trace& trace, glm::uvec2 pixel) {
     const std::size_t i = std::size_t{pixel.y} * trace.settings.size.x + pixel.x;
     const Ray ray = trace.viewpoint.through(glm::dvec2(pixel) + 0.5 + trace.settings.offset);
     const auto seen = seen_surfaces(trace.scene.geometry, ray);
-    float light_through = 1.0F;
-    for (const SeenSurface& layer : seen) light_through -= layer.weight;
+    glm::vec3 light_through(1.0F);
+    for (const SeenSurface& layer : seen) light_through *= layer.through;
     trace.estimate.direct.pixels[i] = light_through * trace.scene.sky.radiance(ray.direction);
     if (seen.empty()) return;
     trace.estimate.hit[i] = 1;

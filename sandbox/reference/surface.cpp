@@ -1,5 +1,9 @@
 #include "sandbox/reference/surface.hpp"
 
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "sandbox/reference/hemispherical_albedo.hpp"
@@ -28,22 +32,39 @@ glm::vec3 bumpy_normal(const Geometry& geometry, const Triangle& triangle, glm::
     return length > 0.0F ? turned / length : normal;  // where texels cancel each other, there is no direction
 }
 
-SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction, float light_through) {
+/// KHR_materials_transmission of a thin wall: what the interface does not mirror passes through with the
+/// colour of the surface. Schlick's Fresnel factor for the direction of the viewer, at this cosine.
+glm::vec3 passing(const Gloss& gloss, float transmission, float cosine) {
+    const float rest = 1.0F - std::min(cosine, 1.0F);
+    const glm::vec3 mirrored = glm::mix(gloss.f0, glm::vec3(gloss.f90), std::pow(rest, 5.0F));
+    return transmission * (1.0F - std::max({mirrored.r, mirrored.g, mirrored.b})) * gloss.diffuse;
+}
+
+SeenSurface seen_surface(const Geometry& geometry, const Hit& hit, glm::vec3 direction,
+                         glm::vec3 light_through) {
     const Triangle& triangle = geometry.triangle(hit.triangle);
     const SurfaceMaterial& material = geometry.material(triangle);
     const ImagePlace place = geometry.image_place(triangle, hit.weights);
     const glm::vec4 colour = colour_at(triangle, material, hit.weights);
     const float side = glm::dot(triangle.front, direction) < 0.0F ? 1.0F : -1.0F;
-    const float cover = material.alpha_mode == AlphaMode::blend ? colour.a : 1.0F;
+    const float cover = material.cover(colour.a);
+    const float kept = 1.0F - material.transmission;  // of the diffuse part
     SeenSurface seen{.surface = {.position = position_at(triangle, hit.weights),
                                  .face = side * triangle.front,
                                  .normal = side * bumpy_normal(geometry, triangle, hit.weights),
-                                 .albedo = glm::vec3(colour),
+                                 .albedo = kept * glm::vec3(colour),
                                  .emission = material.emission(place)},
                      .weight = light_through * cover,
+                     .through = glm::vec3(1.0F - cover),
                      .part = triangle.part,
                      .openness = material.openness(place)};
-    if (material.is_glossy) add_gloss(seen.surface, material.gloss(glm::vec3(colour), place), direction);
+    Gloss gloss = material.gloss(glm::vec3(colour), place);
+    if (material.transmission > 0.0F) {
+        const float cosine = -glm::dot(seen.surface.normal, glm::normalize(direction));
+        seen.through += cover * passing(gloss, material.transmission, std::max(cosine, 1e-3F));
+    }
+    gloss.diffuse *= kept;
+    if (material.is_glossy) add_gloss(seen.surface, gloss, direction);
     return seen;
 }
 
@@ -53,10 +74,10 @@ std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray)
     Sight sight = geometry.look(ray);
     if (sight.solid) sight.blended.push_back(*sight.solid);
     std::vector<SeenSurface> seen;
-    float light_through = 1.0F;
+    glm::vec3 light_through(1.0F);
     for (const Hit& hit : sight.blended) {
         seen.push_back(seen_surface(geometry, hit, ray.direction, light_through));
-        light_through -= seen.back().weight;
+        light_through *= seen.back().through;
     }
     return seen;
 }

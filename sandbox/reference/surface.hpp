@@ -25,14 +25,15 @@ struct Surface {
 /// A surface that the camera sees.
 struct SeenSurface {
     Surface surface;
-    float weight;        ///< share of the pixel that shows it
+    glm::vec3 weight;    ///< share of the pixel that shows it
+    glm::vec3 through;   ///< share of the light from behind that the surface lets through
     std::uint32_t part;  ///< of the geometry
     float openness;      ///< share of the light from emitters, the sky and other surfaces that reaches it
 };
 
-/// The surfaces seen along a ray, nearest first: blended surfaces, each weighted by the transparency of those
-/// in front of it, then the solid one. They are shaded with the normals of the mesh, turned by normal
-/// textures.
+/// The surfaces seen along a ray, nearest first: blended surfaces and glass, each weighted by what those in
+/// front of it let through, then the solid one. They are shaded with the normals of the mesh, turned by
+/// normal textures.
 [[nodiscard]] std::vector<SeenSurface> seen_surfaces(const Geometry& geometry, const Ray& ray);
 
 /// A surface for bounced light that a ray from the viewer has hit, with the flat normal of its triangle:

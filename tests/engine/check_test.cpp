@@ -60,6 +60,8 @@ TEST_SUITE("faults of bumpy meshes") {
             CHECK(fault_of_changed([&](Material& m) { m.occlusion_strength = strength; }) ==
                   material + "the strength of occlusion is not between 0 and 1");
         }
+        CHECK(fault_of_changed([](Material& m) { m.transmission = 1.5F; }) ==
+              material + "the transmission is not between 0 and 1");
         CHECK(fault_of_changed([](Material& m) { m.normal_texture = image(Encoding::srgb); }) ==
               material + "the normal texture is not encoded as linear values");
         CHECK(fault_of_changed([](Material& m) { m.occlusion_texture = image(Encoding::srgb); }) ==

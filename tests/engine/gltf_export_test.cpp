@@ -256,6 +256,7 @@ Material any_material(const Stock& stock) {
     if (material.normal_texture && any_bool()) material.normal_scale = any_float();
     material.occlusion_texture = any_of(stock.linear_images);
     if (material.occlusion_texture && any_bool()) material.occlusion_strength = any_fraction();
+    if (any_bool()) material.transmission = any_fraction();
     material.specular = any_fraction();
     if (any_bool()) material.specular_colour = glm::vec3(any_amount(), any_amount(), any_positive());
     if (any_bool()) material.ior = any_bool() ? 0.0F : 1.0F + any_amount();

@@ -300,6 +300,44 @@ TEST_SUITE("glTF materials") {
                                        "specularColorTextures of KHR_materials_specular are ignored"});
     }
 
+    TEST_CASE("layers that are left out are one warning each, also if the file requires them") {
+        GltfBuilder file = right_triangle();
+        file.document["extensionsUsed"] = {"KHR_materials_sheen", "KHR_materials_clearcoat",
+                                           "KHR_materials_volume"};
+        file.document["extensionsRequired"] = {"KHR_materials_clearcoat"};
+        CHECK(Imported(file).report.warnings ==
+              std::vector<std::string>{"KHR_materials_clearcoat is approximated by the base layer",
+                                       "KHR_materials_sheen is approximated by the base layer",
+                                       "KHR_materials_volume is approximated by the base layer"});
+    }
+
+    TEST_CASE("transmission") {
+        GltfBuilder file = right_triangle();
+        file.primitive()["material"] = 0;
+        file.document["extensionsUsed"] = {"KHR_materials_transmission"};
+        const auto imported_with = [&](const char* extension) {
+            file.document["materials"][0]["extensions"]["KHR_materials_transmission"] =
+                Json::parse(extension);
+            return Imported(file);
+        };
+        CHECK(imported_with("{}").primitive().material->transmission == 0.0F);
+        const Imported half = imported_with(R"({"transmissionFactor": 0.5})");
+        CHECK(half.primitive().material->transmission == 0.5F);
+        CHECK(half.report.warnings.empty());
+        file.document["images"][0] = data_uri(png(four_colours, 2, 2));
+        file.document["textures"] = Json::parse(R"([{"source": 0}])");
+        const Imported textured =
+            imported_with(R"({"transmissionFactor": 1, "transmissionTexture": {"index": 0}})");
+        CHECK(textured.primitive().material->transmission == 1.0F);
+        CHECK(
+            textured.report.warnings ==
+            std::vector<std::string>{"transmissionTextures of KHR_materials_transmission are approximated by "
+                                     "their factor"});
+        file.document["materials"][0]["extensions"]["KHR_materials_transmission"] =
+            Json::parse(R"({"transmissionFactor": 1.5})");
+        CHECK(error_of(file).find("transmissionFactor") != std::string::npos);
+    }
+
     TEST_CASE("metalness, roughness and specular reflection") {
         GltfBuilder file = right_triangle();
         // Without a material: white rough metal, by glTF's defaults.

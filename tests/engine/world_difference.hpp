@@ -150,6 +150,7 @@ class WorldComparison {
         expect(a.metalness == b.metalness && a.roughness == b.roughness, "its metalness and roughness");
         expect(a.specular == b.specular && a.specular_colour == b.specular_colour, "its specular colour");
         expect(a.ior == b.ior, "its index of refraction");
+        expect(a.transmission == b.transmission, "its transmission");
         expect(a.normal_scale == b.normal_scale, "the scale of its normal texture");
         expect(a.occlusion_strength == b.occlusion_strength, "the strength of its occlusion");
         expect(a.second_uvs == b.second_uvs, "which textures have second coordinates");

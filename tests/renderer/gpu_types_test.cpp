@@ -63,7 +63,7 @@ const std::vector<Layout>& layouts() {
           MEMBER(Material, first_normal_texel),
           MEMBER(Material, normal_width),
           MEMBER(Material, normal_height),
-          MEMBER(Material, pad0)}},
+          MEMBER(Material, transmission)}},
         {"Light",
          sizeof(gpu::Light),
          {MEMBER(Light, position), MEMBER(Light, kind), MEMBER(Light, direction), MEMBER(Light, range),

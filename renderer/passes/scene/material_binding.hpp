@@ -33,10 +33,15 @@ struct MaterialTexture {
     gl::Sampler sampler;
 };
 
+/// How surfaces of the material are drawn: all that are seen through are blended.
+[[nodiscard]] inline AlphaMode drawn_alpha(const Material& material) {
+    return is_seen_through(material) ? AlphaMode::blend : material.alpha_mode;
+}
+
 /// What draws with a material need besides its record in the buffer of materials, which has its factors.
 /// Materials that differ in nothing but factors have equal bindings, and one call draws all their meshes.
 struct MaterialBinding {
-    AlphaMode alpha = AlphaMode::opaque;
+    AlphaMode alpha = AlphaMode::opaque;  ///< drawn_alpha
     bool double_sided = false;
     bool emits = false;
     /// By slot; null: white.

@@ -104,7 +104,9 @@ std::uint32_t second_uv_flags(const Material& material) {
 }
 
 std::uint32_t material_flags(const Material& material) {
+    const bool ignores_alpha = material.transmission > 0.0F && material.alpha_mode != AlphaMode::blend;
     return (material.double_sided ? MATERIAL_DOUBLE_SIDED : 0U) |
+           (ignores_alpha ? MATERIAL_ALPHA_IGNORED : 0U) |
            wrap_bits(material.base_colour_texture.get()) << MATERIAL_BASE_COLOUR_WRAP_SHIFT |
            wrap_bits(material.emissive_texture.get()) << MATERIAL_EMISSIVE_WRAP_SHIFT |
            wrap_bits(material.normal_texture.get()) << MATERIAL_NORMAL_WRAP_SHIFT | second_uv_flags(material);
@@ -258,7 +260,7 @@ glm::vec3 MaterialTable::mean_of_image(const Listed& listed, std::size_t slot) c
 
 MaterialBinding MaterialTable::binding_of(std::uint32_t material) const {
     const Listed& listed = by_index_[material];
-    MaterialBinding binding{.alpha = listed.material->alpha_mode,
+    MaterialBinding binding{.alpha = drawn_alpha(*listed.material),
                             .double_sided = listed.material->double_sided,
                             .emits = emits(*listed.material),
                             .textures = {}};
@@ -305,7 +307,8 @@ gpu::Material MaterialTable::record_of(const Listed& listed) const {
             .mean_gloss = glm::packHalf2x16(mean_gloss),
             .first_normal_texel = normals.range.first,
             .normal_width = normals.width,
-            .normal_height = normals.height};
+            .normal_height = normals.height,
+            .transmission = material.transmission};
 }
 
 void MaterialTable::upload(Execution& run, BufferHandle<gpu::Material> materials,

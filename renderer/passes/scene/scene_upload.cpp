@@ -110,7 +110,7 @@ std::vector<SceneLayout::Drawable> list_drawables(const SceneGeometry& geometry,
         const SceneLayout::Drawable& drawable = drawables[i];
         const Material& material = *drawable.primitive->material;
         const MaterialImages& images = store.materials.images_of(drawable.material);
-        return std::tuple(material.alpha_mode, images[base_colour_slot], material.double_sided,
+        return std::tuple(drawn_alpha(material), images[base_colour_slot], material.double_sided,
                           geometry.items[drawable.item].mirrored, emits(material), images);
     };
     std::vector<SceneLayout::Drawable> ordered;
@@ -125,9 +125,8 @@ bool can_share(const SceneLayout::Group& a, const SceneLayout::Group& b) {
 }
 
 std::uint32_t count_solids(const std::vector<SceneLayout::Drawable>& drawables) {
-    return static_cast<std::uint32_t>(std::ranges::count_if(drawables, [](const auto& drawable) {
-        return drawable.primitive->material->alpha_mode != AlphaMode::blend;
-    }));
+    return static_cast<std::uint32_t>(std::ranges::count_if(
+        drawables, [](const auto& drawable) { return !is_seen_through(*drawable.primitive->material); }));
 }
 
 std::vector<SceneLayout::Group> group_draws(const SceneGeometry& geometry,

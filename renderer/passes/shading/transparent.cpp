@@ -61,7 +61,7 @@ void draw_blended(Gpu& gpu, const SceneLayout::Group& group) {
 
 TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene, const Lighting& lighting,
                               const ViewData& view, const Surfaces& surfaces, TextureHandle radiance,
-                              bool emission) {
+                              const TransparentParts& parts) {
     return graph.add("transparent", [&](Pass& pass) {
         pass.tag(Workload::pixels);
         read_meshes(pass, scene);
@@ -72,7 +72,8 @@ TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scen
         test_depth(pass, surfaces);
         std::vector<std::string> variant = mesh_variant(scene, lighting_variant(lighting));
         variant.emplace_back("BLENDED");
-        if (emission) variant.emplace_back("EMISSION");
+        if (parts.emission) variant.emplace_back("EMISSION");
+        if (parts.glass) variant.emplace_back("GLASS");
         const gl::Program& program =
             gpu.program({"surfaces/mesh_surface.vert", "shading/forward.frag"}, variant);
         const TextureHandle out = pass.write(radiance, Usage::colour_target);

@@ -9,20 +9,31 @@
 
 namespace candela {
 
+/// What blended surfaces may do besides reflecting light.
+struct TransparentParts {
+    bool emission = false;
+    bool glass = false;  ///< let light through: Material::transmission
+};
+
 /// Adds node `transparent` (raster): draws the blended surfaces over the solid ones: radiance = alpha · lit +
 /// (1 - alpha) · behind (Porter and Duff's "over" operator, 1984), where alpha is that of the base colour and
 /// `lit` the radiance that `forward` gives for an opaque surface, and with `emission` what it emits. It is
-/// the same in every shading path. Blended surfaces are tested against the depth of the solid `surfaces` and
-/// do not write depth. Returns the radiance with them. Depends on meshes, placement, materials, lighting,
-/// view, that depth and `radiance`.
+/// the same in every shading path. Where alpha is that of an opaque or masked material, it is 1, or 0 in
+/// holes. With `glass`, transmission · diffuse albedo · (1 - F) of `behind` is added to `lit`, F being the
+/// share that the interface reflects, and only 1 - transmission of the diffuse part is lit. What glass
+/// reflects in the mirror direction is not found by rays, as for all blended surfaces. Blended surfaces are
+/// tested against the depth of the solid `surfaces` and do not write depth. Returns the radiance with them.
+/// Depends on meshes, placement, materials, lighting, view, that depth and `radiance`.
 ///
 /// Drawables are drawn one by one, from far to near by the view-space depth of the centre of their bounding
 /// box; equal depths keep their order. The back faces of a double-sided drawable are drawn before its front
 /// faces. That is correct for convex drawables that do not intersect; in others, triangles are drawn in the
-/// order of the mesh. Blended surfaces receive direct and indirect light and shadows, but cast no shadows and
-/// place no VPLs. While the scene has any, gl::GlError is thrown for more than 16,384 lights.
+/// order of the mesh. Blended surfaces receive direct and indirect light and shadows, but cast no shadows,
+/// also no coloured ones, and place no VPLs; mirrors do not show them. While the scene has any, gl::GlError
+/// is thrown for more than 16,384 lights.
 [[nodiscard]] TextureHandle add_transparent(FrameGraph& graph, Gpu& gpu, const SceneData& scene,
                                             const Lighting& lighting, const ViewData& view,
-                                            const Surfaces& surfaces, TextureHandle radiance, bool emission);
+                                            const Surfaces& surfaces, TextureHandle radiance,
+                                            const TransparentParts& parts);
 
 }  // namespace candela

@@ -96,6 +96,10 @@ struct Material {
     float specular = 0.0F;
     glm::vec3 specular_colour{1.0F};  ///< linear, >= 0
     float ior = 1.5F;  ///< index of refraction, >= 1; 0: reflects all light (KHR_materials_ior)
+    /// Share, in [0, 1], of the light reflected in all directions that passes through instead, times the base
+    /// colour: thin glass, which bends no light (KHR_materials_transmission). What lies behind is sharp,
+    /// whatever the roughness. See add_transparent.
+    float transmission = 0.0F;
     /// Normals in the space of the vertices' tangents, from 0 to 1 for -1 to 1; linear, null: none. They turn
     /// what the surface reflects, but cast no shadows. x and y are multiplied by `normal_scale`. All vertices
     /// need tangents then, as derive_tangents of tangents.hpp makes them.
@@ -123,6 +127,12 @@ struct Material {
 /// Whether surfaces of the material may reflect light in other ways than all surfaces of a Lambertian one do.
 [[nodiscard]] inline bool is_glossy(const Material& material) {
     return material.metalness > 0.0F || material.specular > 0.0F;
+}
+
+/// Whether what lies behind surfaces of the material may be seen through them. They stop no light: they cast
+/// no shadows and light no others.
+[[nodiscard]] inline bool is_seen_through(const Material& material) {
+    return material.alpha_mode == AlphaMode::blend || material.transmission > 0.0F;
 }
 
 /// Whether the material has images of details of its surfaces' shape.
@@ -198,6 +208,12 @@ struct Mesh {
 [[nodiscard]] inline bool is_glossy(const Mesh& mesh) {
     return std::ranges::any_of(mesh.primitives,
                                [](const Primitive& primitive) { return is_glossy(*primitive.material); });
+}
+
+/// Whether light passes through surfaces of the mesh as through glass.
+[[nodiscard]] inline bool is_glass(const Mesh& mesh) {
+    return std::ranges::any_of(
+        mesh.primitives, [](const Primitive& primitive) { return primitive.material->transmission > 0.0F; });
 }
 
 /// Whether surfaces of the mesh may be bumpy.

@@ -82,6 +82,7 @@ struct ImportOptions {
 /// Supported extensions:
 /// - KHR_lights_punctual
 /// - KHR_materials_emissive_strength, KHR_materials_ior, KHR_materials_specular without its textures
+/// - KHR_materials_transmission as thin glass, its texture approximated by the factor
 /// - KHR_materials_unlit: the surface emits its base colour, without that of its vertices
 /// - KHR_materials_variants: the default materials are read
 /// - KHR_texture_transform
@@ -94,6 +95,9 @@ struct ImportOptions {
 /// - CANDELA_environment of a scene, {"radiance": [r, g, b], "uri": "sky.hdr", "rotation": radians, "name":
 ///   "sky"}: becomes an entity with an Environment. Instead of "uri" it may have a "bufferView".
 /// - CANDELA_light of a light, {"castsShadow": false}
+///
+/// KHR_materials_anisotropy, _clearcoat, _diffuse_transmission, _dispersion, _iridescence, _sheen and _volume
+/// are left out with a warning: surfaces look like their base layer.
 ///
 /// Any other extension is a warning, also if the file requires it; primitives whose positions or indices it
 /// holds are skipped. Also left out with a warning: points and lines, further sets of colours, skins with
