@@ -7,19 +7,8 @@
 
 namespace candela::sandbox {
 
-/// An entity with a mesh, and how much of what surfaces of the world emit arrives there.
-struct LitObject {
-    Entity entity;
-    double area = 0.0;      ///< m²
-    double radiance = 0.0;  ///< that it would have on average if it were white, without bounces; cd/m²
-};
-
-/// All objects of a world that has surfaces which emit light; else none. By 1,024 rays, the same at each
-/// call. Of textures, the mean counts.
-[[nodiscard]] std::vector<LitObject> light_by_emission(const World& world);
-
-/// Whether a world has a light, a sky, or surfaces that emit so much that objects with a third of all surface
-/// are lit by it.
+/// Whether a world has a light, a sky, or surfaces that emit so much that a quarter of what is seen of it is
+/// lit by them; seen from its first camera, or, without one, from where the app looks at it.
 [[nodiscard]] bool is_lit(const World& world);
 
 /// Replaces the sky of a scene by one that is brighter above than below, and adds a directional light with a
