@@ -29,13 +29,13 @@ using Vertices = DeformedMesh::Vertices;
 /// Buffers of one figure that are free again. A buffer returns when its last holder, perhaps in another
 /// thread, lets it go. The pointer is another each time, also for weak pointers, so that nobody takes new
 /// content for old.
-class Shelf {
+class SpareBuffers {
  public:
     /// A buffer with texture coordinates and colours of the mesh, and some positions, normals and tangents.
-    static std::unique_ptr<Vertices> take(Shelf& shelf, const Mesh& mesh) {
+    static std::unique_ptr<Vertices> take(SpareBuffers& spare, const Mesh& mesh) {
         {
-            const std::lock_guard lock(shelf.mutex_);
-            for (std::unique_ptr<Vertices>& free : shelf.free_) {
+            const std::lock_guard lock(spare.mutex_);
+            for (std::unique_ptr<Vertices>& free : spare.free_) {
                 if (free) return std::move(free);
             }
         }
@@ -44,9 +44,9 @@ class Shelf {
         return vertices;
     }
 
-    static std::shared_ptr<const Vertices> share(const std::shared_ptr<Shelf>& shelf,
+    static std::shared_ptr<const Vertices> share(const std::shared_ptr<SpareBuffers>& spare,
                                                  std::unique_ptr<Vertices> vertices) {
-        return {vertices.release(), [shelf](Vertices* released) { shelf->put(released); }};
+        return {vertices.release(), [spare](Vertices* released) { spare->put(released); }};
     }
 
  private:
@@ -99,7 +99,7 @@ struct Figure {
     std::vector<AffineColumns> joints;
     std::vector<float> weights;
     std::shared_ptr<const Vertices> result;
-    std::shared_ptr<Shelf> shelf = std::make_shared<Shelf>();
+    std::shared_ptr<SpareBuffers> spare = std::make_shared<SpareBuffers>();
     bool is_seen = false;  // in this update
 };
 
@@ -261,7 +261,7 @@ struct MeshDeformer::State {
     }
 
     static std::shared_ptr<const Vertices> deform(const Figure& figure, const PreparedMesh& mesh) {
-        std::unique_ptr<Vertices> buffer = Shelf::take(*figure.shelf, *figure.mesh);
+        std::unique_ptr<Vertices> buffer = SpareBuffers::take(*figure.spare, *figure.mesh);
         for (std::size_t i = 0; i < buffer->size(); ++i) {
             const Primitive& primitive = figure.mesh->primitives[i];
             const PreparedInfluences& influences = mesh.influences[i];
@@ -273,7 +273,7 @@ struct MeshDeformer::State {
                 move_by_joints(is_morphed ? moved : primitive.vertices, influences, figure.joints, moved);
             }
         }
-        return Shelf::share(figure.shelf, std::move(buffer));
+        return SpareBuffers::share(figure.spare, std::move(buffer));
     }
 
     /// Entities that have neither skin nor weights any more get back the shape of their mesh.

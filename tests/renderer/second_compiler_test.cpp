@@ -96,6 +96,18 @@ MeshInstance bumpy_square(AlphaMode mode) {
     return {std::make_shared<const Mesh>(std::move(mesh))};
 }
 
+/// A square of glass whose occlusion lies by second texture coordinates.
+MeshInstance glass_square() {
+    Material material;
+    material.transmission = 0.5F;
+    material.occlusion_texture = std::make_shared<const Image>(
+        Image{.width = 1, .height = 1, .texels = {{128, 0, 0, 255}}, .encoding = Encoding::linear});
+    material.second_uvs.occlusion = true;
+    Mesh mesh = *square(1.0F, std::make_shared<const Material>(std::move(material)));
+    mesh.primitives[0].second_uvs.resize(mesh.primitives[0].vertices.size());
+    return {std::make_shared<const Mesh>(std::move(mesh))};
+}
+
 /// The file extension by which glslang recognises the stage.
 std::string ending(GLenum stage) {
     switch (stage) {
@@ -165,6 +177,10 @@ TEST_SUITE("second compiler") {
         for (const Show show : {Show::roughness, Show::metalness, Show::total}) {
             configure_each(VplPlacement::surfels, show);
         }
+        // And with all that images may lie by, and glass.
+        add(world, Transform{}, glass_square());
+        renderer.render(world, camera, target.target());
+        configure_each(VplPlacement::surfels, Show::total);
         // Inspection of textures, of integers and of light lists, and the difference of two pictures.
         Extension integers{.name = "integers", .place = ExtensionPlace::after_surfaces};
         integers.declare = [](FrameGraph& graph, ViewFrame&) {
@@ -191,7 +207,9 @@ TEST_SUITE("second compiler") {
                                                                          {"DIRECTED", "GLOSSY"},
                                                                          {"MIRRORED"},
                                                                          {"EMITTERS", "EMISSION", "SKY"},
-                                                                         {"EMITTERS", "BUMPY"}}) {
+                                                                         {"EMITTERS", "BUMPY"},
+                                                                         {"SECOND_UV", "GLOSSY"},
+                                                                         {"SECOND_UV", "GLASS"}}) {
             CAPTURE(variant.front());
             CAPTURE(variant.back());
             CHECK(has_variant(variant));
