@@ -22,7 +22,7 @@ void check_finite(std::span<const float> numbers) {
     if (!std::ranges::all_of(numbers, is_finite)) throw SceneError("a number is not finite");
 }
 
-const char* type_of(std::size_t components) {
+const char* accessor_type(std::size_t components) {
     if (components == 1) return "SCALAR";
     return components == 3 ? "VEC3" : "VEC4";
 }
@@ -34,7 +34,7 @@ std::size_t add_numbers(std::span<const float> numbers, std::size_t components, 
     accessor.update({{"bufferView", draft.add_view(std::as_bytes(numbers))},
                      {"componentType", floating_point},
                      {"count", numbers.size() / components},
-                     {"type", type_of(components)}});
+                     {"type", accessor_type(components)}});
     return draft.add("accessors", std::move(accessor));
 }
 

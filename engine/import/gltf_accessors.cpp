@@ -466,7 +466,7 @@ std::vector<glm::mat4> read_matrices(const Document& document, int index, const 
     if (accessor.components != 16 || !is_float(accessor)) {
         throw SceneError(fmt::format("accessor {} holds matrices, but is not MAT4 of FLOAT", index));
     }
-    const auto matrices = read<glm::mat4>(document, index, selection, load<glm::mat4>);
+    auto matrices = read<glm::mat4>(document, index, selection, load<glm::mat4>);
     for (std::size_t i = 0; i < matrices.size(); ++i) {
         for (int k = 0; k < 16; ++k) {
             if (!std::isfinite(matrices[i][k / 4][k % 4])) {

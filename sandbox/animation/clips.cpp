@@ -77,7 +77,7 @@ bool ClipPlayback::playing(const World& world) const {
     });
 }
 
-void ClipPlayback::toggle(World& world) {
+void ClipPlayback::toggle(World& world) const {
     const bool pauses = playing(world);
     for (const Entity entity : animation_players(world)) {
         world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) {

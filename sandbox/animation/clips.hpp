@@ -28,7 +28,7 @@ class ClipPlayback {
     [[nodiscard]] bool playing(const World& world) const;
 
     /// Pauses all players, or, if none plays, resumes all; those that have ended start again.
-    void toggle(World& world);
+    void toggle(World& world) const;
     /// Moves all players on by one frame and pauses them.
     void step(World& world);
     /// Shows a player's clip at a time, seconds.

@@ -17,7 +17,7 @@
 namespace candela::sandbox {
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr float half_turn = std::numbers::pi_v<float>;
 
 bool has_lights(const World& world) {
     std::size_t lights = world.count<Environment>();
@@ -32,7 +32,7 @@ std::shared_ptr<const SkyPicture> studio_picture() {
     constexpr float top = 1.0F, horizon = 0.25F, bottom = 0.08F;
     SkyPicture picture{width, height, {}};
     for (std::uint32_t row = 0; row < height; ++row) {
-        const float up = std::cos(pi * (static_cast<float>(row) + 0.5F) / static_cast<float>(height));
+        const float up = std::cos(half_turn * (static_cast<float>(row) + 0.5F) / static_cast<float>(height));
         const float radiance =
             up > 0.0F ? horizon + (top - horizon) * up * up : horizon + (horizon - bottom) * up;
         picture.texels.insert(picture.texels.end(), width, glm::vec3(radiance));

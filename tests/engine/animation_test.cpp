@@ -150,16 +150,17 @@ TEST_SUITE("animation") {
     TEST_CASE("steps hold the value of the key before") {
         Moving moving(AnimatedProperty::translation,
                       sampler_of(Interpolation::step, {1, 2, 4}, {1, 0, 0, 2, 0, 0, 3, 0, 0}));
-        for (const auto& [seconds, x] : std::vector<std::pair<double, float>>{{-1, 1.0F},
-                                                                              {0, 1.0F},
-                                                                              {1, 1.0F},
-                                                                              {1.99, 1.0F},
-                                                                              {2, 2.0F},
-                                                                              {3.9, 2.0F},
-                                                                              {4, 3.0F},
-                                                                              {9, 3.0F}}) {
-            CAPTURE(seconds);
-            CHECK(moving.at(seconds).translation == glm::vec3(x, 0, 0));
+        using Expected = std::pair<double, float>;  // x after so many seconds
+        for (const Expected& expected : std::vector<Expected>{{-1, 1.0F},
+                                                              {0, 1.0F},
+                                                              {1, 1.0F},
+                                                              {1.99, 1.0F},
+                                                              {2, 2.0F},
+                                                              {3.9, 2.0F},
+                                                              {4, 3.0F},
+                                                              {9, 3.0F}}) {
+            CAPTURE(expected.first);
+            CHECK(moving.at(expected.first).translation == glm::vec3(expected.second, 0, 0));
         }
     }
 
