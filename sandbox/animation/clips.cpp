@@ -1,7 +1,6 @@
 #include "sandbox/animation/clips.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <candela/scene/scene_error.hpp>
+#include "sandbox/scene/scene.hpp"
 
 namespace candela::sandbox {
 
@@ -18,10 +18,8 @@ std::optional<std::size_t> find_clip(const AnimationPlayer& player, const std::s
     for (std::size_t clip = 0; clip < player.clips.size(); ++clip) {
         if (player.clips[clip]->name == wanted) return clip;
     }
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-    const bool whole = error == std::errc() && end == wanted.data() + wanted.size();
-    return whole && index < player.clips.size() ? std::optional(index) : std::nullopt;
+    const std::optional<std::size_t> index = parse_index(wanted);
+    return index && *index < player.clips.size() ? index : std::nullopt;
 }
 
 std::string list_clips(const World& world) {
@@ -70,15 +68,15 @@ void choose_clip(World& world, const std::string& wanted) {
     if (!found) throw SceneError(fmt::format("no clip '{}'; the scene has {}", wanted, list_clips(world)));
 }
 
-bool ClipPlayback::playing(const World& world) const {
+bool plays_clips(const World& world) {
     return std::ranges::any_of(animation_players(world), [&](Entity entity) {
         const auto& player = world.get<AnimationPlayer>(entity);
         return player.playing && player.speed != 0.0 && duration_of(player) > 0.0;
     });
 }
 
-void ClipPlayback::toggle(World& world) const {
-    const bool pauses = playing(world);
+void toggle_clips(World& world) {
+    const bool pauses = plays_clips(world);
     for (const Entity entity : animation_players(world)) {
         world.edit<AnimationPlayer>(entity, [&](AnimationPlayer& player) {
             player.playing = false;
@@ -106,7 +104,7 @@ void ClipPlayback::seek(World& world, Entity player, double time) {
 }
 
 void ClipPlayback::advance(World& world, double seconds) {
-    if (playing(world)) of_clips_ = advance_animations(world, seconds);
+    if (plays_clips(world)) of_clips_ = advance_animations(world, seconds);
     deform(world);
 }
 

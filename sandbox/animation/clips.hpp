@@ -21,14 +21,16 @@ void choose_clip(World& world, const std::string& wanted);
 /// The name of one of the player's clips, or "clip 3" if it has none.
 [[nodiscard]] std::string clip_name(const AnimationPlayer& player, std::size_t clip);
 
+/// Whether any clip moves on by itself.
+[[nodiscard]] bool plays_clips(const World& world);
+
+/// Pauses all players, or, if none plays, resumes all; those that have ended start again.
+void toggle_clips(World& world);
+
 /// Plays the clips of a world, and deforms what its skeletons and morph weights move, whoever has changed
 /// these.
 class ClipPlayback {
  public:
-    [[nodiscard]] bool playing(const World& world) const;
-
-    /// Pauses all players, or, if none plays, resumes all; those that have ended start again.
-    void toggle(World& world) const;
     /// Moves all players on by one frame and pauses them.
     void step(World& world);
     /// Shows a player's clip at a time, seconds.

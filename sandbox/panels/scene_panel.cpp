@@ -325,7 +325,7 @@ void draw_clip(World& world, Entity entity, ClipPlayback& clips) {
 void draw_clips(Document& document) {
     World& world = document.scene.world;
     for (const Entity player : animation_players(world)) draw_clip(world, player, document.clips);
-    if (button(document.clips.playing(world) ? "pause" : "play", "space")) document.clips.toggle(world);
+    if (button(plays_clips(world) ? "pause" : "play", "space")) toggle_clips(world);
     ImGui::SameLine();
     if (button("step", "period")) document.clips.step(world);
     for (const std::string& fault : document.clips.faults()) text(fault);

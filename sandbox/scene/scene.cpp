@@ -23,13 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<std::size_t> parse_index(const std::string& text) {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-    const bool whole = error == std::errc() && end == text.data() + text.size();
-    return whole ? std::optional(index) : std::nullopt;
-}
-
 std::string list_cameras(const World& world, const std::vector<Entity>& all) {
     std::vector<std::string> names;
     names.reserve(all.size());
@@ -67,6 +60,13 @@ Entity add_framing_camera(World& world, float aspect) {
 }
 
 }  // namespace
+
+std::optional<std::size_t> parse_index(const std::string& text) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    return whole ? std::optional(index) : std::nullopt;
+}
 
 fs::path shipped_file(const std::string& folder, const std::string& name) {
     std::error_code ignored;

@@ -27,6 +27,9 @@ struct Scene {
     std::vector<Entity> studio{};        ///< sky and light of add_studio; none before it was called
 };
 
+/// The whole number that `text` is, as where a camera or a clip is chosen by its index.
+[[nodiscard]] std::optional<std::size_t> parse_index(const std::string& text);
+
 /// The file of the animation script, if there is one.
 [[nodiscard]] std::optional<std::string> animation_of(const Scene& scene);
 

@@ -26,7 +26,7 @@ bool Document::animate(double seconds) {
 
 void Document::toggle_playback() {
     if (playback) return playback->toggle();
-    clips.toggle(scene.world);
+    toggle_clips(scene.world);
 }
 
 void Document::step_playback() {

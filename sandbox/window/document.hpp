@@ -28,7 +28,7 @@ struct Document {
     Document& operator=(const Document&) = delete;
 
     [[nodiscard]] bool is_playing() const {
-        return (playback && playback->playing()) || clips.playing(scene.world);
+        return (playback && playback->playing()) || plays_clips(scene.world);
     }
     /// Shows the next frame of the script, and the scene's clips `seconds` later. The viewer follows the
     /// camera that it started from if that moves, even if the user has moved away. Returns whether the scene

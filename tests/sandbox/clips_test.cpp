@@ -57,31 +57,31 @@ TEST_SUITE("clips") {
         CHECK(played.x() == 0.5F);
         played.playback.advance(played.world, 2.0);
         CHECK(played.x() == 0.5F);
-        CHECK(played.playback.playing(played.world));
+        CHECK(plays_clips(played.world));
         CHECK(played.playback.faults().empty());
     }
 
     TEST_CASE("paused it stays, and another edit stays with it; resumed it goes on from there") {
         Played played;
         played.playback.advance(played.world, 0.5);
-        played.playback.toggle(played.world);
-        CHECK_FALSE(played.playback.playing(played.world));
+        toggle_clips(played.world);
+        CHECK_FALSE(plays_clips(played.world));
         played.world.set(played.moved, Transform{.translation = {7.0F, 0.0F, 0.0F}});
         played.playback.advance(played.world, 1.0);
         CHECK(played.x() == 7.0F);
-        played.playback.toggle(played.world);
+        toggle_clips(played.world);
         played.playback.advance(played.world, 0.25);
         CHECK(played.x() == 0.75F);
     }
 
     TEST_CASE("a time can be sought while it is paused, and a step is one frame") {
         Played played;
-        played.playback.toggle(played.world);
+        toggle_clips(played.world);
         played.playback.seek(played.world, played.player, 1.25);
         CHECK(played.x() == 1.25F);
         played.playback.step(played.world);
         CHECK(played.x() == doctest::Approx(1.25 + seconds_a_frame));
-        CHECK_FALSE(played.playback.playing(played.world));
+        CHECK_FALSE(plays_clips(played.world));
     }
 
     TEST_CASE("what has ended plays again from its start") {
@@ -89,8 +89,8 @@ TEST_SUITE("clips") {
         played.change([](AnimationPlayer& player) { player.looping = false; });
         played.playback.advance(played.world, 5.0);
         CHECK(played.x() == 2.0F);
-        CHECK_FALSE(played.playback.playing(played.world));
-        played.playback.toggle(played.world);
+        CHECK_FALSE(plays_clips(played.world));
+        toggle_clips(played.world);
         played.playback.advance(played.world, 0.5);
         CHECK(played.x() == 0.5F);
     }
