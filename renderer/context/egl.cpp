@@ -1,4 +1,3 @@
-#define EGL_NO_X11  // no headers of window systems: displays are devices or surfaceless
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <fmt/format.h>

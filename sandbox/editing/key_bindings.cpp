@@ -1,6 +1,5 @@
 #include "sandbox/editing/key_bindings.hpp"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>

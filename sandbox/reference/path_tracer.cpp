@@ -55,16 +55,16 @@ Estimate black_estimate(glm::uvec2 size) {
 }
 
 glm::vec3 mean_indirect(const Trace& trace, const std::vector<SeenSurface>& seen, Sampler sampler) {
-    const std::uint32_t samples = trace.settings.samples / 2;
+    const std::uint32_t pairs = trace.settings.samples / 2;
     glm::dvec3 sum(0.0);
     for (const SeenSurface& layer : seen) {
-        for (std::uint32_t i = 0; i < samples; ++i) {
+        for (std::uint32_t i = 0; i < pairs; ++i) {
             sampler.start(trace.settings.first_sample / 2 + i);
             sum += layer.weight * layer.openness *
                    indirect_light(trace.scene, layer.surface, sampler, trace.settings);
         }
     }
-    return sum / static_cast<double>(samples);
+    return sum / static_cast<double>(pairs);
 }
 
 /// What a surface emits, and what it reflects of the light of emitters and of the sky.

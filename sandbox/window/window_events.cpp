@@ -1,6 +1,5 @@
 // What arrives at the session of a window: input, files, scenes, frames.
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <algorithm>

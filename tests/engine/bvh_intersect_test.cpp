@@ -9,6 +9,8 @@
 
 #include "engine/bvh/bvh.hpp"
 
+TEST_SUITE("BVH intersect") {
+
 namespace {
 
 using namespace candela;
@@ -98,3 +100,5 @@ TEST_CASE("intersect: hits are exact for small integer coordinates, including ra
 }
 
 }  // namespace
+
+}  // TEST_SUITE("BVH intersect")

@@ -18,6 +18,8 @@
 #include "engine/bvh/wide.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("BVH") {
+
 namespace {
 
 using namespace candela;
@@ -752,3 +754,5 @@ TEST_CASE("bvh: wide: a box is hardly larger than what it contains") {
 }
 
 }  // namespace
+
+}  // TEST_SUITE("BVH")

@@ -8,6 +8,8 @@
 
 #include "tests/engine/graph_fixture.hpp"
 
+TEST_SUITE("graph access") {
+
 namespace {
 
 using namespace candela;
@@ -152,3 +154,5 @@ TEST_CASE_FIXTURE(GraphFixture,
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph access")

@@ -10,6 +10,8 @@
 #include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_random.hpp"
 
+TEST_SUITE("graph barrier") {
+
 namespace {
 
 using namespace candela;
@@ -158,3 +160,5 @@ TEST_CASE("graph: coherent writes need no barriers") {
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph barrier")

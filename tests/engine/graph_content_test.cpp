@@ -11,6 +11,8 @@
 #include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_machine.hpp"
 
+TEST_SUITE("graph content") {
+
 namespace {
 
 using namespace candela;
@@ -169,3 +171,5 @@ TEST_CASE("graph: without changes, only passes that always run, their readers an
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph content")

@@ -7,6 +7,8 @@
 
 #include <candela/graph/describe.hpp>
 
+TEST_SUITE("graph describe") {
+
 namespace {
 
 using namespace candela;
@@ -324,3 +326,5 @@ TEST_CASE("graph description: JSON has the same content as the text") {
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph describe")

@@ -10,6 +10,8 @@
 #include <candela/graph/compile.hpp>
 #include <candela/graph/describe.hpp>
 
+TEST_SUITE("graph error") {
+
 namespace {
 
 using namespace candela;
@@ -318,3 +320,5 @@ TEST_CASE("graph error: all errors are found at once, and take() throws them") {
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph error")

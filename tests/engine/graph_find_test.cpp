@@ -8,102 +8,103 @@
 
 #include "tests/engine/graph_fixture.hpp"
 
+TEST_SUITE("graph find") {
+
 namespace {
 
 using namespace candela;
 
 using Find = GraphFixture;
 
-TEST_SUITE("graph find") {
-    TEST_CASE_FIXTURE(Find, "the newest version of a texture, by its name") {
-        CHECK_FALSE(graph.find_texture("scene"));
-        const TextureHandle blank = texture("scene");
-        CHECK_FALSE(graph.find_texture("scene"));
-        const TextureHandle first = draw("surfaces", {}, blank);
-        CHECK(graph.find_texture("scene")->handle == first);
-        CHECK(graph.find_texture("scene")->desc == colour);
-        const TextureHandle second = draw("sky", {}, first);
-        CHECK(graph.find_texture("scene")->handle == second);
-        CHECK_FALSE(graph.find_texture("scen"));
-        CHECK_FALSE(graph.find_buffer("scene"));
+TEST_CASE_FIXTURE(Find, "the newest version of a texture, by its name") {
+    CHECK_FALSE(graph.find_texture("scene"));
+    const TextureHandle blank = texture("scene");
+    CHECK_FALSE(graph.find_texture("scene"));
+    const TextureHandle first = draw("surfaces", {}, blank);
+    CHECK(graph.find_texture("scene")->handle == first);
+    CHECK(graph.find_texture("scene")->desc == colour);
+    const TextureHandle second = draw("sky", {}, first);
+    CHECK(graph.find_texture("scene")->handle == second);
+    CHECK_FALSE(graph.find_texture("scen"));
+    CHECK_FALSE(graph.find_buffer("scene"));
 
-        // The handle is one that a pass may read, and that keeps the texture alive.
-        graph.add("look", [&](Pass& pass) {
-            pass.side_effect();
-            pass.read(graph.find_texture("scene")->handle, Usage::sampled);
-        });
-        switch_to();
-        CHECK(run() == "surfaces sky look");
-        CHECK(backend.misuse.empty());
-    }
-
-    TEST_CASE_FIXTURE(Find, "names have the endings of views; of equal names, the last is found") {
-        const TextureHandle first = draw("draw", {}, texture("depth"));
-        graph.append_to_names(" 2");
-        const TextureHandle second = draw("draw", {}, texture("depth"));
-        graph.append_to_names("");
-        CHECK(graph.find_texture("depth")->handle == first);
-        CHECK(graph.find_texture("depth 2")->handle == second);
-        const TextureHandle again = draw("draw again", {}, texture("depth"));
-        CHECK(graph.find_texture("depth")->handle == again);
-        static_cast<void>(texture("depth"));  // not written
-        CHECK(graph.find_texture("depth")->handle == again);
-    }
-
-    TEST_CASE_FIXTURE(Find, "buffers with the size of their elements") {
-        const auto buffer = graph.buffer<double>("sums", 3);
-        CHECK_FALSE(graph.find_buffer("sums"));
-        std::optional<BufferHandle<double>> written;
-        graph.add("sum", [&](Pass& pass) { written = pass.write(buffer, Usage::storage); });
-        CHECK(graph.find_buffer("sums")->handle == static_cast<ResourceHandle>(*written));
-        CHECK(graph.find_buffer("sums")->stride == sizeof(double));
-        CHECK_FALSE(graph.find_texture("sums"));
-    }
-
-    TEST_CASE_FIXTURE(Find, "the note on a resource, of the type that its producer chose") {
-        struct Unit {
-            std::string name;
-            ValueHandle<int> scale;
-        };
-        const auto scale = graph.value<int>("scale");
-        const TextureHandle depth = draw("draw", {}, texture("depth"));
-        CHECK(graph.find_texture("depth")->note == nullptr);
-        graph.note(depth, 1);
-        graph.note(depth, Unit{"metres", scale});
-        const std::any* const note = graph.find_texture("depth")->note;
-        CHECK(std::any_cast<int>(note) == nullptr);
-        REQUIRE(std::any_cast<Unit>(note) != nullptr);
-        CHECK(std::any_cast<Unit>(note)->name == "metres");
-        CHECK(std::any_cast<Unit>(note)->scale == scale);
-
-        // It stays on later versions, and is not on the history.
-        static_cast<void>(draw("draw on", {}, depth));
-        CHECK(graph.find_texture("depth")->note != nullptr);
-        const TextureHandle mean = texture("mean");
-        graph.note(mean, 2);
-        const TextureHandle past = graph.history(mean);
-        static_cast<void>(draw("copy", {past}, mean));
-        CHECK(*std::any_cast<int>(graph.find_texture("mean")->note) == 2);
-    }
-
-    TEST_CASE_FIXTURE(Find, "neither histories nor imports are found, and parts when all are written") {
-        const TextureHandle mean = texture("mean");
-        const TextureHandle past = graph.history(mean);
-        const TextureHandle host = texture("host", Lifetime::imported);
-        CHECK_FALSE(graph.find_texture("mean"));
-        CHECK_FALSE(graph.find_texture("host"));
-        const TextureHandle newest = draw("add", {past, host}, mean);
-        CHECK(graph.find_texture("mean")->handle == newest);
-
-        const TextureHandle chain =
-            graph.texture("chain", {{8, 8}, Format::r32f, TextureShape::flat, 1, 2}, Lifetime::persistent);
-        const TextureHandle fine = draw("fine", {}, graph.mip(chain, 0));
-        const TextureHandle coarse = graph.mip(chain, 1);
-        CHECK(graph.find_texture("chain mip 0")->handle == fine);
-        CHECK_FALSE(graph.find_texture("chain"));
-        static_cast<void>(draw("coarse", {fine}, coarse));
-        CHECK(graph.find_texture("chain")->handle == chain);
-    }
+    // The handle is one that a pass may read, and that keeps the texture alive.
+    graph.add("look", [&](Pass& pass) {
+        pass.side_effect();
+        pass.read(graph.find_texture("scene")->handle, Usage::sampled);
+    });
+    switch_to();
+    CHECK(run() == "surfaces sky look");
+    CHECK(backend.misuse.empty());
 }
 
+TEST_CASE_FIXTURE(Find, "names have the endings of views; of equal names, the last is found") {
+    const TextureHandle first = draw("draw", {}, texture("depth"));
+    graph.append_to_names(" 2");
+    const TextureHandle second = draw("draw", {}, texture("depth"));
+    graph.append_to_names("");
+    CHECK(graph.find_texture("depth")->handle == first);
+    CHECK(graph.find_texture("depth 2")->handle == second);
+    const TextureHandle again = draw("draw again", {}, texture("depth"));
+    CHECK(graph.find_texture("depth")->handle == again);
+    static_cast<void>(texture("depth"));  // not written
+    CHECK(graph.find_texture("depth")->handle == again);
+}
+
+TEST_CASE_FIXTURE(Find, "buffers with the size of their elements") {
+    const auto buffer = graph.buffer<double>("sums", 3);
+    CHECK_FALSE(graph.find_buffer("sums"));
+    std::optional<BufferHandle<double>> written;
+    graph.add("sum", [&](Pass& pass) { written = pass.write(buffer, Usage::storage); });
+    CHECK(graph.find_buffer("sums")->handle == static_cast<ResourceHandle>(*written));
+    CHECK(graph.find_buffer("sums")->stride == sizeof(double));
+    CHECK_FALSE(graph.find_texture("sums"));
+}
+
+TEST_CASE_FIXTURE(Find, "the note on a resource, of the type that its producer chose") {
+    struct Unit {
+        std::string name;
+        ValueHandle<int> scale;
+    };
+    const auto scale = graph.value<int>("scale");
+    const TextureHandle depth = draw("draw", {}, texture("depth"));
+    CHECK(graph.find_texture("depth")->note == nullptr);
+    graph.note(depth, 1);
+    graph.note(depth, Unit{"metres", scale});
+    const std::any* const note = graph.find_texture("depth")->note;
+    CHECK(std::any_cast<int>(note) == nullptr);
+    REQUIRE(std::any_cast<Unit>(note) != nullptr);
+    CHECK(std::any_cast<Unit>(note)->name == "metres");
+    CHECK(std::any_cast<Unit>(note)->scale == scale);
+
+    // It stays on later versions, and is not on the history.
+    static_cast<void>(draw("draw on", {}, depth));
+    CHECK(graph.find_texture("depth")->note != nullptr);
+    const TextureHandle mean = texture("mean");
+    graph.note(mean, 2);
+    const TextureHandle past = graph.history(mean);
+    static_cast<void>(draw("copy", {past}, mean));
+    CHECK(*std::any_cast<int>(graph.find_texture("mean")->note) == 2);
+}
+
+TEST_CASE_FIXTURE(Find, "neither histories nor imports are found, and parts when all are written") {
+    const TextureHandle mean = texture("mean");
+    const TextureHandle past = graph.history(mean);
+    const TextureHandle host = texture("host", Lifetime::imported);
+    CHECK_FALSE(graph.find_texture("mean"));
+    CHECK_FALSE(graph.find_texture("host"));
+    const TextureHandle newest = draw("add", {past, host}, mean);
+    CHECK(graph.find_texture("mean")->handle == newest);
+
+    const TextureHandle chain =
+        graph.texture("chain", {{8, 8}, Format::r32f, TextureShape::flat, 1, 2}, Lifetime::persistent);
+    const TextureHandle fine = draw("fine", {}, graph.mip(chain, 0));
+    const TextureHandle coarse = graph.mip(chain, 1);
+    CHECK(graph.find_texture("chain mip 0")->handle == fine);
+    CHECK_FALSE(graph.find_texture("chain"));
+    static_cast<void>(draw("coarse", {fine}, coarse));
+    CHECK(graph.find_texture("chain")->handle == chain);
+}
 }  // namespace
+
+}  // TEST_SUITE("graph find")

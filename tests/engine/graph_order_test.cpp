@@ -9,6 +9,8 @@
 #include "engine/graph/details/plan.hpp"
 #include "tests/engine/graph_random.hpp"
 
+TEST_SUITE("graph order") {
+
 namespace {
 
 using namespace candela;
@@ -171,3 +173,5 @@ TEST_CASE("graph: 10,000 passes compile in seconds, even if each pass doubles th
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph order")

@@ -12,6 +12,8 @@
 
 #include "tests/engine/graph_fixture.hpp"
 
+TEST_SUITE("graph run") {
+
 namespace {
 
 using namespace candela;
@@ -389,3 +391,5 @@ TEST_CASE_FIXTURE(GraphFixture, "the record carries what the host says about pas
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph run")

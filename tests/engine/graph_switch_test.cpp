@@ -9,6 +9,8 @@
 
 #include "tests/engine/graph_fixture.hpp"
 
+TEST_SUITE("graph switch") {
+
 namespace {
 
 using namespace candela;
@@ -313,3 +315,5 @@ TEST_CASE("graph memory: bytes saved by sharing and bytes in the free pool are r
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph switch")

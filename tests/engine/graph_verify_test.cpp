@@ -10,6 +10,8 @@
 #include "tests/engine/graph_machine.hpp"
 #include "tests/throws.hpp"
 
+TEST_SUITE("graph verify") {
+
 namespace {
 
 using namespace candela;
@@ -464,3 +466,5 @@ TEST_CASE("graph verify: in random graphs the error names the pass with the unde
 }
 
 }  // namespace
+
+}  // TEST_SUITE("graph verify")

@@ -12,6 +12,8 @@
 
 #include "engine/import/decode_image.hpp"
 
+TEST_SUITE("PNG") {
+
 using namespace candela;
 
 namespace {
@@ -97,25 +99,25 @@ std::vector<Kind> all_kinds() {
 
 }  // namespace
 
-TEST_SUITE("PNG") {
-    TEST_CASE("PNGs of all colour types, depths and orders decode as with stb") {
-        for (const Kind& kind : all_kinds()) {
-            CAPTURE(kind.colour);
-            CAPTURE(kind.depth);
-            CAPTURE(kind.interlace);
-            CAPTURE(kind.transparent);
-            const std::vector<unsigned char> file = random_png(kind);
-            gltf::ImportBudget budget({});
-            const Image image = gltf::decode_image(file, budget);
-            REQUIRE(image.width == width);
-            REQUIRE(image.height == height);
-            int columns = 0;
-            int rows = 0;
-            stbi_uc* const expected = stbi_load_from_memory(file.data(), static_cast<int>(file.size()),
-                                                            &columns, &rows, nullptr, STBI_rgb_alpha);
-            REQUIRE(expected != nullptr);
-            CHECK(std::memcmp(image.texels.data(), expected, image.texels.size() * 4) == 0);
-            stbi_image_free(expected);
-        }
+TEST_CASE("PNGs of all colour types, depths and orders decode as with stb") {
+    for (const Kind& kind : all_kinds()) {
+        CAPTURE(kind.colour);
+        CAPTURE(kind.depth);
+        CAPTURE(kind.interlace);
+        CAPTURE(kind.transparent);
+        const std::vector<unsigned char> file = random_png(kind);
+        gltf::ImportBudget budget({});
+        const Image image = gltf::decode_image(file, budget);
+        REQUIRE(image.width == width);
+        REQUIRE(image.height == height);
+        int columns = 0;
+        int rows = 0;
+        stbi_uc* const expected = stbi_load_from_memory(file.data(), static_cast<int>(file.size()), &columns,
+                                                        &rows, nullptr, STBI_rgb_alpha);
+        REQUIRE(expected != nullptr);
+        CHECK(std::memcmp(image.texels.data(), expected, image.texels.size() * 4) == 0);
+        stbi_image_free(expected);
     }
 }
+
+}  // TEST_SUITE("PNG")

@@ -13,6 +13,8 @@
 
 #include "tests/engine/malformed_gltf.hpp"
 
+TEST_SUITE("quantized glTF") {
+
 using namespace candela;
 using namespace candela::test;
 
@@ -151,54 +153,54 @@ void check_directions() {
 
 }  // namespace
 
-TEST_SUITE("quantized glTF") {
-    TEST_CASE("positions and texture coordinates of every type are within half a step of the floats") {
-        for (const bool normalized : {false, true}) {
-            check_positions_and_coordinates<std::int8_t>(normalized);
-            check_positions_and_coordinates<std::uint8_t>(normalized);
-            check_positions_and_coordinates<std::int16_t>(normalized);
-            check_positions_and_coordinates<std::uint16_t>(normalized);
-        }
-        check_second_coordinates<std::uint8_t>();
-        check_second_coordinates<std::uint16_t>();
+TEST_CASE("positions and texture coordinates of every type are within half a step of the floats") {
+    for (const bool normalized : {false, true}) {
+        check_positions_and_coordinates<std::int8_t>(normalized);
+        check_positions_and_coordinates<std::uint8_t>(normalized);
+        check_positions_and_coordinates<std::int16_t>(normalized);
+        check_positions_and_coordinates<std::uint16_t>(normalized);
     }
-
-    TEST_CASE("normals and tangents of both types are within half a step of the floats") {
-        check_directions<std::int8_t>();
-        check_directions<std::int16_t>();
-    }
-
-    TEST_CASE("the lowest normalised integer is -1, like the one above it") {
-        GltfBuilder file = quantized_triangle();
-        file.primitive()["attributes"]["POSITION"] =
-            add_quantized<std::int8_t>(file, {-128, -127, 127, 127, 0, 0, 0, 127, 0}, 3, 1.0F, true);
-        CHECK(Imported(file).positions() == std::vector<glm::vec3>{{-1, -1, 1}, {1, 0, 0}, {0, 1, 0}});
-    }
-
-    TEST_CASE("other types are refused, and all of them without the extension") {
-        const auto error_with = [](const char* attribute, std::size_t components, bool normalized,
-                                   bool is_declared) {
-            GltfBuilder file = quantized_triangle();
-            file.primitive()["attributes"][attribute] = add_quantized<std::int16_t>(
-                file, std::vector<float>(3 * components, 1.0F), components, 1.0F, normalized);
-            if (!is_declared) file.document.erase("extensionsUsed");
-            file.document.erase("extensionsRequired");
-            return error_of(file);
-        };
-        CHECK(error_with("NORMAL", 3, true, true) == "imported");
-        CHECK(error_with("NORMAL", 3, false, true) ==
-              "mesh 0: accessor 1 holds normals, but is not VEC3 of FLOAT, or of a type of "
-              "KHR_mesh_quantization");
-        CHECK(error_with("NORMAL", 3, true, false) ==
-              "mesh 0: accessor 1 holds normals, but is not VEC3 of FLOAT");
-        CHECK(error_with("POSITION", 3, true, false) ==
-              "mesh 0: accessor 1 holds positions, but is not VEC3 of FLOAT");
-        CHECK(error_with("POSITION", 2, true, true) ==
-              "mesh 0: accessor 1 holds positions, but is not VEC3 of FLOAT, or of a type of "
-              "KHR_mesh_quantization");
-        CHECK(error_with("TEXCOORD_0", 2, false, true) == "imported");
-        CHECK(error_with("TEXCOORD_0", 2, false, false) ==
-              "mesh 0: accessor 1 holds texture coordinates, but is not VEC2 of FLOAT or of normalised "
-              "UNSIGNED_BYTE or UNSIGNED_SHORT");
-    }
+    check_second_coordinates<std::uint8_t>();
+    check_second_coordinates<std::uint16_t>();
 }
+
+TEST_CASE("normals and tangents of both types are within half a step of the floats") {
+    check_directions<std::int8_t>();
+    check_directions<std::int16_t>();
+}
+
+TEST_CASE("the lowest normalised integer is -1, like the one above it") {
+    GltfBuilder file = quantized_triangle();
+    file.primitive()["attributes"]["POSITION"] =
+        add_quantized<std::int8_t>(file, {-128, -127, 127, 127, 0, 0, 0, 127, 0}, 3, 1.0F, true);
+    CHECK(Imported(file).positions() == std::vector<glm::vec3>{{-1, -1, 1}, {1, 0, 0}, {0, 1, 0}});
+}
+
+TEST_CASE("other types are refused, and all of them without the extension") {
+    const auto error_with = [](const char* attribute, std::size_t components, bool normalized,
+                               bool is_declared) {
+        GltfBuilder file = quantized_triangle();
+        file.primitive()["attributes"][attribute] = add_quantized<std::int16_t>(
+            file, std::vector<float>(3 * components, 1.0F), components, 1.0F, normalized);
+        if (!is_declared) file.document.erase("extensionsUsed");
+        file.document.erase("extensionsRequired");
+        return error_of(file);
+    };
+    CHECK(error_with("NORMAL", 3, true, true) == "imported");
+    CHECK(error_with("NORMAL", 3, false, true) ==
+          "mesh 0: accessor 1 holds normals, but is not VEC3 of FLOAT, or of a type of "
+          "KHR_mesh_quantization");
+    CHECK(error_with("NORMAL", 3, true, false) ==
+          "mesh 0: accessor 1 holds normals, but is not VEC3 of FLOAT");
+    CHECK(error_with("POSITION", 3, true, false) ==
+          "mesh 0: accessor 1 holds positions, but is not VEC3 of FLOAT");
+    CHECK(error_with("POSITION", 2, true, true) ==
+          "mesh 0: accessor 1 holds positions, but is not VEC3 of FLOAT, or of a type of "
+          "KHR_mesh_quantization");
+    CHECK(error_with("TEXCOORD_0", 2, false, true) == "imported");
+    CHECK(error_with("TEXCOORD_0", 2, false, false) ==
+          "mesh 0: accessor 1 holds texture coordinates, but is not VEC2 of FLOAT or of normalised "
+          "UNSIGNED_BYTE or UNSIGNED_SHORT");
+}
+
+}  // TEST_SUITE("quantized glTF")

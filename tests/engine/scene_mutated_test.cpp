@@ -8,6 +8,8 @@
 #include "tests/engine/moving_gltf.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("random") {
+
 using namespace candela;
 using namespace candela::test;
 
@@ -68,18 +70,18 @@ void check_edited(const Bytes& sound, unsigned int seed, int rounds) {
 
 }  // namespace
 
-TEST_SUITE("random") {
-    TEST_CASE("mutated glTF: the Cornell box") {
-        check_edited(read(cornell), test_seed(1), 1500);
-    }
-    TEST_CASE("mutated glTF: a scene with all features, as text") {
-        check_edited(complete_scene().gltf(), test_seed(2), 1500);
-    }
-    TEST_CASE("mutated glTF: a scene with all features, as binary") {
-        check_edited(complete_scene().glb(), test_seed(3), 3000);
-    }
-    TEST_CASE("mutated glTF: a figure that moves, as text and binary") {
-        check_edited(moving_scene().gltf(), test_seed(73), 1500);
-        check_edited(moving_scene().glb(), test_seed(74), 3000);
-    }
+TEST_CASE("mutated glTF: the Cornell box") {
+    check_edited(read(cornell), test_seed(1), 1500);
 }
+TEST_CASE("mutated glTF: a scene with all features, as text") {
+    check_edited(complete_scene().gltf(), test_seed(2), 1500);
+}
+TEST_CASE("mutated glTF: a scene with all features, as binary") {
+    check_edited(complete_scene().glb(), test_seed(3), 3000);
+}
+TEST_CASE("mutated glTF: a figure that moves, as text and binary") {
+    check_edited(moving_scene().gltf(), test_seed(73), 1500);
+    check_edited(moving_scene().glb(), test_seed(74), 3000);
+}
+
+}  // TEST_SUITE("random")

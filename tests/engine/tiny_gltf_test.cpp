@@ -11,6 +11,8 @@
 
 #include <candela/scene/gltf.hpp>
 
+TEST_SUITE("glTF and TinyGLTF") {
+
 using namespace candela;
 namespace fs = std::filesystem;
 
@@ -97,42 +99,42 @@ void compare_light(const World& world, Entity entity, const tinygltf::Light& exp
 
 }  // namespace
 
-TEST_SUITE("glTF and TinyGLTF") {
-    TEST_CASE("the import reads the shipped scenes as TinyGLTF does") {
-        for (const fs::path& path : shipped_scenes()) {
-            CAPTURE(path);
-            tinygltf::Model model;
-            std::string errors;
-            std::string warnings;
-            REQUIRE(tinygltf::TinyGLTF().LoadASCIIFromFile(&model, &errors, &warnings, path.string()));
-            World world;
-            const ImportReport report = import_gltf(path, world);
-            std::map<std::string, std::vector<Entity>> entities;
-            for (const Entity entity : report.entities) {
-                entities[world.get<Name>(entity).value].push_back(entity);
-            }
-            std::size_t compared = 0;
-            for (const tinygltf::Node& node : model.nodes) {
-                CAPTURE(node.name);
-                if (entities[node.name].size() != 1) {
-                    continue;  // a name that several have
-                }
-                ++compared;
-                const Entity entity = entities[node.name].front();
-                if (node.mesh >= 0) {
-                    const tinygltf::Mesh& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
-                    compare(*world.get<MeshInstance>(entity).mesh, mesh, model);
-                }
-                if (node.camera >= 0) {
-                    compare(world.get<Camera>(entity), model.cameras[static_cast<std::size_t>(node.camera)]);
-                }
-                if (const auto light = node.extensions.find("KHR_lights_punctual");
-                    light != node.extensions.end()) {
-                    const int index = light->second.Get("light").GetNumberAsInt();
-                    compare_light(world, entity, model.lights[static_cast<std::size_t>(index)]);
-                }
-            }
-            CHECK(compared > 0);
+TEST_CASE("the import reads the shipped scenes as TinyGLTF does") {
+    for (const fs::path& path : shipped_scenes()) {
+        CAPTURE(path);
+        tinygltf::Model model;
+        std::string errors;
+        std::string warnings;
+        REQUIRE(tinygltf::TinyGLTF().LoadASCIIFromFile(&model, &errors, &warnings, path.string()));
+        World world;
+        const ImportReport report = import_gltf(path, world);
+        std::map<std::string, std::vector<Entity>> entities;
+        for (const Entity entity : report.entities) {
+            entities[world.get<Name>(entity).value].push_back(entity);
         }
+        std::size_t compared = 0;
+        for (const tinygltf::Node& node : model.nodes) {
+            CAPTURE(node.name);
+            if (entities[node.name].size() != 1) {
+                continue;  // a name that several have
+            }
+            ++compared;
+            const Entity entity = entities[node.name].front();
+            if (node.mesh >= 0) {
+                const tinygltf::Mesh& mesh = model.meshes[static_cast<std::size_t>(node.mesh)];
+                compare(*world.get<MeshInstance>(entity).mesh, mesh, model);
+            }
+            if (node.camera >= 0) {
+                compare(world.get<Camera>(entity), model.cameras[static_cast<std::size_t>(node.camera)]);
+            }
+            if (const auto light = node.extensions.find("KHR_lights_punctual");
+                light != node.extensions.end()) {
+                const int index = light->second.Get("light").GetNumberAsInt();
+                compare_light(world, entity, model.lights[static_cast<std::size_t>(index)]);
+            }
+        }
+        CHECK(compared > 0);
     }
 }
+
+}  // TEST_SUITE("glTF and TinyGLTF")

@@ -9,6 +9,8 @@
 
 #include "tests/engine/malformed_gltf.hpp"
 
+TEST_SUITE("WebP") {
+
 using namespace candela;
 using namespace candela::test;
 
@@ -65,58 +67,56 @@ std::vector<std::string> warnings_of(const GltfBuilder& file) {
 
 }  // namespace
 
-TEST_SUITE("WebP") {
-    TEST_CASE("a lossless picture is read exactly, and instead of a fallback") {
-        GltfBuilder file = textured(lossless(many_colours(), width, height));
-        file.document["images"].push_back({{"uri", "nowhere.png"}});
-        file.document["textures"][0]["source"] = 1;
-        const Imported imported(file);
-        CHECK(imported.report.warnings.empty());
-        CHECK(texture_of(imported).width == width);
-        CHECK(texture_of(imported).height == height);
-        CHECK(texture_of(imported).texels == many_colours());
-        CHECK(texture_of(imported).encoding == Encoding::srgb);
-    }
+TEST_CASE("a lossless picture is read exactly, and instead of a fallback") {
+    GltfBuilder file = textured(lossless(many_colours(), width, height));
+    file.document["images"].push_back({{"uri", "nowhere.png"}});
+    file.document["textures"][0]["source"] = 1;
+    const Imported imported(file);
+    CHECK(imported.report.warnings.empty());
+    CHECK(texture_of(imported).width == width);
+    CHECK(texture_of(imported).height == height);
+    CHECK(texture_of(imported).texels == many_colours());
+    CHECK(texture_of(imported).encoding == Encoding::srgb);
+}
 
-    TEST_CASE("a picture with losses") {
-        const Texels texels(64, glm::u8vec4(200, 100, 50, 255));
-        std::uint8_t* written = nullptr;
-        const std::size_t size = WebPEncodeRGBA(&texels.data()->x, 8, 8, 8 * 4, 100.0F, &written);
-        const Imported imported(textured(taken(written, size)));
-        REQUIRE(texture_of(imported).texels.size() == 64);
-        for (const glm::u8vec4& texel : texture_of(imported).texels) {
-            // The colours are rounded to 219 levels of brightness and 224 of each difference, there and back.
-            for (int i = 0; i < 4; ++i) {
-                CHECK(std::abs(texel[i] - texels[0][i]) <= 4);
-            }
-        }
-    }
-
-    TEST_CASE("a large picture of one colour, in a few bytes, counts with all its pixels") {
-        constexpr int side = 1024;
-        const Bytes file =
-            textured(lossless(Texels(std::size_t{side} * side, glm::u8vec4(1, 2, 3, 255)), side, side))
-                .gltf();
-        REQUIRE(file.size() < 2000);
-        World world;
-        ImportOptions options;
-        options.limits.image_pixels = side * side;
-        CHECK(import_gltf(file, {}, "test.gltf", world, options).warnings.empty());
-        options.limits.image_pixels = side * side - 1;
-        CHECK_THROWS_WITH_AS((void)import_gltf(file, {}, "test.gltf", world, options),
-                             "test.gltf: image 0: its 1024 x 1024 pixels are 1,048,576, above the limit of "
-                             "1,048,575 (image_pixels)",
-                             SceneError);
-    }
-
-    TEST_CASE("a picture that is cut off anywhere is a warning") {
-        const Bytes whole = lossless(many_colours(), width, height);
-        for (std::size_t size = 12; size + 2 < whole.size(); ++size) {
-            CAPTURE(size);
-            const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
-            CHECK(
-                warnings_of(textured(cut)) ==
-                std::vector<std::string>{"image 0: it cannot be decoded; a checker pattern takes its place"});
+TEST_CASE("a picture with losses") {
+    const Texels texels(64, glm::u8vec4(200, 100, 50, 255));
+    std::uint8_t* written = nullptr;
+    const std::size_t size = WebPEncodeRGBA(&texels.data()->x, 8, 8, 8 * 4, 100.0F, &written);
+    const Imported imported(textured(taken(written, size)));
+    REQUIRE(texture_of(imported).texels.size() == 64);
+    for (const glm::u8vec4& texel : texture_of(imported).texels) {
+        // The colours are rounded to 219 levels of brightness and 224 of each difference, there and back.
+        for (int i = 0; i < 4; ++i) {
+            CHECK(std::abs(texel[i] - texels[0][i]) <= 4);
         }
     }
 }
+
+TEST_CASE("a large picture of one colour, in a few bytes, counts with all its pixels") {
+    constexpr int side = 1024;
+    const Bytes file =
+        textured(lossless(Texels(std::size_t{side} * side, glm::u8vec4(1, 2, 3, 255)), side, side)).gltf();
+    REQUIRE(file.size() < 2000);
+    World world;
+    ImportOptions options;
+    options.limits.image_pixels = side * side;
+    CHECK(import_gltf(file, {}, "test.gltf", world, options).warnings.empty());
+    options.limits.image_pixels = side * side - 1;
+    CHECK_THROWS_WITH_AS((void)import_gltf(file, {}, "test.gltf", world, options),
+                         "test.gltf: image 0: its 1024 x 1024 pixels are 1,048,576, above the limit of "
+                         "1,048,575 (image_pixels)",
+                         SceneError);
+}
+
+TEST_CASE("a picture that is cut off anywhere is a warning") {
+    const Bytes whole = lossless(many_colours(), width, height);
+    for (std::size_t size = 12; size + 2 < whole.size(); ++size) {
+        CAPTURE(size);
+        const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+        CHECK(warnings_of(textured(cut)) ==
+              std::vector<std::string>{"image 0: it cannot be decoded; a checker pattern takes its place"});
+    }
+}
+
+}  // TEST_SUITE("WebP")

@@ -13,6 +13,8 @@
 #include <doctest/doctest.h>
 #include <rapidcheck.h>
 
+TEST_SUITE("world") {
+
 namespace {
 
 using namespace candela;
@@ -437,3 +439,5 @@ TEST_CASE("world: after random edits it has the same content as a plain map" *
 }
 
 }  // namespace
+
+}  // TEST_SUITE("world")

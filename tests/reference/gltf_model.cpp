@@ -11,7 +11,6 @@ namespace candela::reference {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr int steps = 128;  // in each of both dimensions
 
 double middle(int i) {
@@ -31,7 +30,8 @@ double fresnel(const GltfModel& model, double half_cosine) {
 }
 
 double diffuse(const GltfModel& model, double half_cosine) {
-    return (1.0 - fresnel(model, half_cosine)) * (1.0 - model.metalness) * model.base_colour / pi;
+    return (1.0 - fresnel(model, half_cosine)) * (1.0 - model.metalness) * model.base_colour /
+           std::numbers::pi;
 }
 
 double alpha_of(const GltfModel& model) {
@@ -39,7 +39,7 @@ double alpha_of(const GltfModel& model) {
 }
 
 double distribution(double alpha, double cosine) {
-    return square(alpha) / (pi * square(square(cosine) * (square(alpha) - 1.0) + 1.0));
+    return square(alpha) / (std::numbers::pi * square(square(cosine) * (square(alpha) - 1.0) + 1.0));
 }
 
 double visibility(double alpha, double light, double viewer) {
@@ -76,7 +76,8 @@ double over_microfacets(double alpha, const std::function<double(glm::dvec3)>& f
     for (int i = 0; i < steps * steps; ++i) {
         const double share = middle(i % steps);
         const double squared_tangent = square(alpha) * share / (1.0 - share);
-        sum += function(direction(1.0 / std::sqrt(1.0 + squared_tangent), 2.0 * pi * middle(i / steps)));
+        sum += function(
+            direction(1.0 / std::sqrt(1.0 + squared_tangent), 2.0 * std::numbers::pi * middle(i / steps)));
     }
     return sum / square(steps);
 }
@@ -95,8 +96,10 @@ double reflected_light(const GltfModel& model, glm::dvec3 viewer,
     // The square of the cosine of cosine-distributed light is even.
     double below = 0.0;
     for (int i = 0; i < steps * steps; ++i) {
-        const glm::dvec3 light = direction(std::sqrt(middle(i % steps)), 2.0 * pi * middle(i / steps));
-        below += pi * diffuse(model, glm::dot(glm::normalize(light + viewer), viewer)) * radiance(light);
+        const glm::dvec3 light =
+            direction(std::sqrt(middle(i % steps)), 2.0 * std::numbers::pi * middle(i / steps));
+        below += std::numbers::pi * diffuse(model, glm::dot(glm::normalize(light + viewer), viewer)) *
+                 radiance(light);
     }
     return mirrored + below / square(steps);
 }

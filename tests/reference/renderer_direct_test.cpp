@@ -9,6 +9,8 @@
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/study/measures.hpp"
 
+TEST_SUITE("reference: the renderer's direct light") {
+
 using namespace candela;
 
 namespace {
@@ -90,64 +92,64 @@ class DirectLight : public PathFixture {
 
 }  // namespace
 
-TEST_SUITE("reference: the renderer's direct light") {
-    TEST_CASE_FIXTURE(DirectLight, "boxes and rooms") {
-        for (const std::string name : {"cornell", "corner", "two-rooms", "furnace"}) {
-            CAPTURE(name);
-            check_scene(shipped_scene(name), {256, 512, 1024});
-        }
+TEST_CASE_FIXTURE(DirectLight, "boxes and rooms") {
+    for (const std::string name : {"cornell", "corner", "two-rooms", "furnace"}) {
+        CAPTURE(name);
+        check_scene(shipped_scene(name), {256, 512, 1024});
     }
+}
 
-    TEST_CASE_FIXTURE(DirectLight, "blended and masked surfaces") {
-        check_scene(shipped_scene("glass"), {128, 256, 512});
-    }
+TEST_CASE_FIXTURE(DirectLight, "blended and masked surfaces") {
+    check_scene(shipped_scene("glass"), {128, 256, 512});
+}
 
-    TEST_CASE_FIXTURE(DirectLight, "many lights in a hall") {
-        check_scene(shipped_scene("hall-256"), {128, 256});
-    }
+TEST_CASE_FIXTURE(DirectLight, "many lights in a hall") {
+    check_scene(shipped_scene("hall-256"), {128, 256});
+}
 
-    TEST_CASE_FIXTURE(DirectLight, "poles, however thin they are and however large the ground") {
-        // On the larger ground, a texel of the sun's map is 1 m wide and more.
-        for (const float half : {6.0F, 500.0F}) {
-            for (const bool sun : {true, false}) {
-                CAPTURE(half);
-                CAPTURE(sun);
-                Scene scene = lit_ground(half, sun, {0.5F, 2.0F, 2.5F});
-                float x = -1.2F;
-                for (const float width : {0.002F, 0.005F, 0.01F, 0.03F, 0.1F, 0.3F}) {
-                    add_box(scene.world, {x, 0.0F, -0.3F}, {x + width, 1.2F, width - 0.3F});
-                    x += 0.4F;
-                }
-                check_scene(scene, {512, 1024});
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(DirectLight, "the eaves of a house on a plot and on a plain") {
-        for (const float half : {20.0F, 500.0F}) {
+TEST_CASE_FIXTURE(DirectLight, "poles, however thin they are and however large the ground") {
+    // On the larger ground, a texel of the sun's map is 1 m wide and more.
+    for (const float half : {6.0F, 500.0F}) {
+        for (const bool sun : {true, false}) {
             CAPTURE(half);
-            Scene scene = lit_ground(half, true, {9.0F, 3.0F, 9.0F});
-            add_box(scene.world, {-4.0F, 0.0F, -4.0F}, {4.0F, 2.8F, 4.0F});
-            add_box(scene.world, {-4.5F, 2.8F, -4.5F}, {4.5F, 3.0F, 4.5F});
+            CAPTURE(sun);
+            Scene scene = lit_ground(half, sun, {0.5F, 2.0F, 2.5F});
+            float x = -1.2F;
+            for (const float width : {0.002F, 0.005F, 0.01F, 0.03F, 0.1F, 0.3F}) {
+                add_box(scene.world, {x, 0.0F, -0.3F}, {x + width, 1.2F, width - 0.3F});
+                x += 0.4F;
+            }
             check_scene(scene, {512, 1024});
         }
     }
+}
 
-    TEST_CASE_FIXTURE(DirectLight, "a slit that is narrower than a texel") {
-        Scene scene = lit_ground(500.0F, true, {0.3F, 1.5F, 2.0F});
-        add_box(scene.world, {-3.0F, 1.8F, -3.0F}, {0.49F, 1.9F, 3.0F});
-        add_box(scene.world, {0.51F, 1.8F, -3.0F}, {3.0F, 1.9F, 3.0F});
+TEST_CASE_FIXTURE(DirectLight, "the eaves of a house on a plot and on a plain") {
+    for (const float half : {20.0F, 500.0F}) {
+        CAPTURE(half);
+        Scene scene = lit_ground(half, true, {9.0F, 3.0F, 9.0F});
+        add_box(scene.world, {-4.0F, 0.0F, -4.0F}, {4.0F, 2.8F, 4.0F});
+        add_box(scene.world, {-4.5F, 2.8F, -4.5F}, {4.5F, 3.0F, 4.5F});
         check_scene(scene, {512, 1024});
     }
-
-    TEST_CASE_FIXTURE(DirectLight, "thin fins") {
-        Scene scene = shipped_scene("fins");
-        std::vector<Entity> lights;
-        for (auto [entity, light] : scene.world.view<PointLight>()) lights.push_back(entity);
-        // Every eighth of the 512 lights: the shadow maps of all would take longer than all other tests.
-        for (std::size_t i = 0; i < lights.size(); ++i) {
-            if (i % 8 != 0) scene.world.destroy(lights[i]);
-        }
-        check_scene(scene, {128, 256});
-    }
 }
+
+TEST_CASE_FIXTURE(DirectLight, "a slit that is narrower than a texel") {
+    Scene scene = lit_ground(500.0F, true, {0.3F, 1.5F, 2.0F});
+    add_box(scene.world, {-3.0F, 1.8F, -3.0F}, {0.49F, 1.9F, 3.0F});
+    add_box(scene.world, {0.51F, 1.8F, -3.0F}, {3.0F, 1.9F, 3.0F});
+    check_scene(scene, {512, 1024});
+}
+
+TEST_CASE_FIXTURE(DirectLight, "thin fins") {
+    Scene scene = shipped_scene("fins");
+    std::vector<Entity> lights;
+    for (auto [entity, light] : scene.world.view<PointLight>()) lights.push_back(entity);
+    // Every eighth of the 512 lights: the shadow maps of all would take longer than all other tests.
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        if (i % 8 != 0) scene.world.destroy(lights[i]);
+    }
+    check_scene(scene, {128, 256});
+}
+
+}  // TEST_SUITE("reference: the renderer's direct light")

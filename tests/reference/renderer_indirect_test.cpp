@@ -7,6 +7,8 @@
 #include "tests/reference/pictures.hpp"
 #include "tests/study/measures.hpp"
 
+TEST_SUITE("reference: the renderer's indirect light") {
+
 using namespace candela;
 
 namespace {
@@ -96,13 +98,13 @@ class RendererIndirect : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("reference: the renderer's indirect light") {
-    TEST_CASE_FIXTURE(RendererIndirect, "between two facing plates it converges to the reference") {
-        check_convergence(facing_plates(), 1, 4096);
-        check_convergence(facing_plates(), 2, 4096);
-    }
-
-    TEST_CASE_FIXTURE(RendererIndirect, "in a sphere lit from its centre it converges to the reference") {
-        check_convergence(furnace_sphere(), 1, 512);
-    }
+TEST_CASE_FIXTURE(RendererIndirect, "between two facing plates it converges to the reference") {
+    check_convergence(facing_plates(), 1, 4096);
+    check_convergence(facing_plates(), 2, 4096);
 }
+
+TEST_CASE_FIXTURE(RendererIndirect, "in a sphere lit from its centre it converges to the reference") {
+    check_convergence(furnace_sphere(), 1, 512);
+}
+
+}  // TEST_SUITE("reference: the renderer's indirect light")

@@ -8,6 +8,8 @@
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/second_uvs.hpp"
 
+TEST_SUITE("reference: second texture coordinates") {
+
 using namespace candela;
 using reference::Estimate;
 
@@ -40,12 +42,12 @@ double distance(const Estimate& a, const Estimate& b) {
 
 }  // namespace
 
-TEST_SUITE("reference: second texture coordinates") {
-    TEST_CASE("every image lies where it belongs, also on a mirrored instance") {
-        const Estimate expected = traced(Moved::by_images);
-        // The same random numbers; positions in the images are rounded in another order, which rarely turns a
-        // choice by chance.
-        CHECK(distance(traced(Moved::by_second_uvs), expected) < 0.002);
-        CHECK(distance(traced(Moved::not_at_all), expected) > 0.05);
-    }
+TEST_CASE("every image lies where it belongs, also on a mirrored instance") {
+    const Estimate expected = traced(Moved::by_images);
+    // The same random numbers; positions in the images are rounded in another order, which rarely turns a
+    // choice by chance.
+    CHECK(distance(traced(Moved::by_second_uvs), expected) < 0.002);
+    CHECK(distance(traced(Moved::not_at_all), expected) > 0.05);
 }
+
+}  // TEST_SUITE("reference: second texture coordinates")

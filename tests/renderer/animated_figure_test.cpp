@@ -18,6 +18,8 @@
 #include <candela/scene/animate.hpp>
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("animated figures") {
+
 using namespace candela;
 
 namespace {
@@ -248,146 +250,145 @@ glm::uvec2 pixel_of(const Scene& scene, const glm::dvec3& point) {
 
 }  // namespace
 
-TEST_SUITE("animated figures") {
-    TEST_CASE_FIXTURE(FigureTests, "each frame of a motion is that of a new renderer, bit for bit") {
-        // Also with surfels: they stay on their triangles, and where they are on these follows from the mesh
-        // as it is without any motion.
-        Configuration as_shipped;
-        as_shipped.vpls.count = 64;
-        for (const Configuration& configuration :
-             {lit(VplPlacement::paths), lit(VplPlacement::surfels), as_shipped}) {
-            configure(configuration);
-            Stage stage;
-            stage.advance(0.0);
-            Picture last = render(stage, size);
-            CHECK(is_sane(last));
-            for (int frame = 0; frame < 6; ++frame) {
-                CAPTURE(frame);
-                stage.advance(0.22);  // past the end once
-                Picture now = render(stage, size);
-                CHECK(now != last);
-                CHECK(now == from_scratch(stage, size));
-                last = std::move(now);
-            }
-            CHECK(last == fresh_picture(stage, size));
-        }
-    }
-
-    TEST_CASE_FIXTURE(FigureTests, "lights and cameras are not uploaded again while a figure moves") {
-        configure(lit(VplPlacement::surfels));
+TEST_CASE_FIXTURE(FigureTests, "each frame of a motion is that of a new renderer, bit for bit") {
+    // Also with surfels: they stay on their triangles, and where they are on these follows from the mesh
+    // as it is without any motion.
+    Configuration as_shipped;
+    as_shipped.vpls.count = 64;
+    for (const Configuration& configuration :
+         {lit(VplPlacement::paths), lit(VplPlacement::surfels), as_shipped}) {
+        configure(configuration);
         Stage stage;
         stage.advance(0.0);
+        Picture last = render(stage, size);
+        CHECK(is_sane(last));
+        for (int frame = 0; frame < 6; ++frame) {
+            CAPTURE(frame);
+            stage.advance(0.22);  // past the end once
+            Picture now = render(stage, size);
+            CHECK(now != last);
+            CHECK(now == from_scratch(stage, size));
+            last = std::move(now);
+        }
+        CHECK(last == fresh_picture(stage, size));
+    }
+}
+
+TEST_CASE_FIXTURE(FigureTests, "lights and cameras are not uploaded again while a figure moves") {
+    configure(lit(VplPlacement::surfels));
+    Stage stage;
+    stage.advance(0.0);
+    static_cast<void>(render(stage, size));
+    for (int frame = 0; frame < 3; ++frame) {
+        stage.advance(0.2);
         static_cast<void>(render(stage, size));
-        for (int frame = 0; frame < 3; ++frame) {
-            stage.advance(0.2);
-            static_cast<void>(render(stage, size));
-            CHECK(ran("surfel-visibility"));
-            CHECK_FALSE(ran("light-upload"));
-            CHECK_FALSE(ran("view-upload"));
-        }
+        CHECK(ran("surfel-visibility"));
+        CHECK_FALSE(ran("light-upload"));
+        CHECK_FALSE(ran("view-upload"));
     }
+}
 
-    TEST_CASE_FIXTURE(FigureTests, "while no figure moves, nothing but the copy to the target runs") {
-        Configuration configuration = lit(VplPlacement::surfels, VplVisibility::maps);
-        configuration.refinement.enabled = false;
-        configure(configuration);
-        const std::vector<std::string> only_copy{"tone-map"};
-        Stage stage;
-        stage.advance(0.3);
-        const Picture picture = render(stage, size);
-        const auto stands = [&] {
-            CHECK(render(stage, size) == picture);
-            CHECK(passes_that_ran() == only_copy);
-        };
-        stage.world.edit<AnimationPlayer>(stage.player, [](auto& player) { player.playing = false; });
-        stage.advance(0.3);
-        stands();
-        stage.world.edit<AnimationPlayer>(stage.player, [](auto& player) {
-            player.playing = true;
-            player.speed = 0.0;
-        });
-        stage.advance(0.3);
-        stands();
-        // A whole round. Its time has no rounding: 0.25 + 1 - 1.
-        stage.world.edit<AnimationPlayer>(stage.player, [](auto& player) {
-            player.speed = 1.0;
-            player.time = 0.25;
-        });
-        stage.advance(0.0);
-        const Picture quarter = render(stage, size);
-        CHECK(quarter != picture);
-        stage.advance(1.0);
-        CHECK(render(stage, size) == quarter);
+TEST_CASE_FIXTURE(FigureTests, "while no figure moves, nothing but the copy to the target runs") {
+    Configuration configuration = lit(VplPlacement::surfels, VplVisibility::maps);
+    configuration.refinement.enabled = false;
+    configure(configuration);
+    const std::vector<std::string> only_copy{"tone-map"};
+    Stage stage;
+    stage.advance(0.3);
+    const Picture picture = render(stage, size);
+    const auto stands = [&] {
+        CHECK(render(stage, size) == picture);
         CHECK(passes_that_ran() == only_copy);
-    }
+    };
+    stage.world.edit<AnimationPlayer>(stage.player, [](auto& player) { player.playing = false; });
+    stage.advance(0.3);
+    stands();
+    stage.world.edit<AnimationPlayer>(stage.player, [](auto& player) {
+        player.playing = true;
+        player.speed = 0.0;
+    });
+    stage.advance(0.3);
+    stands();
+    // A whole round. Its time has no rounding: 0.25 + 1 - 1.
+    stage.world.edit<AnimationPlayer>(stage.player, [](auto& player) {
+        player.speed = 1.0;
+        player.time = 0.25;
+    });
+    stage.advance(0.0);
+    const Picture quarter = render(stage, size);
+    CHECK(quarter != picture);
+    stage.advance(1.0);
+    CHECK(render(stage, size) == quarter);
+    CHECK(passes_that_ran() == only_copy);
+}
 
-    TEST_CASE_FIXTURE(FigureTests, "an arm of stiff parts looks like boxes that stand on its joints") {
-        // Lit, with its shadow, and with the light that it blocks and reflects.
-        configure(lit(VplPlacement::paths));
-        ArchRoom skinned({0.8F, 0.4F, 0.2F});
-        ArchRoom boxes({0.8F, 0.4F, 0.2F}, ArchRoom::Figure::boxes);
-        for (const float radians : {0.0F, 0.7F, 1.4F}) {
-            CAPTURE(radians);
-            skinned.set_bend(radians);
-            boxes.set_bend(radians);
-            // Rounding of positions, about 1e-7, moves the outlines of shadows: few pixels differ.
-            const Picture a = render(skinned, size);
-            const Picture b = render(boxes, size);
-            CHECK(mean(b) > 0.0);
-            std::size_t different = 0;
-            for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-                different +=
-                    glm::length(a.pixels[i] - b.pixels[i]) > 1e-3F * glm::length(b.pixels[i]) ? 1 : 0;
-            }
-            CHECK(different * 50 < a.pixels.size());
+TEST_CASE_FIXTURE(FigureTests, "an arm of stiff parts looks like boxes that stand on its joints") {
+    // Lit, with its shadow, and with the light that it blocks and reflects.
+    configure(lit(VplPlacement::paths));
+    ArchRoom skinned({0.8F, 0.4F, 0.2F});
+    ArchRoom boxes({0.8F, 0.4F, 0.2F}, ArchRoom::Figure::boxes);
+    for (const float radians : {0.0F, 0.7F, 1.4F}) {
+        CAPTURE(radians);
+        skinned.set_bend(radians);
+        boxes.set_bend(radians);
+        // Rounding of positions, about 1e-7, moves the outlines of shadows: few pixels differ.
+        const Picture a = render(skinned, size);
+        const Picture b = render(boxes, size);
+        CHECK(mean(b) > 0.0);
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+            different += glm::length(a.pixels[i] - b.pixels[i]) > 1e-3F * glm::length(b.pixels[i]) ? 1 : 0;
         }
+        CHECK(different * 50 < a.pixels.size());
     }
+}
 
-    TEST_CASE_FIXTURE(FigureTests, "a figure casts its shadow where it is") {
-        Configuration configuration = linear_configuration();
-        configuration.indirect = false;
+TEST_CASE_FIXTURE(FigureTests, "a figure casts its shadow where it is") {
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    configure(configuration);
+    ArchRoom room(glm::vec3(0.5F));
+    const glm::uvec2 pixel = pixel_of(room, middle);
+    // Radiance of a Lambertian floor of albedo 0.6, 1.8 m under a light of 1 cd: 0.6/π · 1/1.8². A
+    // pixel away from the point, 0.1 m, the light is weaker by (1 + (0.1 / 1.8)²)^-2, less than 1 %.
+    const double wanted = 0.6 / glm::pi<double>() / (1.8 * 1.8);
+    const auto floor_at = [&](float radians) {
+        room.set_bend(radians);
+        return render(room, size).at(pixel.x, pixel.y).g;
+    };
+    CHECK(std::abs(static_cast<double>(floor_at(0.0F)) / wanted - 1.0) < 0.01);
+    CHECK(floor_at(glm::half_pi<float>()) == 0.0F);
+    CHECK(std::abs(static_cast<double>(floor_at(0.15F)) / wanted - 1.0) < 0.01);
+}
+
+TEST_CASE_FIXTURE(FigureTests, "a figure blocks and reflects indirect light where it is") {
+    for (const VplPlacement placement : {VplPlacement::surfels, VplPlacement::paths}) {
+        Configuration configuration = lit(placement);
+        configuration.vpls.count = 512;
+        configuration.show = Show::indirect;
         configure(configuration);
-        ArchRoom room(glm::vec3(0.5F));
-        const glm::uvec2 pixel = pixel_of(room, middle);
-        // Radiance of a Lambertian floor of albedo 0.6, 1.8 m under a light of 1 cd: 0.6/π · 1/1.8². A
-        // pixel away from the point, 0.1 m, the light is weaker by (1 + (0.1 / 1.8)²)^-2, less than 1 %.
-        const double wanted = 0.6 / glm::pi<double>() / (1.8 * 1.8);
-        const auto floor_at = [&](float radians) {
+        const auto floor_under = [&](const glm::vec3& albedo, float radians) {
+            ArchRoom room(albedo);
             room.set_bend(radians);
-            return render(room, size).at(pixel.x, pixel.y).g;
+            const glm::uvec2 pixel = pixel_of(room, middle);
+            return render(room, size).at(pixel.x, pixel.y);
         };
-        CHECK(std::abs(static_cast<double>(floor_at(0.0F)) / wanted - 1.0) < 0.01);
-        CHECK(floor_at(glm::half_pi<float>()) == 0.0F);
-        CHECK(std::abs(static_cast<double>(floor_at(0.15F)) / wanted - 1.0) < 0.01);
-    }
-
-    TEST_CASE_FIXTURE(FigureTests, "a figure blocks and reflects indirect light where it is") {
-        for (const VplPlacement placement : {VplPlacement::surfels, VplPlacement::paths}) {
-            Configuration configuration = lit(placement);
-            configuration.vpls.count = 512;
-            configuration.show = Show::indirect;
-            configure(configuration);
-            const auto floor_under = [&](const glm::vec3& albedo, float radians) {
-                ArchRoom room(albedo);
-                room.set_bend(radians);
-                const glm::uvec2 pixel = pixel_of(room, middle);
-                return render(room, size).at(pixel.x, pixel.y);
-            };
-            constexpr auto arch = glm::half_pi<float>();
-            const glm::vec3 beside_black = floor_under(glm::vec3(0.0F), 0.0F);
-            const glm::vec3 under_black = floor_under(glm::vec3(0.0F), arch);
-            const glm::vec3 under_red = floor_under({0.9F, 0.0F, 0.0F}, arch);
-            // An arch of 1.2 m by 0.4 m, 0.4 m above the point, hides 41 % of the cosine-weighted
-            // hemisphere, and its shadow darkens the room. If that part was only a fourth as bright as the
-            // rest, a seventh would be missing.
-            CHECK(under_black.g < 0.9F * beside_black.g);
-            // Of the light that the floor and the walls send to its underside, 0.9 come back.
-            CHECK(under_red.r > 1.1F * under_black.r);
-            // It reflects no green: green light has the same ways as with a black arch. Surfels store light
-            // with 11 bits. Paths are others when some go on where they ended.
-            if (placement == VplPlacement::surfels) {
-                CHECK(std::abs(under_red.g - under_black.g) < 1e-3F * under_black.g);
-            }
+        constexpr auto arch = glm::half_pi<float>();
+        const glm::vec3 beside_black = floor_under(glm::vec3(0.0F), 0.0F);
+        const glm::vec3 under_black = floor_under(glm::vec3(0.0F), arch);
+        const glm::vec3 under_red = floor_under({0.9F, 0.0F, 0.0F}, arch);
+        // An arch of 1.2 m by 0.4 m, 0.4 m above the point, hides 41 % of the cosine-weighted
+        // hemisphere, and its shadow darkens the room. If that part was only a fourth as bright as the
+        // rest, a seventh would be missing.
+        CHECK(under_black.g < 0.9F * beside_black.g);
+        // Of the light that the floor and the walls send to its underside, 0.9 come back.
+        CHECK(under_red.r > 1.1F * under_black.r);
+        // It reflects no green: green light has the same ways as with a black arch. Surfels store light
+        // with 11 bits. Paths are others when some go on where they ended.
+        if (placement == VplPlacement::surfels) {
+            CHECK(std::abs(under_red.g - under_black.g) < 1e-3F * under_black.g);
         }
     }
 }
+
+}  // TEST_SUITE("animated figures")

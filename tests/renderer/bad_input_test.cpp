@@ -19,6 +19,8 @@
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/throws.hpp"
 
+TEST_SUITE("bad input") {
+
 using namespace candela;
 
 namespace {
@@ -391,200 +393,198 @@ class BadInput : public GlFixture {
 
 }  // namespace
 
-TEST_SUITE("bad input") {
-    TEST_CASE_FIXTURE(BadInput, "a mesh with a fault is left out, and the warning names it") {
-        check_left_out(mesh_faults());
-        check_left_out(deformation_faults());
-    }
-    TEST_CASE_FIXTURE(BadInput, "what is nowhere is left out, and the warning names it") {
-        check_left_out(transform_faults());
-    }
-    TEST_CASE_FIXTURE(BadInput, "a light with a fault is left out, and the warning names it") {
-        check_left_out(light_faults());
-    }
-    TEST_CASE_FIXTURE(BadInput, "a sky with a fault is left out, and the warning names it") {
-        check_left_out(sky_faults());
-    }
+TEST_CASE_FIXTURE(BadInput, "a mesh with a fault is left out, and the warning names it") {
+    check_left_out(mesh_faults());
+    check_left_out(deformation_faults());
+}
+TEST_CASE_FIXTURE(BadInput, "what is nowhere is left out, and the warning names it") {
+    check_left_out(transform_faults());
+}
+TEST_CASE_FIXTURE(BadInput, "a light with a fault is left out, and the warning names it") {
+    check_left_out(light_faults());
+}
+TEST_CASE_FIXTURE(BadInput, "a sky with a fault is left out, and the warning names it") {
+    check_left_out(sky_faults());
+}
 
-    TEST_CASE_FIXTURE(BadInput, "a checked renderer throws, names the entity, and goes on after a repair") {
-        check_refused(mesh_faults());
-        check_refused(deformation_faults());
-        check_refused(transform_faults());
-        check_refused(light_faults());
-        check_refused(sky_faults());
-    }
+TEST_CASE_FIXTURE(BadInput, "a checked renderer throws, names the entity, and goes on after a repair") {
+    check_refused(mesh_faults());
+    check_refused(deformation_faults());
+    check_refused(transform_faults());
+    check_refused(light_faults());
+    check_refused(sky_faults());
+}
 
-    TEST_CASE_FIXTURE(BadInput, "only a checked renderer refuses normals that are not of unit length") {
-        Scene scene = cornell_box();
-        const Entity culprit = add_culprit(scene, "culprit");
-        spoils_primitive([](Primitive& p) { p.vertices[1].normal *= 1.1F; })(scene.world, culprit);
-        Watched usual(device, context->get_proc(), false);
-        CHECK(is_sane(usual.render(scene.world, scene.camera)));
-        CHECK(usual.lines.empty());
-        Watched checked(device, context->get_proc(), true);
-        CHECK(throws<SceneError>([&] { static_cast<void>(checked.render(scene.world, scene.camera)); },
-                                 "vertex 1: its normal is 1.1 long"));
-    }
+TEST_CASE_FIXTURE(BadInput, "only a checked renderer refuses normals that are not of unit length") {
+    Scene scene = cornell_box();
+    const Entity culprit = add_culprit(scene, "culprit");
+    spoils_primitive([](Primitive& p) { p.vertices[1].normal *= 1.1F; })(scene.world, culprit);
+    Watched usual(device, context->get_proc(), false);
+    CHECK(is_sane(usual.render(scene.world, scene.camera)));
+    CHECK(usual.lines.empty());
+    Watched checked(device, context->get_proc(), true);
+    CHECK(throws<SceneError>([&] { static_cast<void>(checked.render(scene.world, scene.camera)); },
+                             "vertex 1: its normal is 1.1 long"));
+}
 
-    TEST_CASE_FIXTURE(BadInput, "of several environments, the first without a fault counts") {
-        Scene scene = cornell_box();
-        Scene good = cornell_box();
-        add(scene.world, Environment{.radiance = glm::vec3(not_a_number), .picture = nullptr});
-        for (Scene* each : {&scene, &good}) {
-            add(each->world, Environment{.radiance = glm::vec3(0.3F), .picture = nullptr});
-            add(each->world, Environment{.radiance = glm::vec3(5.0F), .picture = nullptr});
-        }
+TEST_CASE_FIXTURE(BadInput, "of several environments, the first without a fault counts") {
+    Scene scene = cornell_box();
+    Scene good = cornell_box();
+    add(scene.world, Environment{.radiance = glm::vec3(not_a_number), .picture = nullptr});
+    for (Scene* each : {&scene, &good}) {
+        add(each->world, Environment{.radiance = glm::vec3(0.3F), .picture = nullptr});
+        add(each->world, Environment{.radiance = glm::vec3(5.0F), .picture = nullptr});
+    }
+    Watched renderer(device, context->get_proc(), false);
+    const Picture picture = renderer.render(scene.world, scene.camera);
+    CHECK(renderer.render(good.world, good.camera) == picture);
+}
+
+TEST_CASE_FIXTURE(BadInput, "spots that fall between the points of surfels are told, others are not") {
+    Scene scene = cornell_box();
+    const auto lines_with = [&](float cone, VplPlacement placement) {
+        scene.world.set(scene.light, SpotLight{.inner_cone = 0.0F, .outer_cone = cone});
         Watched renderer(device, context->get_proc(), false);
-        const Picture picture = renderer.render(scene.world, scene.camera);
-        CHECK(renderer.render(good.world, good.camera) == picture);
-    }
-
-    TEST_CASE_FIXTURE(BadInput, "spots that fall between the points of surfels are told, others are not") {
-        Scene scene = cornell_box();
-        const auto lines_with = [&](float cone, VplPlacement placement) {
-            scene.world.set(scene.light, SpotLight{.inner_cone = 0.0F, .outer_cone = cone});
-            Watched renderer(device, context->get_proc(), false);
-            Configuration configuration = small_configuration();
-            configuration.vpls.placement = placement;
-            REQUIRE(renderer.renderer().configure(configuration).empty());
-            static_cast<void>(renderer.render(scene.world, scene.camera));
-            return renderer.lines;
-        };
-        scene.world.remove<PointLight>(scene.light);
-        const std::vector<std::string> lines = lines_with(1e-3F, VplPlacement::surfels);
-        REQUIRE(lines.size() == 1);
-        CHECK(lines[0].starts_with("spot lights whose light falls between the points of surfels: 1; "));
-        CHECK(lines_with(0.5F, VplPlacement::surfels).empty());
-        CHECK(lines_with(1e-3F, VplPlacement::paths).empty());
-    }
-
-    TEST_CASE_FIXTURE(BadInput, "more depth maps of VPLs than the driver has room for are refused at once") {
-        Watched renderer(device, context->get_proc(), false);
-        const Configuration before = renderer.renderer().configuration();
-        Configuration configuration = before;
-        configuration.vpls.placement = VplPlacement::paths;
-        configuration.vpls.count = 1U << 20U;
-        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 64};
-        const std::vector<std::string> errors = renderer.renderer().configure(configuration);
-        REQUIRE(errors.size() == 1);
-        CHECK(errors[0].starts_with("depth maps of 1048576 VPLs, 64 texels a side, fill 16384 layers"));
-        CHECK(renderer.renderer().configuration() == before);
-    }
-
-    TEST_CASE_FIXTURE(BadInput, "an entity without a name is called by its index") {
-        Scene scene = cornell_box();
-        const Entity culprit = add(scene.world, MeshInstance{});
-        Watched renderer(device, context->get_proc(), false);
+        Configuration configuration = small_configuration();
+        configuration.vpls.placement = placement;
+        REQUIRE(renderer.renderer().configure(configuration).empty());
         static_cast<void>(renderer.render(scene.world, scene.camera));
-        CHECK(renderer.lines == std::vector{"entity " + std::to_string(culprit.index) +
-                                            ", MeshInstance: left out, because there is no mesh"});
-    }
+        return renderer.lines;
+    };
+    scene.world.remove<PointLight>(scene.light);
+    const std::vector<std::string> lines = lines_with(1e-3F, VplPlacement::surfels);
+    REQUIRE(lines.size() == 1);
+    CHECK(lines[0].starts_with("spot lights whose light falls between the points of surfels: 1; "));
+    CHECK(lines_with(0.5F, VplPlacement::surfels).empty());
+    CHECK(lines_with(1e-3F, VplPlacement::paths).empty());
+}
 
-    TEST_CASE_FIXTURE(BadInput, "a camera with a fault is a SceneError that names it, until it is repaired") {
-        constexpr float pi = std::numbers::pi_v<float>;
-        constexpr auto orthographic = Camera::Projection::orthographic;
-        constexpr auto custom = Camera::Projection::custom;
-        struct CameraCase {
-            Camera camera;
-            Transform pose;
-            std::string words;
-        };
-        const std::vector<CameraCase> cases{
-            {{.vertical_fov = not_a_number}, {}, "the vertical field of view of nan is not between 0 and pi"},
-            {{.vertical_fov = 0.0F}, {}, "the vertical field of view of 0 is not"},
-            {{.vertical_fov = pi}, {}, "is not between 0 and pi"},
-            {{.near_plane = 0.0F}, {}, "the near plane at 0 is not in front of the camera"},
-            {{.near_plane = not_a_number}, {}, "the near plane at nan"},
-            {{.near_plane = infinity}, {}, "the near plane at inf"},
-            {{.near_plane = 2.0F, .far_plane = 2.0F}, {}, "the far plane at 2 is not beyond"},
-            {{.far_plane = not_a_number}, {}, "the far plane at nan is not beyond"},
-            {{.projection = orthographic, .half_height = 0.0F, .far_plane = 9.0F},
-             {},
-             "the half height of 0"},
-            {{.projection = orthographic, .half_height = not_a_number, .far_plane = 9.0F},
-             {},
-             "the half height of nan"},
-            {{.projection = orthographic, .near_plane = -1.0F, .far_plane = 9.0F},
-             {},
-             "the near plane at -1 is behind the camera"},
-            {{.projection = orthographic}, {}, "the far plane at inf is not finite"},
-            {{.projection = custom, .matrix = glm::mat4(0.0F)}, {}, "the matrix is not a projection"},
-            {{.projection = custom, .matrix = glm::mat4(not_a_number)}, {}, "the matrix is not a projection"},
-            {{.projection = custom, .matrix = glm::mat4(1.0F)}, {}, "the far plane at inf is not finite"},
-            {{}, {.translation = {not_a_number, 0, 0}}, "the world matrix is not finite"},
-            {{}, {.scale = glm::vec3(0.0F)}, "the world matrix has no direction"}};
-        Watched renderer(device, context->get_proc(), false);
-        Scene scene = cornell_box();
-        const auto draw = [&] { return renderer.render(scene.world, scene.camera); };
-        const Picture before = draw();
-        const Camera camera = scene.world.get<Camera>(scene.camera);
-        const Transform pose = scene.world.get<Transform>(scene.camera);
-        scene.world.set(scene.camera, Name{"the eye"});
-        for (const CameraCase& bad : cases) {
-            CAPTURE(bad.words);
-            scene.world.set(scene.camera, bad.camera);
-            scene.world.set(scene.camera, bad.pose);
-            CHECK(throws<SceneError>(draw, "entity \"the eye\", Camera: "));
-            CHECK(throws<SceneError>(draw, bad.words));
-            scene.world.set(scene.camera, camera);
-            scene.world.set(scene.camera, pose);
-            CHECK(draw() == before);
-        }
-    }
+TEST_CASE_FIXTURE(BadInput, "more depth maps of VPLs than the driver has room for are refused at once") {
+    Watched renderer(device, context->get_proc(), false);
+    const Configuration before = renderer.renderer().configuration();
+    Configuration configuration = before;
+    configuration.vpls.placement = VplPlacement::paths;
+    configuration.vpls.count = 1U << 20U;
+    configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 64};
+    const std::vector<std::string> errors = renderer.renderer().configure(configuration);
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0].starts_with("depth maps of 1048576 VPLs, 64 texels a side, fill 16384 layers"));
+    CHECK(renderer.renderer().configuration() == before);
+}
 
-    TEST_CASE("a mesh is read once, when it is seen for the first time") {
-        World world;
-        const Entity entity = world.create();
-        std::vector<std::string> lines;
-        Log log([&](std::string_view line) { lines.emplace_back(line); });
-        SceneCheck check(log, false);
-        Mesh mesh = *square_instance().mesh;
-        const auto share = [&] { return MeshInstance{{&mesh, [](const Mesh*) {}}}; };
-        {
-            const MeshInstance first = share();
-            CHECK(check.accepts(world, entity, first));
-            mesh.primitives.clear();
-            mesh.primitives.emplace_back();  // without a material
-            CHECK(check.accepts(world, entity, first));
-        }
-        // Another mesh at the same address, after the first one was destroyed.
-        CHECK_FALSE(check.accepts(world, entity, share()));
-        mesh.primitives.clear();
-        CHECK(check.accepts(world, entity, share()));
-        CHECK(lines.size() == 1);
-    }
+TEST_CASE_FIXTURE(BadInput, "an entity without a name is called by its index") {
+    Scene scene = cornell_box();
+    const Entity culprit = add(scene.world, MeshInstance{});
+    Watched renderer(device, context->get_proc(), false);
+    static_cast<void>(renderer.render(scene.world, scene.camera));
+    CHECK(renderer.lines == std::vector{"entity " + std::to_string(culprit.index) +
+                                        ", MeshInstance: left out, because there is no mesh"});
+}
 
-    TEST_CASE("each line is logged once, and is one line") {
-        std::vector<std::string> lines;
-        Log log([&](std::string_view line) { lines.emplace_back(line); });
-        log.warn("one\nline\n");
-        log.warn("one line");
-        log.warn("another");
-        CHECK(lines == std::vector<std::string>{"one line", "another"});
-        log.warn("\x1B[2J");
-        CHECK(lines.back() == "\\x1B[2J");
-        Log silent({});
-        silent.warn("unheard");
-    }
-
-    TEST_CASE("of warnings of one kind, ten are logged") {
-        std::vector<std::string> lines;
-        Log log([&](std::string_view line) { lines.emplace_back(line); });
-        for (int i = 0; i < 20'000; ++i) {
-            log.warn(fmt::format("entity {}", i), "left out, because it is faulty");
-            log.warn("entity 0", "left out, because it is faulty");  // known
-        }
-        log.warn("entity 3", "left out, because it is far away");
-        REQUIRE(lines.size() == 11);
-        CHECK(lines[9] == "entity 9: left out, because it is faulty");
-        CHECK(lines[10] == "entity 3: left out, because it is far away");
-        for (int frame = 0; frame < 2; ++frame) {
-            log.tell_counts();
-            CHECK(lines.size() == 12);
-            CHECK(lines.back() == "19,990 more: left out, because it is faulty");
-        }
-        log.warn("entity 20000", "left out, because it is faulty");
-        log.tell_counts();
-        CHECK(lines.back() == "19,991 more: left out, because it is faulty");
+TEST_CASE_FIXTURE(BadInput, "a camera with a fault is a SceneError that names it, until it is repaired") {
+    constexpr float pi = std::numbers::pi_v<float>;
+    constexpr auto orthographic = Camera::Projection::orthographic;
+    constexpr auto custom = Camera::Projection::custom;
+    struct CameraCase {
+        Camera camera;
+        Transform pose;
+        std::string words;
+    };
+    const std::vector<CameraCase> cases{
+        {{.vertical_fov = not_a_number}, {}, "the vertical field of view of nan is not between 0 and pi"},
+        {{.vertical_fov = 0.0F}, {}, "the vertical field of view of 0 is not"},
+        {{.vertical_fov = pi}, {}, "is not between 0 and pi"},
+        {{.near_plane = 0.0F}, {}, "the near plane at 0 is not in front of the camera"},
+        {{.near_plane = not_a_number}, {}, "the near plane at nan"},
+        {{.near_plane = infinity}, {}, "the near plane at inf"},
+        {{.near_plane = 2.0F, .far_plane = 2.0F}, {}, "the far plane at 2 is not beyond"},
+        {{.far_plane = not_a_number}, {}, "the far plane at nan is not beyond"},
+        {{.projection = orthographic, .half_height = 0.0F, .far_plane = 9.0F}, {}, "the half height of 0"},
+        {{.projection = orthographic, .half_height = not_a_number, .far_plane = 9.0F},
+         {},
+         "the half height of nan"},
+        {{.projection = orthographic, .near_plane = -1.0F, .far_plane = 9.0F},
+         {},
+         "the near plane at -1 is behind the camera"},
+        {{.projection = orthographic}, {}, "the far plane at inf is not finite"},
+        {{.projection = custom, .matrix = glm::mat4(0.0F)}, {}, "the matrix is not a projection"},
+        {{.projection = custom, .matrix = glm::mat4(not_a_number)}, {}, "the matrix is not a projection"},
+        {{.projection = custom, .matrix = glm::mat4(1.0F)}, {}, "the far plane at inf is not finite"},
+        {{}, {.translation = {not_a_number, 0, 0}}, "the world matrix is not finite"},
+        {{}, {.scale = glm::vec3(0.0F)}, "the world matrix has no direction"}};
+    Watched renderer(device, context->get_proc(), false);
+    Scene scene = cornell_box();
+    const auto draw = [&] { return renderer.render(scene.world, scene.camera); };
+    const Picture before = draw();
+    const Camera camera = scene.world.get<Camera>(scene.camera);
+    const Transform pose = scene.world.get<Transform>(scene.camera);
+    scene.world.set(scene.camera, Name{"the eye"});
+    for (const CameraCase& bad : cases) {
+        CAPTURE(bad.words);
+        scene.world.set(scene.camera, bad.camera);
+        scene.world.set(scene.camera, bad.pose);
+        CHECK(throws<SceneError>(draw, "entity \"the eye\", Camera: "));
+        CHECK(throws<SceneError>(draw, bad.words));
+        scene.world.set(scene.camera, camera);
+        scene.world.set(scene.camera, pose);
+        CHECK(draw() == before);
     }
 }
+
+TEST_CASE("a mesh is read once, when it is seen for the first time") {
+    World world;
+    const Entity entity = world.create();
+    std::vector<std::string> lines;
+    Log log([&](std::string_view line) { lines.emplace_back(line); });
+    SceneCheck check(log, false);
+    Mesh mesh = *square_instance().mesh;
+    const auto share = [&] { return MeshInstance{{&mesh, [](const Mesh*) {}}}; };
+    {
+        const MeshInstance first = share();
+        CHECK(check.accepts(world, entity, first));
+        mesh.primitives.clear();
+        mesh.primitives.emplace_back();  // without a material
+        CHECK(check.accepts(world, entity, first));
+    }
+    // Another mesh at the same address, after the first one was destroyed.
+    CHECK_FALSE(check.accepts(world, entity, share()));
+    mesh.primitives.clear();
+    CHECK(check.accepts(world, entity, share()));
+    CHECK(lines.size() == 1);
+}
+
+TEST_CASE("each line is logged once, and is one line") {
+    std::vector<std::string> lines;
+    Log log([&](std::string_view line) { lines.emplace_back(line); });
+    log.warn("one\nline\n");
+    log.warn("one line");
+    log.warn("another");
+    CHECK(lines == std::vector<std::string>{"one line", "another"});
+    log.warn("\x1B[2J");
+    CHECK(lines.back() == "\\x1B[2J");
+    Log silent({});
+    silent.warn("unheard");
+}
+
+TEST_CASE("of warnings of one kind, ten are logged") {
+    std::vector<std::string> lines;
+    Log log([&](std::string_view line) { lines.emplace_back(line); });
+    for (int i = 0; i < 20'000; ++i) {
+        log.warn(fmt::format("entity {}", i), "left out, because it is faulty");
+        log.warn("entity 0", "left out, because it is faulty");  // known
+    }
+    log.warn("entity 3", "left out, because it is far away");
+    REQUIRE(lines.size() == 11);
+    CHECK(lines[9] == "entity 9: left out, because it is faulty");
+    CHECK(lines[10] == "entity 3: left out, because it is far away");
+    for (int frame = 0; frame < 2; ++frame) {
+        log.tell_counts();
+        CHECK(lines.size() == 12);
+        CHECK(lines.back() == "19,990 more: left out, because it is faulty");
+    }
+    log.warn("entity 20000", "left out, because it is faulty");
+    log.tell_counts();
+    CHECK(lines.back() == "19,991 more: left out, because it is faulty");
+}
+
+}  // TEST_SUITE("bad input")

@@ -8,6 +8,8 @@
 
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("bounded work") {
+
 using namespace candela;
 
 namespace {
@@ -95,61 +97,57 @@ class BoundedWork : public PathFixture {
 
 }  // namespace
 
-TEST_SUITE("bounded work") {
-    TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs, however many there are") {
-        check_vpls(70'000, VplVisibility::none);
-    }
-
-    TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs with rays, each of which traverses a tree") {
-        check_vpls(8192, VplVisibility::rays);
-    }
-
-    TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however many light every surface") {
-        check_lights(std::numeric_limits<float>::infinity());
-    }
-
-    TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however long their lists are") {
-        check_lights(16.0F);
-    }
-
-    TEST_CASE_FIXTURE(BoundedWork,
-                      "with blended surfaces up to 16,384 lights are possible, and more are an error") {
-        constexpr std::uint32_t most = 16'384;
-        constexpr float range = std::numeric_limits<float>::infinity();
-        const auto behind_a_pane = [&](Scene scene) {
-            Material pane;
-            pane.base_colour.a = 0.5F;
-            pane.alpha_mode = AlphaMode::blend;
-            add(scene.world, at({0, 0.5F, 0}),
-                MeshInstance{square(8.0F, std::make_shared<const Material>(pane))});
-            return scene;
-        };
-        std::vector<Picture> parts;
-        for (std::uint32_t first = 0; first < most; first += most / 8) {
-            parts.push_back(
-                picture(behind_a_pane(lit_ground(first, first + most / 8, range)), direct_only()));
-        }
-        const Picture whole = picture(behind_a_pane(lit_ground(0, most, range)), direct_only());
-        CHECK(mean(whole) > 0.01);
-        CHECK(worst_error(whole, sum(parts), 1e-12) <
-              1e-3);  // 16,384 roundings of at most 2⁻²⁵ of the sum each
-        renderer.invalidate();
-        CHECK_THROWS_WITH_AS(static_cast<void>(render(behind_a_pane(lit_ground(0, most + 1, range)), size)),
-                             "16385 lights: where there are blended surfaces, 16384 are possible",
-                             gl::GlError);
-    }
-
-    TEST_CASE_FIXTURE(
-        BoundedWork,
-        "paths lose no flux even if nearly every ray must be tested against nearly all triangles") {
-        Scene scene = furnace_box(0.5F);
-        add(scene.world, at({0, 0, 0}), MeshInstance{soup(3000, 1, 1.5F)});
-        Configuration configuration = linear_configuration();
-        configuration.vpls = {.placement = VplPlacement::paths, .count = 512, .bounces = 8};
-        static_cast<void>(picture(scene, configuration));
-        const EnergyAccount flux = renderer.report().vpls->flux;
-        const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;
-        CHECK(flux.emitted.g > 1.0);
-        CHECK(glm::abs(rest.g) < 1e-4 * flux.emitted.g);  // sums of a few hundred floats
-    }
+TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs, however many there are") {
+    check_vpls(70'000, VplVisibility::none);
 }
+
+TEST_CASE_FIXTURE(BoundedWork, "shading evaluates all VPLs with rays, each of which traverses a tree") {
+    check_vpls(8192, VplVisibility::rays);
+}
+
+TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however many light every surface") {
+    check_lights(std::numeric_limits<float>::infinity());
+}
+
+TEST_CASE_FIXTURE(BoundedWork, "every path shades with all lights, however long their lists are") {
+    check_lights(16.0F);
+}
+
+TEST_CASE_FIXTURE(BoundedWork,
+                  "with blended surfaces up to 16,384 lights are possible, and more are an error") {
+    constexpr std::uint32_t most = 16'384;
+    constexpr float range = std::numeric_limits<float>::infinity();
+    const auto behind_a_pane = [&](Scene scene) {
+        Material pane;
+        pane.base_colour.a = 0.5F;
+        pane.alpha_mode = AlphaMode::blend;
+        add(scene.world, at({0, 0.5F, 0}),
+            MeshInstance{square(8.0F, std::make_shared<const Material>(pane))});
+        return scene;
+    };
+    std::vector<Picture> parts;
+    for (std::uint32_t first = 0; first < most; first += most / 8) {
+        parts.push_back(picture(behind_a_pane(lit_ground(first, first + most / 8, range)), direct_only()));
+    }
+    const Picture whole = picture(behind_a_pane(lit_ground(0, most, range)), direct_only());
+    CHECK(mean(whole) > 0.01);
+    CHECK(worst_error(whole, sum(parts), 1e-12) < 1e-3);  // 16,384 roundings of at most 2⁻²⁵ of the sum each
+    renderer.invalidate();
+    CHECK_THROWS_WITH_AS(static_cast<void>(render(behind_a_pane(lit_ground(0, most + 1, range)), size)),
+                         "16385 lights: where there are blended surfaces, 16384 are possible", gl::GlError);
+}
+
+TEST_CASE_FIXTURE(BoundedWork,
+                  "paths lose no flux even if nearly every ray must be tested against nearly all triangles") {
+    Scene scene = furnace_box(0.5F);
+    add(scene.world, at({0, 0, 0}), MeshInstance{soup(3000, 1, 1.5F)});
+    Configuration configuration = linear_configuration();
+    configuration.vpls = {.placement = VplPlacement::paths, .count = 512, .bounces = 8};
+    static_cast<void>(picture(scene, configuration));
+    const EnergyAccount flux = renderer.report().vpls->flux;
+    const glm::dvec3 rest = flux.emitted - flux.absorbed - flux.escaped - flux.truncated - flux.roulette;
+    CHECK(flux.emitted.g > 1.0);
+    CHECK(glm::abs(rest.g) < 1e-4 * flux.emitted.g);  // sums of a few hundred floats
+}
+
+}  // TEST_SUITE("bounded work")

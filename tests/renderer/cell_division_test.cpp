@@ -179,195 +179,195 @@ std::shared_ptr<const Material> half_hole() {
 }  // namespace
 
 TEST_SUITE("surfels: division") {
-    TEST_CASE("a wall that stands on a cell divides it, and each side has a surfel") {
-        Surroundings surroundings;
-        surroundings.add(square(2.0F, diffuse(glm::vec3(0.5F))));
-        surroundings.add(wall(), upright(0.1F));
-        const SurfelSet set = divided_in(surroundings, floor_cell());
-        check_consistent(set);
-        REQUIRE(set.surfels.size() == 2);
-        for (const gpu::Surfel& surfel : set.surfels) CHECK(is_on_one_side(set, surfel, 0.1F));
-        // Five columns of points, of eight, are on the side of the first surfel, which stays.
-        CHECK(set.surfels[0].position == floor_cell().surfels[0].position);
-        CHECK(set.surfels[0].area == doctest::Approx(0.625));
-        CHECK(set.surfels[1].area == doctest::Approx(0.375));
-        // The other is at one of the two points in the middle of three columns.
-        CHECK(set.surfels[1].position.x == doctest::Approx(0.3125));
-        CHECK(std::abs(set.surfels[1].position.z) == doctest::Approx(0.0625));
-        CHECK(set.item_of[1] == set.item_of[0]);
-    }
+TEST_CASE("a wall that stands on a cell divides it, and each side has a surfel") {
+    Surroundings surroundings;
+    surroundings.add(square(2.0F, diffuse(glm::vec3(0.5F))));
+    surroundings.add(wall(), upright(0.1F));
+    const SurfelSet set = divided_in(surroundings, floor_cell());
+    check_consistent(set);
+    REQUIRE(set.surfels.size() == 2);
+    for (const gpu::Surfel& surfel : set.surfels) CHECK(is_on_one_side(set, surfel, 0.1F));
+    // Five columns of points, of eight, are on the side of the first surfel, which stays.
+    CHECK(set.surfels[0].position == floor_cell().surfels[0].position);
+    CHECK(set.surfels[0].area == doctest::Approx(0.625));
+    CHECK(set.surfels[1].area == doctest::Approx(0.375));
+    // The other is at one of the two points in the middle of three columns.
+    CHECK(set.surfels[1].position.x == doctest::Approx(0.3125));
+    CHECK(std::abs(set.surfels[1].position.z) == doctest::Approx(0.0625));
+    CHECK(set.item_of[1] == set.item_of[0]);
+}
 
-    TEST_CASE(
-        "a cell stays whole in the open, beside a wall, close under a ceiling, and where it is curved") {
-        Surroundings surroundings;
-        surroundings.add(square(2.0F, diffuse(glm::vec3(0.5F))));
-        surroundings.add(wall(), upright(0.5F));
-        surroundings.add(wall(), glm::translate(glm::mat4(1.0F), {0.0F, 0.02F, 0.0F}));
-        CHECK(divided_in(surroundings, floor_cell()).surfels.size() == 1);
-        // A cap of a sphere of 1.5 m from its inside and from its outside; a chord is at most 0.1 m below it.
-        for (const float side : {-1.0F, 1.0F}) {
-            SurfelSet cap = floor_cell();
-            for (gpu::CellPoint& point : cap.points) {
-                const glm::vec3 out = glm::normalize(point.position + 1.5F * up);
-                point.position = 1.5F * out;
-                point.normal = side * out;
-            }
-            cap.surfels[0].position = cap.points[0].position;
-            cap.surfels[0].normal = cap.points[0].normal;
-            Surroundings sphere;
-            sphere.add(sphere_inwards(1.5F, 4, diffuse(glm::vec3(0.5F))));
-            // Facets lie up to 1.5 m · (1 - cos 2°) = 1 mm inside the sphere.
-            const CellDivision division = divide_cell(cap, 0, sphere.traced(), 2e-3F);
-            CHECK(divided(cap, {&division, 1}).surfels.size() == 1);
+TEST_CASE("a cell stays whole in the open, beside a wall, close under a ceiling, and where it is curved") {
+    Surroundings surroundings;
+    surroundings.add(square(2.0F, diffuse(glm::vec3(0.5F))));
+    surroundings.add(wall(), upright(0.5F));
+    surroundings.add(wall(), glm::translate(glm::mat4(1.0F), {0.0F, 0.02F, 0.0F}));
+    CHECK(divided_in(surroundings, floor_cell()).surfels.size() == 1);
+    // A cap of a sphere of 1.5 m from its inside and from its outside; a chord is at most 0.1 m below it.
+    for (const float side : {-1.0F, 1.0F}) {
+        SurfelSet cap = floor_cell();
+        for (gpu::CellPoint& point : cap.points) {
+            const glm::vec3 out = glm::normalize(point.position + 1.5F * up);
+            point.position = 1.5F * out;
+            point.normal = side * out;
         }
-    }
-
-    TEST_CASE("a cell is divided where it is bent by more than the cosine 0.7, which is 46 degrees") {
-        for (const float degrees : {40.0F, 50.0F}) {
-            SurfelSet bent;
-            const float angle = glm::radians(degrees);
-            const glm::vec3 other(std::sin(angle), std::cos(angle), 0.0F);
-            add_cell(bent, {{-0.2F, 0, 0}, {-0.1F, 0, 0}, 0.1F * glm::vec3(other.y, -other.x, 0.0F)},
-                     {up, up, other});
-            const SurfelSet set = divided_in(Surroundings{}, bent);
-            check_consistent(set);
-            CHECK(set.surfels.size() == (degrees < 46.0F ? 1 : 2));
-            CHECK(area_of(set) == doctest::Approx(1.0));
-            CHECK(set.surfels.back().normal == (degrees < 46.0F ? up : other));
-        }
-    }
-
-    TEST_CASE("what stands or lies on a cell has the points below it to itself, also if it is low") {
-        for (const float height : {0.01F, 0.2F, 2.0F}) {
-            CAPTURE(height);
-            Surroundings surroundings;
-            surroundings.add(square(2.0F, diffuse(glm::vec3(0.5F))));
-            // A block around the point at its middle, open below; rays begin at a tenth of a millimetre.
-            const glm::vec3 half(0.21F, 0.5F * height, 0.21F);
-            const glm::mat4 placed = glm::scale(glm::translate(glm::mat4(1.0F), {0.0F, half.y, 0.0F}), half);
-            surroundings.add(box_inwards(1.0F, diffuse(glm::vec3(0.5F))), placed);
-            const SurfelSet set = divided_in(surroundings, floor_cell(9));
-            check_consistent(set);
-            CHECK(area_of(set) == doctest::Approx(1.0));
-            const auto is_below = [](glm::vec3 p) { return std::max(std::abs(p.x), std::abs(p.z)) < 0.21F; };
-            double area_below = 0.0;
-            for (const gpu::Surfel& surfel : set.surfels) {
-                if (is_below(surfel.position)) area_below += static_cast<double>(surfel.area);
-                for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
-                    CHECK(is_below(set.points[p].position) == is_below(surfel.position));
-                }
-            }
-            // Of nine points along each axis, those at -1/9, 0 and 1/9.
-            CHECK(area_below == doctest::Approx(9.0 / 81.0));
-            // Rays run above a block that is lower than 0.25 m, a quarter of the width.
-            CHECK(set.surfels.size() == (height < 0.25F ? 2 : 3));
-        }
-    }
-
-    TEST_CASE("a cell has four parts at most, and what is left is dropped, emitting surfels last") {
-        Surroundings strips;
-        for (const float x : {-0.375F, -0.125F, 0.125F, 0.375F}) strips.add(wall(), upright(x));
-        SurfelSet set;
-        add_floor_cell(set, 8);
-        add_floor_cell(set, 8);
-        for (gpu::CellPoint& point : set.points) point.position.y += point.surfel == 0 ? 3.0F : 0.0F;
-        set.surfels[0].position.y += 3.0F;  // above the walls
-        set.emitting_count = 1;
-        const SurfelSet parts = divided_in(strips, set);
-        check_consistent(parts);
-        CHECK(parts.surfels.size() == 1 + most_cell_parts);
-        CHECK(parts.emitting_count == most_cell_parts);
-        CHECK(parts.surfels[0].area == doctest::Approx(1.0));
-        CHECK(parts.item_of[0] == set.item_of[0]);
-        CHECK(parts.item_of[1] == set.item_of[1]);
-        // Three strips have two columns of the eight, the two at the ends have one.
-        const double dropped = 2.0 - area_of(parts);
-        CHECK((dropped == doctest::Approx(0.125) || dropped == doctest::Approx(0.25)));
-    }
-
-    TEST_CASE("which point becomes a surfel does not depend on where the cell is") {
-        // Two points are left, as far from their centroid, which is rounded.
-        std::mt19937 engine(test_seed());
-        std::uniform_real_distribution<float> number(-100.0F, 100.0F);
-        for (int i = 0; i < 50; ++i) {
-            const glm::vec3 offset(number(engine), 0.0F, number(engine));
-            SurfelSet set = floor_cell(2);
-            for (gpu::CellPoint& point : set.points) point.position += offset;
-            set.surfels[0].position += offset;
-            Surroundings surroundings;
-            surroundings.add(wall(), glm::translate(glm::mat4(1.0F), offset) * upright(0.1F));
-            const SurfelSet parts = divided_in(surroundings, set);
-            REQUIRE(parts.surfels.size() == 2);
-            CHECK(parts.surfel_places[1].triangle == 2);
-        }
-    }
-
-    TEST_CASE("points without area or normal, as of triangles that are deformed to nothing, end nothing") {
-        SurfelSet set = floor_cell(2);
-        for (gpu::CellPoint& point : set.points) point.area = 0.0F, point.normal = glm::vec3(0.0F);
-        set.surfels[0].area = 0.0F;
-        set.surfels[0].normal = glm::vec3(0.0F);
-        CHECK(divided_in(Surroundings{}, set).surfels.empty());
-    }
-
-    TEST_CASE("what is outside the box of a division does not change it") {
-        std::mt19937 engine(test_seed());
-        std::uniform_real_distribution<float> number(-1.0F, 1.0F);
-        const SurfelSet set = floor_cell(4);
-        const Box box = box_of_division(set, 0, ray_offset);
-        int apart = 0;
-        for (int i = 0; i < 300; ++i) {
-            Surroundings surroundings;
-            surroundings.add(soup(1, static_cast<std::uint32_t>(i), 1.0F),
-                             glm::translate(glm::mat4(1.0F), {number(engine), number(engine), 0.0F}));
-            if (meet(bounds(surroundings.triangles()[0]), box, 0.0F)) continue;
-            ++apart;
-            CHECK(divided_in(surroundings, set).surfels.size() == 1);
-        }
-        CHECK(apart > 30);
+        cap.surfels[0].position = cap.points[0].position;
+        cap.surfels[0].normal = cap.points[0].normal;
+        Surroundings sphere;
+        sphere.add(sphere_inwards(1.5F, 4, diffuse(glm::vec3(0.5F))));
+        // Facets lie up to 1.5 m · (1 - cos 2°) = 1 mm inside the sphere.
+        const CellDivision division = divide_cell(cap, 0, sphere.traced(), 2e-3F);
+        CHECK(divided(cap, {&division, 1}).surfels.size() == 1);
     }
 }
+
+TEST_CASE("a cell is divided where it is bent by more than the cosine 0.7, which is 46 degrees") {
+    for (const float degrees : {40.0F, 50.0F}) {
+        SurfelSet bent;
+        const float angle = glm::radians(degrees);
+        const glm::vec3 other(std::sin(angle), std::cos(angle), 0.0F);
+        add_cell(bent, {{-0.2F, 0, 0}, {-0.1F, 0, 0}, 0.1F * glm::vec3(other.y, -other.x, 0.0F)},
+                 {up, up, other});
+        const SurfelSet set = divided_in(Surroundings{}, bent);
+        check_consistent(set);
+        CHECK(set.surfels.size() == (degrees < 46.0F ? 1 : 2));
+        CHECK(area_of(set) == doctest::Approx(1.0));
+        CHECK(set.surfels.back().normal == (degrees < 46.0F ? up : other));
+    }
+}
+
+TEST_CASE("what stands or lies on a cell has the points below it to itself, also if it is low") {
+    for (const float height : {0.01F, 0.2F, 2.0F}) {
+        CAPTURE(height);
+        Surroundings surroundings;
+        surroundings.add(square(2.0F, diffuse(glm::vec3(0.5F))));
+        // A block around the point at its middle, open below; rays begin at a tenth of a millimetre.
+        const glm::vec3 half(0.21F, 0.5F * height, 0.21F);
+        const glm::mat4 placed = glm::scale(glm::translate(glm::mat4(1.0F), {0.0F, half.y, 0.0F}), half);
+        surroundings.add(box_inwards(1.0F, diffuse(glm::vec3(0.5F))), placed);
+        const SurfelSet set = divided_in(surroundings, floor_cell(9));
+        check_consistent(set);
+        CHECK(area_of(set) == doctest::Approx(1.0));
+        const auto is_below = [](glm::vec3 p) { return std::max(std::abs(p.x), std::abs(p.z)) < 0.21F; };
+        double area_below = 0.0;
+        for (const gpu::Surfel& surfel : set.surfels) {
+            if (is_below(surfel.position)) area_below += static_cast<double>(surfel.area);
+            for (std::uint32_t p = surfel.first_point; p < surfel.first_point + surfel.point_count; ++p) {
+                CHECK(is_below(set.points[p].position) == is_below(surfel.position));
+            }
+        }
+        // Of nine points along each axis, those at -1/9, 0 and 1/9.
+        CHECK(area_below == doctest::Approx(9.0 / 81.0));
+        // Rays run above a block that is lower than 0.25 m, a quarter of the width.
+        CHECK(set.surfels.size() == (height < 0.25F ? 2 : 3));
+    }
+}
+
+TEST_CASE("a cell has four parts at most, and what is left is dropped, emitting surfels last") {
+    Surroundings strips;
+    for (const float x : {-0.375F, -0.125F, 0.125F, 0.375F}) strips.add(wall(), upright(x));
+    SurfelSet set;
+    add_floor_cell(set, 8);
+    add_floor_cell(set, 8);
+    for (gpu::CellPoint& point : set.points) point.position.y += point.surfel == 0 ? 3.0F : 0.0F;
+    set.surfels[0].position.y += 3.0F;  // above the walls
+    set.emitting_count = 1;
+    const SurfelSet parts = divided_in(strips, set);
+    check_consistent(parts);
+    CHECK(parts.surfels.size() == 1 + most_cell_parts);
+    CHECK(parts.emitting_count == most_cell_parts);
+    CHECK(parts.surfels[0].area == doctest::Approx(1.0));
+    CHECK(parts.item_of[0] == set.item_of[0]);
+    CHECK(parts.item_of[1] == set.item_of[1]);
+    // Three strips have two columns of the eight, the two at the ends have one.
+    const double dropped = 2.0 - area_of(parts);
+    CHECK((dropped == doctest::Approx(0.125) || dropped == doctest::Approx(0.25)));
+}
+
+TEST_CASE("which point becomes a surfel does not depend on where the cell is") {
+    // Two points are left, as far from their centroid, which is rounded.
+    std::mt19937 engine(test_seed());
+    std::uniform_real_distribution<float> number(-100.0F, 100.0F);
+    for (int i = 0; i < 50; ++i) {
+        const glm::vec3 offset(number(engine), 0.0F, number(engine));
+        SurfelSet set = floor_cell(2);
+        for (gpu::CellPoint& point : set.points) point.position += offset;
+        set.surfels[0].position += offset;
+        Surroundings surroundings;
+        surroundings.add(wall(), glm::translate(glm::mat4(1.0F), offset) * upright(0.1F));
+        const SurfelSet parts = divided_in(surroundings, set);
+        REQUIRE(parts.surfels.size() == 2);
+        CHECK(parts.surfel_places[1].triangle == 2);
+    }
+}
+
+TEST_CASE("points without area or normal, as of triangles that are deformed to nothing, end nothing") {
+    SurfelSet set = floor_cell(2);
+    for (gpu::CellPoint& point : set.points) point.area = 0.0F, point.normal = glm::vec3(0.0F);
+    set.surfels[0].area = 0.0F;
+    set.surfels[0].normal = glm::vec3(0.0F);
+    CHECK(divided_in(Surroundings{}, set).surfels.empty());
+}
+
+TEST_CASE("what is outside the box of a division does not change it") {
+    std::mt19937 engine(test_seed());
+    std::uniform_real_distribution<float> number(-1.0F, 1.0F);
+    const SurfelSet set = floor_cell(4);
+    const Box box = box_of_division(set, 0, ray_offset);
+    int apart = 0;
+    for (int i = 0; i < 300; ++i) {
+        Surroundings surroundings;
+        surroundings.add(soup(1, static_cast<std::uint32_t>(i), 1.0F),
+                         glm::translate(glm::mat4(1.0F), {number(engine), number(engine), 0.0F}));
+        if (meet(bounds(surroundings.triangles()[0]), box, 0.0F)) continue;
+        ++apart;
+        CHECK(divided_in(surroundings, set).surfels.size() == 1);
+    }
+    CHECK(apart > 30);
+}
+
+}  // TEST_SUITE("surfels: division")
 
 TEST_SUITE("traced scene") {
-    TEST_CASE("rays meet what a single hierarchy over all triangles meets") {
-        Surroundings surroundings;
-        for (std::uint32_t i = 0; i < 5; ++i) {
-            const glm::mat4 moved =
-                glm::translate(glm::mat4(1.0F), {0.3F * static_cast<float>(i), 0.0F, 0.2F});
-            surroundings.add(soup(200, test_seed() + i, 0.2F), glm::rotate(moved, 1.0F, up));
-        }
-        const std::vector<Triangle> all = surroundings.triangles();
-        const Bvh bvh = build_bvh(all);
-        std::mt19937 engine(test_seed());
-        std::uniform_real_distribution<float> number(-1.5F, 1.5F);
-        const auto point = [&] { return glm::vec3(number(engine), number(engine), number(engine)); };
-        int blocked = 0;
-        for (int i = 0; i < 2000; ++i) {
-            const Ray ray{point(), point(), 0.0F, 1.0F};
-            const auto hit = closest_hit(bvh, all, ray);
-            const auto found = nearest_surface(surroundings.traced(), ray);
-            REQUIRE(found.has_value() == hit.has_value());
-            if (hit) CHECK(found->distance == hit->t);
-            if (hit) CHECK(glm::dot(found->normal, ray.direction) <= 0.0F);
-            const glm::vec3 to = ray.origin + ray.direction;
-            const Ray between{ray.origin, to - ray.origin, 0.0F, 1.0F};
-            CHECK(is_blocked(surroundings.traced(), ray.origin, to) == any_hit(bvh, all, between));
-            blocked += hit ? 1 : 0;
-        }
-        CHECK(blocked > 200);
-        CHECK(blocked < 1800);
+TEST_CASE("rays meet what a single hierarchy over all triangles meets") {
+    Surroundings surroundings;
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        const glm::mat4 moved = glm::translate(glm::mat4(1.0F), {0.3F * static_cast<float>(i), 0.0F, 0.2F});
+        surroundings.add(soup(200, test_seed() + i, 0.2F), glm::rotate(moved, 1.0F, up));
     }
-
-    TEST_CASE("rays pass through the holes of masks") {
-        Surroundings surroundings;
-        surroundings.add(square(1.0F, half_hole()));  // u runs along x
-        const auto is_open_at = [&](float x) {
-            return !is_blocked(surroundings.traced(), {x, 1.0F, 0.2F}, {x, -1.0F, 0.2F});
-        };
-        CHECK(is_open_at(-0.1F));
-        CHECK(is_open_at(-0.9F));
-        CHECK_FALSE(is_open_at(0.1F));
-        CHECK_FALSE(is_open_at(0.9F));
-        CHECK(is_open_at(1.1F));
+    const std::vector<Triangle> all = surroundings.triangles();
+    const Bvh bvh = build_bvh(all);
+    std::mt19937 engine(test_seed());
+    std::uniform_real_distribution<float> number(-1.5F, 1.5F);
+    const auto point = [&] { return glm::vec3(number(engine), number(engine), number(engine)); };
+    int blocked = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Ray ray{point(), point(), 0.0F, 1.0F};
+        const auto hit = closest_hit(bvh, all, ray);
+        const auto found = nearest_surface(surroundings.traced(), ray);
+        REQUIRE(found.has_value() == hit.has_value());
+        if (hit) CHECK(found->distance == hit->t);
+        if (hit) CHECK(glm::dot(found->normal, ray.direction) <= 0.0F);
+        const glm::vec3 to = ray.origin + ray.direction;
+        const Ray between{ray.origin, to - ray.origin, 0.0F, 1.0F};
+        CHECK(is_blocked(surroundings.traced(), ray.origin, to) == any_hit(bvh, all, between));
+        blocked += hit ? 1 : 0;
     }
+    CHECK(blocked > 200);
+    CHECK(blocked < 1800);
 }
+
+TEST_CASE("rays pass through the holes of masks") {
+    Surroundings surroundings;
+    surroundings.add(square(1.0F, half_hole()));  // u runs along x
+    const auto is_open_at = [&](float x) {
+        return !is_blocked(surroundings.traced(), {x, 1.0F, 0.2F}, {x, -1.0F, 0.2F});
+    };
+    CHECK(is_open_at(-0.1F));
+    CHECK(is_open_at(-0.9F));
+    CHECK_FALSE(is_open_at(0.1F));
+    CHECK_FALSE(is_open_at(0.9F));
+    CHECK(is_open_at(1.1F));
+}
+
+}  // TEST_SUITE("traced scene")

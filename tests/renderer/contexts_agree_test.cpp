@@ -7,6 +7,8 @@
 #include "renderer/facade/device_of.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("contexts agree") {
+
 using namespace candela;
 
 namespace {
@@ -65,22 +67,22 @@ Shown show(ContextKind kind) {
 
 }  // namespace
 
-TEST_SUITE("contexts agree") {
-    TEST_CASE("EGL and OSMesa give the same pictures, bit for bit, if they use the same driver") {
-        if (!HeadlessContext::is_built(ContextKind::osmesa)) {
-            MESSAGE("nothing to compare: this build is without OSMesa");
-            return;
-        }
-        const Shown egl = show(ContextKind::egl);
-        const Shown osmesa = show(ContextKind::osmesa);
-        if (egl.driver != osmesa.driver) {
-            MESSAGE("nothing to compare: EGL is ", egl.driver, ", OSMesa is ", osmesa.driver);
-            return;
-        }
-        for (std::size_t i = 0; i < egl.pictures.size(); ++i) {
-            CAPTURE(i);
-            CHECK(mean(egl.pictures[i]) > 0.0);
-            CHECK(egl.pictures[i] == osmesa.pictures[i]);
-        }
+TEST_CASE("EGL and OSMesa give the same pictures, bit for bit, if they use the same driver") {
+    if (!HeadlessContext::is_built(ContextKind::osmesa)) {
+        MESSAGE("nothing to compare: this build is without OSMesa");
+        return;
+    }
+    const Shown egl = show(ContextKind::egl);
+    const Shown osmesa = show(ContextKind::osmesa);
+    if (egl.driver != osmesa.driver) {
+        MESSAGE("nothing to compare: EGL is ", egl.driver, ", OSMesa is ", osmesa.driver);
+        return;
+    }
+    for (std::size_t i = 0; i < egl.pictures.size(); ++i) {
+        CAPTURE(i);
+        CHECK(mean(egl.pictures[i]) > 0.0);
+        CHECK(egl.pictures[i] == osmesa.pictures[i]);
     }
 }
+
+}  // TEST_SUITE("contexts agree")

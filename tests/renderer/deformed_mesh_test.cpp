@@ -11,6 +11,8 @@
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/uploads.hpp"
 
+TEST_SUITE("deformed meshes") {
+
 using namespace candela;
 
 namespace {
@@ -80,108 +82,104 @@ std::shared_ptr<const Material> see_through() {
 
 }  // namespace
 
-TEST_SUITE("deformed meshes") {
-    TEST_CASE_FIXTURE(RenderFixture, "a deformed mesh looks like a mesh with its vertices") {
-        for (const auto& material : {diffuse({0.8F, 0.3F, 0.2F}, true), see_through()}) {
-            configure(lit(VplPlacement::paths, VplVisibility::rays));
-            const auto mesh = cloth(6, material);
-            ClothScene scene(mesh);
-            const Picture flat = render(scene, deformed_size);
-            for (const float phase : {0.0F, 1.0F}) {
-                const DeformedMesh waving = deformed(*mesh, wave(phase));
-                scene.world.set(scene.cloth, waving);
-                Mesh changed = *mesh;
-                changed.primitives.front().vertices = waving.vertices->front();
-                const ClothScene wanted(std::make_shared<const Mesh>(std::move(changed)));
-                CHECK(render(scene, deformed_size) == from_scratch(wanted, deformed_size));
-            }
-            scene.world.remove<DeformedMesh>(scene.cloth);
-            CHECK(render(scene, deformed_size) == flat);
-        }
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "a mesh is seen where its vertices are, also if it was made elsewhere") {
+TEST_CASE_FIXTURE(RenderFixture, "a deformed mesh looks like a mesh with its vertices") {
+    for (const auto& material : {diffuse({0.8F, 0.3F, 0.2F}, true), see_through()}) {
         configure(lit(VplPlacement::paths, VplVisibility::rays));
-        const auto mesh = cloth(6, diffuse({0.8F, 0.3F, 0.2F}, true));
-        Mesh aside = *mesh;
-        for (Vertex& vertex : aside.primitives.front().vertices)
-            vertex.position.x += 50.0F;  // out of the view
-        ClothScene scene(std::make_shared<const Mesh>(std::move(aside)));
-        scene.world.set(scene.cloth, deformed(*mesh, [](Vertex&) {}));
-        CHECK(render(scene, deformed_size) == from_scratch(ClothScene(mesh), deformed_size));
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "a mesh whose vertices turn is lit like one that turns") {
-        // The surfels are the same ones, moved by the triangles or by the item.
-        configure(lit(VplPlacement::surfels, VplVisibility::rays));
-        const auto mesh = cloth(6, diffuse({0.8F, 0.3F, 0.2F}, true));
-        const glm::quat turn = glm::angleAxis(0.5F, glm::normalize(glm::vec3(1, 2, 3)));
-        ClothScene turned(mesh);
-        turned.world.set(
-            turned.cloth,
-            Transform{.translation = {0.2F, 0.8F, 0}, .rotation = turn, .scale = glm::vec3(0.4F)});
-        ClothScene with_vertices(mesh);
-        with_vertices.world.set(with_vertices.cloth,
-                                Transform{.translation = {0.2F, 0.8F, 0}, .scale = glm::vec3(0.4F)});
-        with_vertices.world.set(with_vertices.cloth, deformed(*mesh, [&](Vertex& vertex) {
-                                    vertex.position = turn * vertex.position;
-                                    vertex.normal = turn * vertex.normal;
-                                }));
-        // Rounding of positions, about 1e-7, moves the outlines of shadows, which rays decide: few pixels
-        // differ.
-        const Picture a = render(turned, deformed_size);
-        const Picture b = render(with_vertices, deformed_size);
-        std::size_t different = 0;
-        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-            different += glm::length(a.pixels[i] - b.pixels[i]) > 1e-3F * glm::length(a.pixels[i]) ? 1 : 0;
-        }
-        CHECK(different * 50 < a.pixels.size());
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "a mesh that is stretched reflects as much as a mesh of that size") {
-        Configuration configuration = lit(VplPlacement::surfels, VplVisibility::rays);
-        configuration.vpls.count = 1024;
-        configuration.show = Show::indirect;
-        configure(configuration);
-        const auto mesh = cloth(6, diffuse({0.8F, 0.8F, 0.8F}, true));
-        ClothScene large(mesh);
-        ClothScene stretched(mesh);
-        const Transform pose{.translation = {0.2F, 0.6F, 0}};
-        large.world.set(large.cloth, pose);
-        // Lit from below, the cloth lights the ground.
-        large.world.set(large.light, at({0.2F, 0.3F, 0.0F}));
-        stretched.world.set(stretched.light, at({0.2F, 0.3F, 0.0F}));
-        stretched.world.set(stretched.cloth,
-                            Transform{.translation = pose.translation, .scale = glm::vec3(0.4F)});
-        stretched.world.set(stretched.cloth,
-                            deformed(*mesh, [](Vertex& vertex) { vertex.position /= 0.4F; }));
-        // It has a sixth as many surfels, each six times as large. Light of so few is off by some percent.
-        const double ratio = mean(render(stretched, deformed_size)) / mean(render(large, deformed_size));
-        CHECK(std::abs(ratio - 1.0) < 0.15);
-    }
-
-    TEST_CASE_FIXTURE(GlFixture,
-                      "only the deformed vertices, and their triangles for tracing, are uploaded") {
-        TestedRenderer renderer(Uploads::counting(context->get_proc()));
-        REQUIRE(renderer.configure(lit(VplPlacement::paths, VplVisibility::rays)).empty());
-        const auto mesh = cloth(20, diffuse(glm::vec3(0.5F), true));
+        const auto mesh = cloth(6, material);
         ClothScene scene(mesh);
-        add(scene.world, at({0, 1, 0}), MeshInstance{soup(20'000, 3)});
-        const RenderTarget target(device, deformed_size);
-        const auto uploaded = [&] {
-            static_cast<void>(Uploads::take());
-            renderer.render(scene.world, scene.camera, target.target());
-            return Uploads::take();
-        };
-        const std::uint64_t all = uploaded();
-        scene.world.set(scene.cloth, deformed(*mesh, wave(0.0F)));
-        static_cast<void>(uploaded());
-        scene.world.set(scene.cloth, deformed(*mesh, wave(1.0F)));
-        // 441 vertices of 40 bytes, 800 triangles of 80, at most 1,600 nodes of 32, and the top of the
-        // hierarchy, which is of that size.
-        const std::uint64_t cloth_only = uploaded();
-        CHECK(cloth_only > 441 * 40 + 800 * 80);
-        CHECK(cloth_only < 250'000);
-        CHECK(all > 3'000'000);
+        const Picture flat = render(scene, deformed_size);
+        for (const float phase : {0.0F, 1.0F}) {
+            const DeformedMesh waving = deformed(*mesh, wave(phase));
+            scene.world.set(scene.cloth, waving);
+            Mesh changed = *mesh;
+            changed.primitives.front().vertices = waving.vertices->front();
+            const ClothScene wanted(std::make_shared<const Mesh>(std::move(changed)));
+            CHECK(render(scene, deformed_size) == from_scratch(wanted, deformed_size));
+        }
+        scene.world.remove<DeformedMesh>(scene.cloth);
+        CHECK(render(scene, deformed_size) == flat);
     }
 }
+
+TEST_CASE_FIXTURE(RenderFixture, "a mesh is seen where its vertices are, also if it was made elsewhere") {
+    configure(lit(VplPlacement::paths, VplVisibility::rays));
+    const auto mesh = cloth(6, diffuse({0.8F, 0.3F, 0.2F}, true));
+    Mesh aside = *mesh;
+    for (Vertex& vertex : aside.primitives.front().vertices) vertex.position.x += 50.0F;  // out of the view
+    ClothScene scene(std::make_shared<const Mesh>(std::move(aside)));
+    scene.world.set(scene.cloth, deformed(*mesh, [](Vertex&) {}));
+    CHECK(render(scene, deformed_size) == from_scratch(ClothScene(mesh), deformed_size));
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "a mesh whose vertices turn is lit like one that turns") {
+    // The surfels are the same ones, moved by the triangles or by the item.
+    configure(lit(VplPlacement::surfels, VplVisibility::rays));
+    const auto mesh = cloth(6, diffuse({0.8F, 0.3F, 0.2F}, true));
+    const glm::quat turn = glm::angleAxis(0.5F, glm::normalize(glm::vec3(1, 2, 3)));
+    ClothScene turned(mesh);
+    turned.world.set(turned.cloth,
+                     Transform{.translation = {0.2F, 0.8F, 0}, .rotation = turn, .scale = glm::vec3(0.4F)});
+    ClothScene with_vertices(mesh);
+    with_vertices.world.set(with_vertices.cloth,
+                            Transform{.translation = {0.2F, 0.8F, 0}, .scale = glm::vec3(0.4F)});
+    with_vertices.world.set(with_vertices.cloth, deformed(*mesh, [&](Vertex& vertex) {
+                                vertex.position = turn * vertex.position;
+                                vertex.normal = turn * vertex.normal;
+                            }));
+    // Rounding of positions, about 1e-7, moves the outlines of shadows, which rays decide: few pixels
+    // differ.
+    const Picture a = render(turned, deformed_size);
+    const Picture b = render(with_vertices, deformed_size);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        different += glm::length(a.pixels[i] - b.pixels[i]) > 1e-3F * glm::length(a.pixels[i]) ? 1 : 0;
+    }
+    CHECK(different * 50 < a.pixels.size());
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "a mesh that is stretched reflects as much as a mesh of that size") {
+    Configuration configuration = lit(VplPlacement::surfels, VplVisibility::rays);
+    configuration.vpls.count = 1024;
+    configuration.show = Show::indirect;
+    configure(configuration);
+    const auto mesh = cloth(6, diffuse({0.8F, 0.8F, 0.8F}, true));
+    ClothScene large(mesh);
+    ClothScene stretched(mesh);
+    const Transform pose{.translation = {0.2F, 0.6F, 0}};
+    large.world.set(large.cloth, pose);
+    // Lit from below, the cloth lights the ground.
+    large.world.set(large.light, at({0.2F, 0.3F, 0.0F}));
+    stretched.world.set(stretched.light, at({0.2F, 0.3F, 0.0F}));
+    stretched.world.set(stretched.cloth,
+                        Transform{.translation = pose.translation, .scale = glm::vec3(0.4F)});
+    stretched.world.set(stretched.cloth, deformed(*mesh, [](Vertex& vertex) { vertex.position /= 0.4F; }));
+    // It has a sixth as many surfels, each six times as large. Light of so few is off by some percent.
+    const double ratio = mean(render(stretched, deformed_size)) / mean(render(large, deformed_size));
+    CHECK(std::abs(ratio - 1.0) < 0.15);
+}
+
+TEST_CASE_FIXTURE(GlFixture, "only the deformed vertices, and their triangles for tracing, are uploaded") {
+    TestedRenderer renderer(Uploads::counting(context->get_proc()));
+    REQUIRE(renderer.configure(lit(VplPlacement::paths, VplVisibility::rays)).empty());
+    const auto mesh = cloth(20, diffuse(glm::vec3(0.5F), true));
+    ClothScene scene(mesh);
+    add(scene.world, at({0, 1, 0}), MeshInstance{soup(20'000, 3)});
+    const RenderTarget target(device, deformed_size);
+    const auto uploaded = [&] {
+        static_cast<void>(Uploads::take());
+        renderer.render(scene.world, scene.camera, target.target());
+        return Uploads::take();
+    };
+    const std::uint64_t all = uploaded();
+    scene.world.set(scene.cloth, deformed(*mesh, wave(0.0F)));
+    static_cast<void>(uploaded());
+    scene.world.set(scene.cloth, deformed(*mesh, wave(1.0F)));
+    // 441 vertices of 40 bytes, 800 triangles of 80, at most 1,600 nodes of 32, and the top of the
+    // hierarchy, which is of that size.
+    const std::uint64_t cloth_only = uploaded();
+    CHECK(cloth_only > 441 * 40 + 800 * 80);
+    CHECK(cloth_only < 250'000);
+    CHECK(all > 3'000'000);
+}
+
+}  // TEST_SUITE("deformed meshes")

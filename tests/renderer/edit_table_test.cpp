@@ -17,6 +17,8 @@
 #include <candela/scene/deformed_mesh.hpp>
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("edits") {
+
 using namespace candela;
 
 namespace {
@@ -305,17 +307,17 @@ class EditTable : public PathFixture {
 
 }  // namespace
 
-TEST_SUITE("edits") {
-    TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run: forward paths") {
-        check_paths({ShadingPath::forward, ShadingPath::tiled_forward, ShadingPath::forward_plus,
-                     ShadingPath::clustered_forward});
-    }
-
-    TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run: deferred paths") {
-        check_paths({ShadingPath::deferred, ShadingPath::tiled_deferred, ShadingPath::clustered_deferred});
-    }
-
-    TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run: surfels") {
-        check_paths({ShadingPath::deferred}, VplPlacement::surfels);
-    }
+TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run: forward paths") {
+    check_paths({ShadingPath::forward, ShadingPath::tiled_forward, ShadingPath::forward_plus,
+                 ShadingPath::clustered_forward});
 }
+
+TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run: deferred paths") {
+    check_paths({ShadingPath::deferred, ShadingPath::tiled_deferred, ShadingPath::clustered_deferred});
+}
+
+TEST_CASE_FIXTURE(EditTable, "after each edit only the passes that depend on it run: surfels") {
+    check_paths({ShadingPath::deferred}, VplPlacement::surfels);
+}
+
+}  // TEST_SUITE("edits")

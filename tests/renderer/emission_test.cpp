@@ -12,6 +12,8 @@
 #include "tests/area_lights.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("emission") {
+
 using namespace candela;
 
 namespace {
@@ -88,173 +90,171 @@ Configuration small_configuration(Show show = Show::total) {
 
 }  // namespace
 
-TEST_SUITE("emission") {
-    // 1 %: the lamp is sampled at about 1,000 points, and its cells are treated as discs from three times
-    // their width on.
-    TEST_CASE_FIXTURE(EmissionFixture, "a rectangle lights a plane as Lambert's formula says") {
-        const Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
-        CHECK(worst_ground_error(scene, irradiance_of_lamp) < 0.01);
-    }
+// 1 %: the lamp is sampled at about 1,000 points, and its cells are treated as discs from three times
+// their width on.
+TEST_CASE_FIXTURE(EmissionFixture, "a rectangle lights a plane as Lambert's formula says") {
+    const Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
+    CHECK(worst_ground_error(scene, irradiance_of_lamp) < 0.01);
+}
 
-    TEST_CASE_FIXTURE(EmissionFixture, "emitted light is not reflected light") {
-        // The ground reflects light to the black lamp only.
-        const Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
-        configure(small_configuration(Show::indirect));
-        CHECK(mean(render(scene, size)) == 0.0);
-        configure(small_configuration(Show::direct));
-        const Picture direct = render(scene, size);
-        CHECK(mean(direct) > 0.0);
-        configure(small_configuration());
-        // The sums of the same terms are rounded in another order.
-        CHECK(worst_error(render(scene, size), direct, mean(direct)) < 1e-5);
-    }
+TEST_CASE_FIXTURE(EmissionFixture, "emitted light is not reflected light") {
+    // The ground reflects light to the black lamp only.
+    const Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
+    configure(small_configuration(Show::indirect));
+    CHECK(mean(render(scene, size)) == 0.0);
+    configure(small_configuration(Show::direct));
+    const Picture direct = render(scene, size);
+    CHECK(mean(direct) > 0.0);
+    configure(small_configuration());
+    // The sums of the same terms are rounded in another order.
+    CHECK(worst_error(render(scene, size), direct, mean(direct)) < 1e-5);
+}
 
-    TEST_CASE_FIXTURE(EmissionFixture, "a sphere lights a plane like its solid angle") {
-        Scene scene = ground();
-        const float radius = 0.2F;
-        // 20,480 triangles have the sphere's area to 1e-3.
-        add(scene.world, at(lamp_position),
-            MeshInstance{sphere_outwards(radius, 5, emitter(glm::vec3(1.0F)))});
-        const auto irradiance = [&](glm::dvec3 point) {
-            return irradiance_of_sphere(glm::dvec3(lamp_position), static_cast<double>(radius), point,
-                                        {0, 1, 0});
-        };
-        CHECK(worst_ground_error(scene, irradiance) < 0.01);
-        // 64 rays: cells at the sphere's horizon count as visible or hidden as a whole.
-        CHECK(worst_ground_error(scene, irradiance, VplVisibility::rays) < 0.03);
-    }
+TEST_CASE_FIXTURE(EmissionFixture, "a sphere lights a plane like its solid angle") {
+    Scene scene = ground();
+    const float radius = 0.2F;
+    // 20,480 triangles have the sphere's area to 1e-3.
+    add(scene.world, at(lamp_position), MeshInstance{sphere_outwards(radius, 5, emitter(glm::vec3(1.0F)))});
+    const auto irradiance = [&](glm::dvec3 point) {
+        return irradiance_of_sphere(glm::dvec3(lamp_position), static_cast<double>(radius), point, {0, 1, 0});
+    };
+    CHECK(worst_ground_error(scene, irradiance) < 0.01);
+    // 64 rays: cells at the sphere's horizon count as visible or hidden as a whole.
+    CHECK(worst_ground_error(scene, irradiance, VplVisibility::rays) < 0.03);
+}
 
-    TEST_CASE_FIXTURE(EmissionFixture, "the camera sees the emitted radiance on every path") {
-        Scene scene = ground();
-        const glm::vec3 radiance(3.0F, 2.0F, 0.5F);
-        add(scene.world, at({0.0F, 0.01F, 0.0F}), MeshInstance{square(4.0F, emitter(radiance))});
-        for (const ShadingPath path : all_shading_paths) {
-            CAPTURE(to_string(path));
-            configure(linear_configuration(path));
-            for (const glm::vec3 pixel : render(scene, {16, 12}).pixels) {
-                CHECK(pixel == radiance);
-            }
+TEST_CASE_FIXTURE(EmissionFixture, "the camera sees the emitted radiance on every path") {
+    Scene scene = ground();
+    const glm::vec3 radiance(3.0F, 2.0F, 0.5F);
+    add(scene.world, at({0.0F, 0.01F, 0.0F}), MeshInstance{square(4.0F, emitter(radiance))});
+    for (const ShadingPath path : all_shading_paths) {
+        CAPTURE(to_string(path));
+        configure(linear_configuration(path));
+        for (const glm::vec3 pixel : render(scene, {16, 12}).pixels) {
+            CHECK(pixel == radiance);
         }
     }
-
-    TEST_CASE_FIXTURE(EmissionFixture, "the light of a closed lamp is all absorbed") {
-        Scene scene = furnace_box(0.5F);
-        scene.world.destroy(scene.light);
-        add(scene.world, upside_down_at({0.0F, 0.99F, 0.0F}),
-            MeshInstance{square(0.25F, emitter(glm::vec3(2.0F)))});
-        Configuration configuration = linear_configuration();
-        configuration.vpls.count = 512;  // with fewer, more of the light is lost between them
-        configuration.visibility.method = VplVisibility::maps;
-        configure(configuration);
-        static_cast<void>(render(scene, {4, 4}));
-        const auto report = renderer.report().vpls;
-        REQUIRE(report);
-        const EnergyAccount& flux = report->flux;
-        const double emitted = pi * 2.0 * 0.25;  // π L A
-        CHECK(flux.emitted.r == doctest::Approx(emitted).epsilon(1e-3));
-        CHECK(flux.absorbed.r + flux.truncated.r == doctest::Approx(emitted).epsilon(0.005));
-        CHECK(flux.escaped.r < 0.005 * emitted);
-    }
-
-    TEST_CASE_FIXTURE(EmissionFixture,
-                      "light follows a lamp that moves, changes or goes, and its passes go with it") {
-        Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
-        configure(small_configuration());
-        static_cast<void>(render(scene, size));
-        scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.5F; });
-        CHECK(render(scene, size) == from_scratch(scene, size));
-        scene.world.set(scene.light, MeshInstance{square(half, emitter({0.0F, 2.0F, 1.0F}))});
-        CHECK(render(scene, size) == from_scratch(scene, size));
-        CHECK(ran("emission"));
-        scene.world.destroy(scene.light);
-        CHECK(mean(render(scene, size)) == 0.0);
-        CHECK(renderer.describe(GraphFormat::text).find("emission") == std::string::npos);
-    }
-
-    TEST_CASE_FIXTURE(EmissionFixture, "an emissive texture shines where it is bright") {
-        const glm::u8vec4 white(255);
-        const glm::u8vec4 black(0, 0, 0, 255);
-        const Image image{.width = 4,
-                          .height = 1,
-                          .texels = {white, black, black, white},
-                          .wrap_u = Wrap::clamp_to_edge,
-                          .wrap_v = Wrap::clamp_to_edge};
-        Material material = *emitter(glm::vec3(4.0F));
-        material.emissive_texture = std::make_shared<const Image>(image);
-        const auto textured = std::make_shared<const Material>(material);
-
-        // Far away, only the mean matters: 1/2.
-        Scene far = ground();
-        add(far.world, upside_down_at({0.0F, 3.0F, 0.0F}), MeshInstance{square(0.05F, textured)});
-        Scene plain = ground();
-        add(plain.world, upside_down_at({0.0F, 3.0F, 0.0F}),
-            MeshInstance{square(0.05F, emitter(glm::vec3(2.0F)))});
-        configure(small_configuration(Show::direct));
-        const Picture expected = render(plain, size);
-        renderer.invalidate();
-        // 1 %: about 1,000 points sample the texture.
-        CHECK(worst_error(render(far, size), expected, 0.01 * mean(expected)) < 0.01);
-
-        // The camera sees the texels: the outer eighths of the square are white. It sees x = -1.6 m to 1.6 m
-        // at the lower edge.
-        Scene near = ground();
-        add(near.world, at({0.0F, 0.01F, 0.0F}), MeshInstance{square(1.8F, textured)});
-        renderer.invalidate();
-        const Picture seen = render(near, size);
-        CHECK(seen.at(0, 0).r == 4.0F);
-        CHECK(seen.at(size.x / 2, 0).r == 0.0F);
-    }
-
-    TEST_CASE_FIXTURE(EmissionFixture, "a blended surface shows its emission as far as it covers") {
-        Scene scene = ground();
-        Material material = *emitter(glm::vec3(3.0F));
-        material.alpha_mode = AlphaMode::blend;
-        material.base_colour.a = 0.25F;
-        add(scene.world, at({0.0F, 0.5F, 0.0F}),
-            MeshInstance{square(4.0F, std::make_shared<const Material>(material))});
-        configure(linear_configuration());
-        CHECK(render(scene, {16, 12}).at(8, 6).r == doctest::Approx(0.75F).epsilon(1e-3));
-    }
-
-    TEST_CASE_FIXTURE(EmissionFixture, "a lamp of 80 thousand triangles lights all of a room") {
-        Scene scene = cornell_box();
-        scene.world.destroy(scene.light);
-        add(scene.world, at({0.0F, 1.5F, 0.0F}),
-            MeshInstance{sphere_outwards(0.2F, 6, emitter(glm::vec3(5.0F)))});
-        // Emitters have rays in both cases. With maps, an invocation shades four pixels, of which some show
-        // no surface: rays from there must not use up the loops that software drivers allow.
-        Configuration configuration = small_configuration(Show::direct);
-        configuration.interleave = Interleave::eight;
-        configuration.visibility.method = VplVisibility::rays;
-        configure(configuration);
-        const Picture expected = render(scene, {128, 128});
-        configuration.visibility = {VplVisibility::maps, 16};
-        configure(configuration);
-        CHECK(worst_error(render(scene, {128, 128}), expected, mean(expected)) < 1e-3);
-    }
-
-    TEST_CASE_FIXTURE(EmissionFixture, "shadows of a lamp converge to the share of it that is visible") {
-        // A wall that hides exactly one half of the lamp from a point below it: half of the light arrives.
-        Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
-        add(scene.world,
-            Transform{.translation = lamp_position + glm::vec3(0.0F, -0.5F, 0.0F),
-                      .rotation = glm::angleAxis(static_cast<float>(pi / 2.0), glm::vec3(0.0F, 0.0F, 1.0F))},
-            MeshInstance{square(0.499F, diffuse(glm::vec3(0.0F), true))});
-        const glm::vec3 below = lamp_position * glm::vec3(1.0F, 0.0F, 1.0F) + glm::vec3(0.02F, 0.0F, 0.0F);
-        const Entity camera = add(scene.world, looking(below + glm::vec3(0.3F, 0.4F, 0.0F), below),
-                                  Camera{.vertical_fov = 0.02F});
-        Configuration configuration = linear_configuration();
-        configuration.indirect = false;
-        configuration.visibility = {VplVisibility::rays, 64};
-        configure(configuration);
-        const double shown = static_cast<double>(render(scene.world, camera, {1, 1}).at(0, 0).r);
-        const glm::dvec3 at(below);
-        // The half of the lamp towards +x, seen from right of the wall. 64 shadow rays: 1/64 of the lamp.
-        const double h = static_cast<double>(half);
-        const glm::dvec3 p(lamp_position);
-        const std::array corners{p + glm::dvec3(0, 0, -h), p + glm::dvec3(h, 0, -h), p + glm::dvec3(h, 0, h),
-                                 p + glm::dvec3(0, 0, h)};
-        const double expected = 0.5 / pi * irradiance_of_polygon(corners, at, {0, 1, 0});
-        CHECK(shown == doctest::Approx(expected).epsilon(0.05));
-    }
 }
+
+TEST_CASE_FIXTURE(EmissionFixture, "the light of a closed lamp is all absorbed") {
+    Scene scene = furnace_box(0.5F);
+    scene.world.destroy(scene.light);
+    add(scene.world, upside_down_at({0.0F, 0.99F, 0.0F}),
+        MeshInstance{square(0.25F, emitter(glm::vec3(2.0F)))});
+    Configuration configuration = linear_configuration();
+    configuration.vpls.count = 512;  // with fewer, more of the light is lost between them
+    configuration.visibility.method = VplVisibility::maps;
+    configure(configuration);
+    static_cast<void>(render(scene, {4, 4}));
+    const auto report = renderer.report().vpls;
+    REQUIRE(report);
+    const EnergyAccount& flux = report->flux;
+    const double emitted = pi * 2.0 * 0.25;  // π L A
+    CHECK(flux.emitted.r == doctest::Approx(emitted).epsilon(1e-3));
+    CHECK(flux.absorbed.r + flux.truncated.r == doctest::Approx(emitted).epsilon(0.005));
+    CHECK(flux.escaped.r < 0.005 * emitted);
+}
+
+TEST_CASE_FIXTURE(EmissionFixture,
+                  "light follows a lamp that moves, changes or goes, and its passes go with it") {
+    Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
+    configure(small_configuration());
+    static_cast<void>(render(scene, size));
+    scene.world.edit<Transform>(scene.light, [](Transform& pose) { pose.translation.x += 0.5F; });
+    CHECK(render(scene, size) == from_scratch(scene, size));
+    scene.world.set(scene.light, MeshInstance{square(half, emitter({0.0F, 2.0F, 1.0F}))});
+    CHECK(render(scene, size) == from_scratch(scene, size));
+    CHECK(ran("emission"));
+    scene.world.destroy(scene.light);
+    CHECK(mean(render(scene, size)) == 0.0);
+    CHECK(renderer.describe(GraphFormat::text).find("emission") == std::string::npos);
+}
+
+TEST_CASE_FIXTURE(EmissionFixture, "an emissive texture shines where it is bright") {
+    const glm::u8vec4 white(255);
+    const glm::u8vec4 black(0, 0, 0, 255);
+    const Image image{.width = 4,
+                      .height = 1,
+                      .texels = {white, black, black, white},
+                      .wrap_u = Wrap::clamp_to_edge,
+                      .wrap_v = Wrap::clamp_to_edge};
+    Material material = *emitter(glm::vec3(4.0F));
+    material.emissive_texture = std::make_shared<const Image>(image);
+    const auto textured = std::make_shared<const Material>(material);
+
+    // Far away, only the mean matters: 1/2.
+    Scene far = ground();
+    add(far.world, upside_down_at({0.0F, 3.0F, 0.0F}), MeshInstance{square(0.05F, textured)});
+    Scene plain = ground();
+    add(plain.world, upside_down_at({0.0F, 3.0F, 0.0F}),
+        MeshInstance{square(0.05F, emitter(glm::vec3(2.0F)))});
+    configure(small_configuration(Show::direct));
+    const Picture expected = render(plain, size);
+    renderer.invalidate();
+    // 1 %: about 1,000 points sample the texture.
+    CHECK(worst_error(render(far, size), expected, 0.01 * mean(expected)) < 0.01);
+
+    // The camera sees the texels: the outer eighths of the square are white. It sees x = -1.6 m to 1.6 m
+    // at the lower edge.
+    Scene near = ground();
+    add(near.world, at({0.0F, 0.01F, 0.0F}), MeshInstance{square(1.8F, textured)});
+    renderer.invalidate();
+    const Picture seen = render(near, size);
+    CHECK(seen.at(0, 0).r == 4.0F);
+    CHECK(seen.at(size.x / 2, 0).r == 0.0F);
+}
+
+TEST_CASE_FIXTURE(EmissionFixture, "a blended surface shows its emission as far as it covers") {
+    Scene scene = ground();
+    Material material = *emitter(glm::vec3(3.0F));
+    material.alpha_mode = AlphaMode::blend;
+    material.base_colour.a = 0.25F;
+    add(scene.world, at({0.0F, 0.5F, 0.0F}),
+        MeshInstance{square(4.0F, std::make_shared<const Material>(material))});
+    configure(linear_configuration());
+    CHECK(render(scene, {16, 12}).at(8, 6).r == doctest::Approx(0.75F).epsilon(1e-3));
+}
+
+TEST_CASE_FIXTURE(EmissionFixture, "a lamp of 80 thousand triangles lights all of a room") {
+    Scene scene = cornell_box();
+    scene.world.destroy(scene.light);
+    add(scene.world, at({0.0F, 1.5F, 0.0F}),
+        MeshInstance{sphere_outwards(0.2F, 6, emitter(glm::vec3(5.0F)))});
+    // Emitters have rays in both cases. With maps, an invocation shades four pixels, of which some show
+    // no surface: rays from there must not use up the loops that software drivers allow.
+    Configuration configuration = small_configuration(Show::direct);
+    configuration.interleave = Interleave::eight;
+    configuration.visibility.method = VplVisibility::rays;
+    configure(configuration);
+    const Picture expected = render(scene, {128, 128});
+    configuration.visibility = {VplVisibility::maps, 16};
+    configure(configuration);
+    CHECK(worst_error(render(scene, {128, 128}), expected, mean(expected)) < 1e-3);
+}
+
+TEST_CASE_FIXTURE(EmissionFixture, "shadows of a lamp converge to the share of it that is visible") {
+    // A wall that hides exactly one half of the lamp from a point below it: half of the light arrives.
+    Scene scene = ground_under_lamp(emitter(glm::vec3(1.0F)));
+    add(scene.world,
+        Transform{.translation = lamp_position + glm::vec3(0.0F, -0.5F, 0.0F),
+                  .rotation = glm::angleAxis(static_cast<float>(pi / 2.0), glm::vec3(0.0F, 0.0F, 1.0F))},
+        MeshInstance{square(0.499F, diffuse(glm::vec3(0.0F), true))});
+    const glm::vec3 below = lamp_position * glm::vec3(1.0F, 0.0F, 1.0F) + glm::vec3(0.02F, 0.0F, 0.0F);
+    const Entity camera =
+        add(scene.world, looking(below + glm::vec3(0.3F, 0.4F, 0.0F), below), Camera{.vertical_fov = 0.02F});
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    configuration.visibility = {VplVisibility::rays, 64};
+    configure(configuration);
+    const double shown = static_cast<double>(render(scene.world, camera, {1, 1}).at(0, 0).r);
+    const glm::dvec3 at(below);
+    // The half of the lamp towards +x, seen from right of the wall. 64 shadow rays: 1/64 of the lamp.
+    const double h = static_cast<double>(half);
+    const glm::dvec3 p(lamp_position);
+    const std::array corners{p + glm::dvec3(0, 0, -h), p + glm::dvec3(h, 0, -h), p + glm::dvec3(h, 0, h),
+                             p + glm::dvec3(0, 0, h)};
+    const double expected = 0.5 / pi * irradiance_of_polygon(corners, at, {0, 1, 0});
+    CHECK(shown == doctest::Approx(expected).epsilon(0.05));
+}
+
+}  // TEST_SUITE("emission")

@@ -19,6 +19,8 @@
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
 
+TEST_SUITE("extensions") {
+
 using namespace candela;
 
 namespace {
@@ -111,252 +113,245 @@ Picture operator*(float factor, Picture picture) {
 
 }  // namespace
 
-TEST_SUITE("extensions") {
-    TEST_CASE_FIXTURE(ExtensionTests, "a pass of the host's is driven by its own component") {
-        const Picture usual = frame();
-        REQUIRE(renderer.extend(scaling("gain", ExtensionPlace::before_tone_map, gain_of)).empty());
-        CHECK(frame() == usual);
-        CHECK(frame() == usual);
-        CHECK_FALSE(ran("gain"));
-        CHECK_FALSE(ran("deferred"));
-        const Entity knob = add(scene.world, Gain{2.0F});
-        CHECK(frame() == 2.0F * usual);
-        CHECK(ran("gain"));
-        CHECK_FALSE(ran("deferred"));
-        scene.world.destroy(knob);
-        CHECK(frame() == usual);
-        CHECK(renderer.describe(GraphFormat::text).find("gain radiance") != std::string::npos);
-        renderer.remove_extension("gain");
-        CHECK(frame() == usual);
-        CHECK(renderer.describe(GraphFormat::text).find("gain") == std::string::npos);
-    }
+TEST_CASE_FIXTURE(ExtensionTests, "a pass of the host's is driven by its own component") {
+    const Picture usual = frame();
+    REQUIRE(renderer.extend(scaling("gain", ExtensionPlace::before_tone_map, gain_of)).empty());
+    CHECK(frame() == usual);
+    CHECK(frame() == usual);
+    CHECK_FALSE(ran("gain"));
+    CHECK_FALSE(ran("deferred"));
+    const Entity knob = add(scene.world, Gain{2.0F});
+    CHECK(frame() == 2.0F * usual);
+    CHECK(ran("gain"));
+    CHECK_FALSE(ran("deferred"));
+    scene.world.destroy(knob);
+    CHECK(frame() == usual);
+    CHECK(renderer.describe(GraphFormat::text).find("gain radiance") != std::string::npos);
+    renderer.remove_extension("gain");
+    CHECK(frame() == usual);
+    CHECK(renderer.describe(GraphFormat::text).find("gain") == std::string::npos);
+}
 
-    TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views and configurations") {
-        const Picture usual = frame();
-        REQUIRE(
-            renderer
-                .extend(scaling("double", ExtensionPlace::after_shading, [](const World&) { return 2.0F; }))
-                .empty());
-        REQUIRE(
-            renderer
-                .extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 3.0F; }))
-                .empty());
-        CHECK(frame() == 6.0F * usual);
-        for (const ShadingPath path : {ShadingPath::forward, ShadingPath::clustered_deferred}) {
-            Configuration configuration = renderer.configuration();
-            configuration.path = path;
-            configure(configuration);
-            CHECK(relative_mean_square(frame(), 6.0F * usual) < 1e-10);  // paths differ by rounding
-        }
-        const RenderTarget second(device, size);
-        const RenderTarget first(device, size);
-        const std::vector<RenderView> views{{.camera = scene.camera, .target = first.target()},
-                                            {.camera = scene.camera, .target = second.target()}};
-        renderer.render(scene.world, views);
-        CHECK(first.read() == second.read());
-        CHECK(renderer.describe(GraphFormat::text).find("triple 2") != std::string::npos);
-        // The same name replaces.
-        REQUIRE(
-            renderer
-                .extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 0.5F; }))
-                .empty());
-        CHECK(relative_mean_square(frame(), usual) < 1e-10);
-    }
-
-    TEST_CASE_FIXTURE(
-        ExtensionTests,
-        "passes after shading come before blended surfaces, those before the tone map after them") {
-        Scene pane = ground();
-        pane.world.set(pane.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
-        pane.world.set(pane.light, DirectionalLight{.illuminance = 1.0F});
-        Material material = *diffuse(glm::vec3(0.9F));
-        material.alpha_mode = AlphaMode::blend;
-        material.base_colour.a = 0.5F;
-        add(pane.world, at({0, 0.5F, 0}),
-            MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
+TEST_CASE_FIXTURE(ExtensionTests, "extensions follow each other, in all views and configurations") {
+    const Picture usual = frame();
+    REQUIRE(
+        renderer.extend(scaling("double", ExtensionPlace::after_shading, [](const World&) { return 2.0F; }))
+            .empty());
+    REQUIRE(
+        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 3.0F; }))
+            .empty());
+    CHECK(frame() == 6.0F * usual);
+    for (const ShadingPath path : {ShadingPath::forward, ShadingPath::clustered_deferred}) {
         Configuration configuration = renderer.configuration();
-        configuration.indirect = false;
+        configuration.path = path;
         configure(configuration);
-        const auto black = [](const World&) { return 0.0F; };
-        REQUIRE(renderer.extend(scaling("black", ExtensionPlace::after_shading, black)).empty());
-        // What the pane reflects, times its alpha; half floats.
-        CHECK(render(pane, size).at(12, 9).r == doctest::Approx(0.5 * 0.9 / std::numbers::pi).epsilon(2e-3));
-        REQUIRE(renderer.extend(scaling("black", ExtensionPlace::before_tone_map, black)).empty());
-        CHECK(mean(render(pane, size)) == 0.0);
+        CHECK(relative_mean_square(frame(), 6.0F * usual) < 1e-10);  // paths differ by rounding
     }
+    const RenderTarget second(device, size);
+    const RenderTarget first(device, size);
+    const std::vector<RenderView> views{{.camera = scene.camera, .target = first.target()},
+                                        {.camera = scene.camera, .target = second.target()}};
+    renderer.render(scene.world, views);
+    CHECK(first.read() == second.read());
+    CHECK(renderer.describe(GraphFormat::text).find("triple 2") != std::string::npos);
+    // The same name replaces.
+    REQUIRE(
+        renderer.extend(scaling("triple", ExtensionPlace::before_tone_map, [](const World&) { return 0.5F; }))
+            .empty());
+    CHECK(relative_mean_square(frame(), usual) < 1e-10);
+}
 
-    TEST_CASE_FIXTURE(ExtensionTests, "extensions get the parts that they need, on every path") {
-        std::vector<ViewFrame> seen;
-        Extension look{.name = "look", .place = ExtensionPlace::after_surfaces};
-        look.needs = {.depth = true, .normal = true, .albedo = true};
-        look.declare = [&](FrameGraph&, ViewFrame& parts) { seen.push_back(parts); };
-        REQUIRE(renderer.extend(look).empty());
-        look.name = "look later";
-        look.place = ExtensionPlace::before_tone_map;
-        look.needs = {.indirect = true};
-        REQUIRE(renderer.extend(look).empty());
-        for (const ShadingPath path : all_shading_paths) {
-            CAPTURE(to_string(path));
-            Configuration configuration = renderer.configuration();
-            configuration.path = path;
-            configuration.indirect = false;  // so that configuring declares the graph in any case
-            configure(configuration);
-            configuration.indirect = true;
-            seen.clear();
-            configure(configuration);
-            REQUIRE(seen.size() == 2);
-            CHECK(seen[0].depth);
-            CHECK(seen[0].normal);
-            CHECK(seen[0].albedo);
-            CHECK_FALSE(seen[0].radiance);
-            CHECK(seen[0].lit_surfels);
-            CHECK(seen[1].indirect);
-            CHECK(seen[1].radiance);
-            CHECK(seen[1].list_count.has_value() == (info_of(path).lights != LightList::all));
-        }
-        CHECK(mean(frame()) > 0.01);
+TEST_CASE_FIXTURE(ExtensionTests,
+                  "passes after shading come before blended surfaces, those before the tone map after them") {
+    Scene pane = ground();
+    pane.world.set(pane.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+    pane.world.set(pane.light, DirectionalLight{.illuminance = 1.0F});
+    Material material = *diffuse(glm::vec3(0.9F));
+    material.alpha_mode = AlphaMode::blend;
+    material.base_colour.a = 0.5F;
+    add(pane.world, at({0, 0.5F, 0}),
+        MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
+    Configuration configuration = renderer.configuration();
+    configuration.indirect = false;
+    configure(configuration);
+    const auto black = [](const World&) { return 0.0F; };
+    REQUIRE(renderer.extend(scaling("black", ExtensionPlace::after_shading, black)).empty());
+    // What the pane reflects, times its alpha; half floats.
+    CHECK(render(pane, size).at(12, 9).r == doctest::Approx(0.5 * 0.9 / std::numbers::pi).epsilon(2e-3));
+    REQUIRE(renderer.extend(scaling("black", ExtensionPlace::before_tone_map, black)).empty());
+    CHECK(mean(render(pane, size)) == 0.0);
+}
+
+TEST_CASE_FIXTURE(ExtensionTests, "extensions get the parts that they need, on every path") {
+    std::vector<ViewFrame> seen;
+    Extension look{.name = "look", .place = ExtensionPlace::after_surfaces};
+    look.needs = {.depth = true, .normal = true, .albedo = true};
+    look.declare = [&](FrameGraph&, ViewFrame& parts) { seen.push_back(parts); };
+    REQUIRE(renderer.extend(look).empty());
+    look.name = "look later";
+    look.place = ExtensionPlace::before_tone_map;
+    look.needs = {.indirect = true};
+    REQUIRE(renderer.extend(look).empty());
+    for (const ShadingPath path : all_shading_paths) {
+        CAPTURE(to_string(path));
+        Configuration configuration = renderer.configuration();
+        configuration.path = path;
+        configuration.indirect = false;  // so that configuring declares the graph in any case
+        configure(configuration);
+        configuration.indirect = true;
+        seen.clear();
+        configure(configuration);
+        REQUIRE(seen.size() == 2);
+        CHECK(seen[0].depth);
+        CHECK(seen[0].normal);
+        CHECK(seen[0].albedo);
+        CHECK_FALSE(seen[0].radiance);
+        CHECK(seen[0].lit_surfels);
+        CHECK(seen[1].indirect);
+        CHECK(seen[1].radiance);
+        CHECK(seen[1].list_count.has_value() == (info_of(path).lights != LightList::all));
     }
+    CHECK(mean(frame()) > 0.01);
+}
 
-    TEST_CASE_FIXTURE(ExtensionTests,
-                      "extensions get what normal and occlusion textures do to surfaces, on every path") {
-        struct Seen {
-            TextureDesc desc;
-            std::vector<glm::vec4> texels;
-        };
-        // Keeps what a part of the frame holds when the extension runs.
-        const auto look = [&](std::string name, std::optional<TextureHandle> ViewFrame::*part, Seen& seen) {
-            Extension extension{.name = name, .place = ExtensionPlace::before_tone_map};
-            extension.needs = {.albedo = true, .indirect = true};
-            extension.declare = [=, this, &seen](FrameGraph& graph, ViewFrame& frame) {
-                const std::optional<TextureHandle> texture = frame.*part;
-                if (!texture) return;
-                graph.add(name, [&](Pass& pass) {
-                    pass.side_effect();
-                    pass.read(*texture, Usage::copy);
-                    pass.run([=, this, &seen](Execution& run) {
-                        seen.desc = run.desc(*texture);
-                        seen.texels = texels(device.gl(), {run.object(*texture), glm::uvec2(seen.desc.size)});
-                    });
-                });
-            };
-            return extension;
-        };
-        Seen bumps, flow;
-        REQUIRE(renderer.extend(look("bumps", &ViewFrame::bumps, bumps)).empty());
-        REQUIRE(renderer.extend(look("flow", &ViewFrame::indirect_flow, flow)).empty());
-        static_cast<void>(frame());
-        CHECK(bumps.texels.empty());  // nothing is bumpy
-        CHECK(flow.texels.empty());
-        add(scene.world, at({0, 0.01F, 0}), bumpy_floor());
-        for (const ShadingPath path : all_shading_paths) {
-            CAPTURE(to_string(path));
-            Configuration configuration = renderer.configuration();
-            configuration.path = path;
-            configure(configuration);
-            bumps = flow = {};
-            static_cast<void>(frame());
-            CHECK(bumps.desc.format == Format::rgba32f);
-            CHECK(flow.desc.format == Format::rgba32f);
-            REQUIRE(bumps.texels.size() == std::size_t{size.x} * size.y);
-            REQUIRE(flow.texels.size() == bumps.texels.size());
-            const auto pixels_with = [&](float share) {
-                return std::ranges::count_if(
-                    bumps.texels, [=](glm::vec4 texel) { return std::abs(texel.z - share) < 1e-6F; });
-            };
-            // The floor, and all else.
-            CHECK(pixels_with(0.2F) > 10);
-            CHECK(pixels_with(1.0F) > 10);
-            // A sum of vectors is no longer than the sum of their lengths; both are rounded.
-            CHECK(std::ranges::all_of(flow.texels, [](glm::vec4 texel) {
-                return glm::length(glm::vec3(texel)) <= 1.0001F * texel.w;
-            }));
-            CHECK(std::ranges::any_of(flow.texels, [](glm::vec4 texel) { return texel.w > 0.0F; }));
-        }
-    }
-
-    TEST_CASE_FIXTURE(ExtensionTests, "a faulty extension is refused by name and changes nothing") {
-        const Picture usual = frame();
-        const auto refused = [&](auto declare) {
-            Extension extension{.name = "faulty"};
-            extension.declare = declare;
-            const std::vector<std::string> errors = renderer.extend(extension);
-            CHECK(frame() == usual);
-            CHECK_FALSE(ran("deferred"));
-            REQUIRE(errors.size() == 1);
-            return errors.front();
-        };
-        const auto twice = [](FrameGraph& graph, ViewFrame&) { graph.add("deferred", [](Pass&) {}); };
-        CHECK(refused(twice).find("'deferred'") != std::string::npos);
-        const auto unwritten = [](FrameGraph& graph, ViewFrame&) {
-            graph.add("thirsty", [&](Pass& pass) {
+TEST_CASE_FIXTURE(ExtensionTests,
+                  "extensions get what normal and occlusion textures do to surfaces, on every path") {
+    struct Seen {
+        TextureDesc desc;
+        std::vector<glm::vec4> texels;
+    };
+    // Keeps what a part of the frame holds when the extension runs.
+    const auto look = [&](std::string name, std::optional<TextureHandle> ViewFrame::*part, Seen& seen) {
+        Extension extension{.name = name, .place = ExtensionPlace::before_tone_map};
+        extension.needs = {.albedo = true, .indirect = true};
+        extension.declare = [=, this, &seen](FrameGraph& graph, ViewFrame& frame) {
+            const std::optional<TextureHandle> texture = frame.*part;
+            if (!texture) return;
+            graph.add(name, [&](Pass& pass) {
                 pass.side_effect();
-                pass.read(graph.texture("nothing", {}), Usage::sampled);
+                pass.read(*texture, Usage::copy);
+                pass.run([=, this, &seen](Execution& run) {
+                    seen.desc = run.desc(*texture);
+                    seen.texels = texels(device.gl(), {run.object(*texture), glm::uvec2(seen.desc.size)});
+                });
             });
         };
-        CHECK(refused(unwritten).find("'thirsty'") != std::string::npos);
-        CHECK(refused([](FrameGraph&, ViewFrame&) { throw std::runtime_error("no such file"); }) ==
-              "no such file");
-    }
-
-    TEST_CASE_FIXTURE(ExtensionTests,
-                      "an extension that throws while it runs leaves the target, and can recover") {
-        const Picture usual = frame();
-        bool fails = true;
-        const auto factor = [&](const World&) {
-            if (fails) throw std::runtime_error("not now");
-            return 1.0F;
-        };
-        REQUIRE(renderer.extend(scaling("moody", ExtensionPlace::before_tone_map, factor)).empty());
-        const RenderTarget target(device, size);
-        CHECK_THROWS_WITH(renderer.render(scene.world, scene.camera, target.target()), "not now");
-        CHECK(mean(target.read()) == 0.0);
-        fails = false;
-        renderer.render(scene.world, scene.camera, target.target());
-        CHECK(target.read() == usual);
-    }
-
-    TEST_CASE_FIXTURE(ExtensionTests,
-                      "verification finds an input that a pass of the host's does not declare") {
-        float hidden = 1.0F;
-        REQUIRE(
-            renderer
-                .extend(scaling("sly", ExtensionPlace::after_shading, [&](const World&) { return hidden; }))
-                .empty());
-        renderer.verify(true);
+        return extension;
+    };
+    Seen bumps, flow;
+    REQUIRE(renderer.extend(look("bumps", &ViewFrame::bumps, bumps)).empty());
+    REQUIRE(renderer.extend(look("flow", &ViewFrame::indirect_flow, flow)).empty());
+    static_cast<void>(frame());
+    CHECK(bumps.texels.empty());  // nothing is bumpy
+    CHECK(flow.texels.empty());
+    add(scene.world, at({0, 0.01F, 0}), bumpy_floor());
+    for (const ShadingPath path : all_shading_paths) {
+        CAPTURE(to_string(path));
+        Configuration configuration = renderer.configuration();
+        configuration.path = path;
+        configure(configuration);
+        bumps = flow = {};
         static_cast<void>(frame());
-        hidden = 2.0F;
-        const RenderTarget target(device, size);
-        std::string message;
-        try {
-            renderer.render(scene.world, scene.camera, target.target());
-        } catch (const GraphError& error) {
-            message = error.what();
-        }
-        CHECK(message.find("'sly'") != std::string::npos);
-    }
-
-    TEST_CASE_FIXTURE(ExtensionTests, "extensions that come and go leak nothing") {
-        const auto come_and_go = [&] {
-            REQUIRE(renderer.extend(scaling("gain", ExtensionPlace::before_tone_map, gain_of)).empty());
-            static_cast<void>(frame());
-            renderer.remove_extension("gain");
-            static_cast<void>(frame());
+        CHECK(bumps.desc.format == Format::rgba32f);
+        CHECK(flow.desc.format == Format::rgba32f);
+        REQUIRE(bumps.texels.size() == std::size_t{size.x} * size.y);
+        REQUIRE(flow.texels.size() == bumps.texels.size());
+        const auto pixels_with = [&](float share) {
+            return std::ranges::count_if(bumps.texels,
+                                         [=](glm::vec4 texel) { return std::abs(texel.z - share) < 1e-6F; });
         };
-        // What was used remains in the pool of the graph, and passes draw to either of its textures in turn.
-        for (int i = 0; i < 4; ++i) {
-            come_and_go();
-        }
-        const gl::ObjectCounts before = device_of(renderer).live();
-        for (int i = 0; i < 20; ++i) {
-            come_and_go();
-        }
-        const gl::ObjectCounts after = device_of(renderer).live();
-        // Queries of times that have not arrived yet come in addition.
-        for (const gl::ObjectKind kind :
-             {gl::ObjectKind::buffer, gl::ObjectKind::texture, gl::ObjectKind::framebuffer,
-              gl::ObjectKind::vertex_array, gl::ObjectKind::sampler, gl::ObjectKind::program}) {
-            CAPTURE(kind);
-            CHECK(after[kind] == before[kind]);
-        }
+        // The floor, and all else.
+        CHECK(pixels_with(0.2F) > 10);
+        CHECK(pixels_with(1.0F) > 10);
+        // A sum of vectors is no longer than the sum of their lengths; both are rounded.
+        CHECK(std::ranges::all_of(
+            flow.texels, [](glm::vec4 texel) { return glm::length(glm::vec3(texel)) <= 1.0001F * texel.w; }));
+        CHECK(std::ranges::any_of(flow.texels, [](glm::vec4 texel) { return texel.w > 0.0F; }));
     }
 }
+
+TEST_CASE_FIXTURE(ExtensionTests, "a faulty extension is refused by name and changes nothing") {
+    const Picture usual = frame();
+    const auto refused = [&](auto declare) {
+        Extension extension{.name = "faulty"};
+        extension.declare = declare;
+        const std::vector<std::string> errors = renderer.extend(extension);
+        CHECK(frame() == usual);
+        CHECK_FALSE(ran("deferred"));
+        REQUIRE(errors.size() == 1);
+        return errors.front();
+    };
+    const auto twice = [](FrameGraph& graph, ViewFrame&) { graph.add("deferred", [](Pass&) {}); };
+    CHECK(refused(twice).find("'deferred'") != std::string::npos);
+    const auto unwritten = [](FrameGraph& graph, ViewFrame&) {
+        graph.add("thirsty", [&](Pass& pass) {
+            pass.side_effect();
+            pass.read(graph.texture("nothing", {}), Usage::sampled);
+        });
+    };
+    CHECK(refused(unwritten).find("'thirsty'") != std::string::npos);
+    CHECK(refused([](FrameGraph&, ViewFrame&) { throw std::runtime_error("no such file"); }) ==
+          "no such file");
+}
+
+TEST_CASE_FIXTURE(ExtensionTests,
+                  "an extension that throws while it runs leaves the target, and can recover") {
+    const Picture usual = frame();
+    bool fails = true;
+    const auto factor = [&](const World&) {
+        if (fails) throw std::runtime_error("not now");
+        return 1.0F;
+    };
+    REQUIRE(renderer.extend(scaling("moody", ExtensionPlace::before_tone_map, factor)).empty());
+    const RenderTarget target(device, size);
+    CHECK_THROWS_WITH(renderer.render(scene.world, scene.camera, target.target()), "not now");
+    CHECK(mean(target.read()) == 0.0);
+    fails = false;
+    renderer.render(scene.world, scene.camera, target.target());
+    CHECK(target.read() == usual);
+}
+
+TEST_CASE_FIXTURE(ExtensionTests, "verification finds an input that a pass of the host's does not declare") {
+    float hidden = 1.0F;
+    REQUIRE(
+        renderer.extend(scaling("sly", ExtensionPlace::after_shading, [&](const World&) { return hidden; }))
+            .empty());
+    renderer.verify(true);
+    static_cast<void>(frame());
+    hidden = 2.0F;
+    const RenderTarget target(device, size);
+    std::string message;
+    try {
+        renderer.render(scene.world, scene.camera, target.target());
+    } catch (const GraphError& error) {
+        message = error.what();
+    }
+    CHECK(message.find("'sly'") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(ExtensionTests, "extensions that come and go leak nothing") {
+    const auto come_and_go = [&] {
+        REQUIRE(renderer.extend(scaling("gain", ExtensionPlace::before_tone_map, gain_of)).empty());
+        static_cast<void>(frame());
+        renderer.remove_extension("gain");
+        static_cast<void>(frame());
+    };
+    // What was used remains in the pool of the graph, and passes draw to either of its textures in turn.
+    for (int i = 0; i < 4; ++i) {
+        come_and_go();
+    }
+    const gl::ObjectCounts before = device_of(renderer).live();
+    for (int i = 0; i < 20; ++i) {
+        come_and_go();
+    }
+    const gl::ObjectCounts after = device_of(renderer).live();
+    // Queries of times that have not arrived yet come in addition.
+    for (const gl::ObjectKind kind :
+         {gl::ObjectKind::buffer, gl::ObjectKind::texture, gl::ObjectKind::framebuffer,
+          gl::ObjectKind::vertex_array, gl::ObjectKind::sampler, gl::ObjectKind::program}) {
+        CAPTURE(kind);
+        CHECK(after[kind] == before[kind]);
+    }
+}
+
+}  // TEST_SUITE("extensions")

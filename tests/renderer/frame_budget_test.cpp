@@ -21,6 +21,8 @@
 
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("frame budget") {
+
 using namespace candela;
 
 namespace {
@@ -163,129 +165,128 @@ class FrameBudgetTests : public PathFixture {
 
 }  // namespace
 
-TEST_SUITE("frame budget") {
-    TEST_CASE("a frame's cost is split by what it depends on") {
-        const FrameReport frame{.index = 0,
-                                .cpu_ms = 20.0,
-                                .gpu_ms = 30.0,
-                                .passes = {{"vpl-maps", true, 0.1, 5.0, Workload::other},
-                                           {"vpl-gather", true, 0.1, 12.0, Workload::pixels_vpls},
-                                           {"deferred", true, 0.1, 6.0, Workload::pixels},
-                                           {"a host's", true, 0.1, 3.0, Workload::pixels},
-                                           {"gbuffer", false, 0.0, 1.0, Workload::pixels}}};
-        const FrameCost cost = cost_of(frame);
-        CHECK(cost.gather == 12.0);
-        CHECK(cost.pixels == 9.0);
-        CHECK(cost.rest == 9.0);
-    }
+TEST_CASE("a frame's cost is split by what it depends on") {
+    const FrameReport frame{.index = 0,
+                            .cpu_ms = 20.0,
+                            .gpu_ms = 30.0,
+                            .passes = {{"vpl-maps", true, 0.1, 5.0, Workload::other},
+                                       {"vpl-gather", true, 0.1, 12.0, Workload::pixels_vpls},
+                                       {"deferred", true, 0.1, 6.0, Workload::pixels},
+                                       {"a host's", true, 0.1, 3.0, Workload::pixels},
+                                       {"gbuffer", false, 0.0, 1.0, Workload::pixels}}};
+    const FrameCost cost = cost_of(frame);
+    CHECK(cost.gather == 12.0);
+    CHECK(cost.pixels == 9.0);
+    CHECK(cost.rest == 9.0);
+}
 
-    TEST_CASE_FIXTURE(FrameBudgetTests, "the passes whose work grows with the pixels declare that they do") {
-        add_all_that_is_drawn(scene.world);
-        const gl::Texture texture(device, "host's", {.size = {8, 8}, .format = Format::rgba32f});
-        const HostSurfaces surfaces{
-            .depth = texture.name(), .normal = texture.name(), .albedo = texture.name()};
-        std::set<std::string> of_pixels;
-        for (const ShadingPath path : all_shading_paths) {
-            for (const bool hosted : {false, true}) {
-                CAPTURE(static_cast<int>(path));
-                CAPTURE(hosted);
-                const auto host = hosted ? std::optional(surfaces) : std::nullopt;
-                const PassWork coarse = work(path, host, 1e-3F);
-                const PassWork fine = work(path, host, 0.0F);
-                REQUIRE(fine.size() == coarse.size());
-                for (const auto& each :
-                     fine) {  // Clang 14 captures no structured bindings, as CHECK_MESSAGE would
-                    const std::string& pass = each.first;
-                    const auto& done = each.second;
-                    const bool grows = done.dispatches != coarse.at(pass).dispatches ||
-                                       done.written != coarse.at(pass).written;
-                    CHECK_MESSAGE((done.workload != Workload::other) == grows, pass);
-                    CHECK((done.workload == Workload::pixels_vpls) == (pass == "vpl-gather"));
-                    if (grows) of_pixels.insert(pass);
-                }
+TEST_CASE_FIXTURE(FrameBudgetTests, "the passes whose work grows with the pixels declare that they do") {
+    add_all_that_is_drawn(scene.world);
+    const gl::Texture texture(device, "host's", {.size = {8, 8}, .format = Format::rgba32f});
+    const HostSurfaces surfaces{.depth = texture.name(), .normal = texture.name(), .albedo = texture.name()};
+    std::set<std::string> of_pixels;
+    for (const ShadingPath path : all_shading_paths) {
+        for (const bool hosted : {false, true}) {
+            CAPTURE(static_cast<int>(path));
+            CAPTURE(hosted);
+            const auto host = hosted ? std::optional(surfaces) : std::nullopt;
+            const PassWork coarse = work(path, host, 1e-3F);
+            const PassWork fine = work(path, host, 0.0F);
+            REQUIRE(fine.size() == coarse.size());
+            for (const auto& each :
+                 fine) {  // Clang 14 captures no structured bindings, as CHECK_MESSAGE would
+                const std::string& pass = each.first;
+                const auto& done = each.second;
+                const bool grows =
+                    done.dispatches != coarse.at(pass).dispatches || done.written != coarse.at(pass).written;
+                CHECK_MESSAGE((done.workload != Workload::other) == grows, pass);
+                CHECK((done.workload == Workload::pixels_vpls) == (pass == "vpl-gather"));
+                if (grows) of_pixels.insert(pass);
             }
         }
-        // Each pass of a view that draws or dispatches was there, besides the tone map, which covers the
-        // target.
-        CHECK(of_pixels.size() == 18);
     }
+    // Each pass of a view that draws or dispatches was there, besides the tone map, which covers the
+    // target.
+    CHECK(of_pixels.size() == 18);
+}
 
-    TEST_CASE("the predicted time scales with the pixels, and with the VPLs per pixel") {
-        const FrameCost cost{.gather = 16.0, .pixels = 8.0, .rest = 5.0};
-        CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 4}) == 29.0);
-        CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 8}) == 5.0 + 8.0 + 4.0);
-        CHECK(expected_ms(cost, {1.0F, 4}, {0.5F, 8}) == 5.0 + 2.0 + 1.0);
-        CHECK(expected_ms(cost, {0.5F, 8}, {1.0F, 4}) == 5.0 + 32.0 + 256.0);
-    }
+TEST_CASE("the predicted time scales with the pixels, and with the VPLs per pixel") {
+    const FrameCost cost{.gather = 16.0, .pixels = 8.0, .rest = 5.0};
+    CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 4}) == 29.0);
+    CHECK(expected_ms(cost, {1.0F, 4}, {1.0F, 8}) == 5.0 + 8.0 + 4.0);
+    CHECK(expected_ms(cost, {1.0F, 4}, {0.5F, 8}) == 5.0 + 2.0 + 1.0);
+    CHECK(expected_ms(cost, {0.5F, 8}, {1.0F, 4}) == 5.0 + 32.0 + 256.0);
+}
 
-    TEST_CASE("the best quality that keeps to the budget is chosen") {
-        const FrameCost cost{.gather = 160.0, .pixels = 80.0, .rest = 10.0};
-        const Quality whole{1.0F, 1};
-        CHECK(choose_quality(cost, whole, 1, 1000.0) == whole);
-        CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});  // 92.5 ms
-        CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.8F, 8});  // 92.5 ms leave too little margin
-        CHECK(choose_quality(cost, whole, 1, 40.0) == Quality{0.5F, 8});
-        CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // no quality does
-        // If frames are interleaved anyway, more interleaving gains nothing.
-        CHECK(choose_quality(cost, {1.0F, 8}, 8, 1000.0) == whole);
-        CHECK(choose_quality(cost, {1.0F, 8}, 8, 150.0).scale < 1.0F);
-    }
+TEST_CASE("the best quality that keeps to the budget is chosen") {
+    const FrameCost cost{.gather = 160.0, .pixels = 80.0, .rest = 10.0};
+    const Quality whole{1.0F, 1};
+    CHECK(choose_quality(cost, whole, 1, 1000.0) == whole);
+    CHECK(choose_quality(cost, whole, 1, 120.0) == Quality{1.0F, 8});  // 92.5 ms
+    CHECK(choose_quality(cost, whole, 1, 100.0) == Quality{0.8F, 8});  // 92.5 ms leave too little margin
+    CHECK(choose_quality(cost, whole, 1, 40.0) == Quality{0.5F, 8});
+    CHECK(choose_quality(cost, whole, 1, 11.0) == Quality{0.25F, 8});  // no quality does
+    // If frames are interleaved anyway, more interleaving gains nothing.
+    CHECK(choose_quality(cost, {1.0F, 8}, 8, 1000.0) == whole);
+    CHECK(choose_quality(cost, {1.0F, 8}, 8, 150.0).scale < 1.0F);
+}
 
-    TEST_CASE("a better quality that would be left again at once is not chosen") {
-        // Judging by the cost at half the sides, 65 % would fit, but with little margin.
-        const FrameCost cost{.gather = 0.0, .pixels = 48.0, .rest = 0.0};
-        CHECK(expected_ms(cost, {0.5F, 8}, {0.65F, 8}) == doctest::Approx(81.12));
-        CHECK(choose_quality(cost, {0.5F, 8}, 1, 100.0) == Quality{0.5F, 8});
-        CHECK(choose_quality(cost, {0.5F, 8}, 1, 120.0) == Quality{0.65F, 8});
-        // Once at 65 %, it stays there.
-        const FrameCost there{.gather = 0.0, .pixels = 81.12, .rest = 0.0};
-        CHECK(choose_quality(there, {0.65F, 8}, 1, 100.0) == Quality{0.65F, 8});
-    }
+TEST_CASE("a better quality that would be left again at once is not chosen") {
+    // Judging by the cost at half the sides, 65 % would fit, but with little margin.
+    const FrameCost cost{.gather = 0.0, .pixels = 48.0, .rest = 0.0};
+    CHECK(expected_ms(cost, {0.5F, 8}, {0.65F, 8}) == doctest::Approx(81.12));
+    CHECK(choose_quality(cost, {0.5F, 8}, 1, 100.0) == Quality{0.5F, 8});
+    CHECK(choose_quality(cost, {0.5F, 8}, 1, 120.0) == Quality{0.65F, 8});
+    // Once at 65 %, it stays there.
+    const FrameCost there{.gather = 0.0, .pixels = 81.12, .rest = 0.0};
+    CHECK(choose_quality(there, {0.65F, 8}, 1, 100.0) == Quality{0.65F, 8});
+}
 
-    TEST_CASE("at least one pixel is rendered") {
-        CHECK(rendered_size({1280, 720}, {0.375F, 8}) == glm::uvec2(480, 270));
-        CHECK(rendered_size({1, 2}, {0.25F, 8}) == glm::uvec2(1, 1));
-        CHECK(rendered_size({511, 513}, {}) == glm::uvec2(511, 513));
-    }
+TEST_CASE("at least one pixel is rendered") {
+    CHECK(rendered_size({1280, 720}, {0.375F, 8}) == glm::uvec2(480, 270));
+    CHECK(rendered_size({1, 2}, {0.25F, 8}) == glm::uvec2(1, 1));
+    CHECK(rendered_size({511, 513}, {}) == glm::uvec2(511, 513));
+}
 
-    TEST_CASE_FIXTURE(FrameBudgetTests,
-                      "frames have a lower quality while something moves, and full quality at rest") {
-        start(1e-3F);
-        const Picture coarse = moving();
-        CHECK(renderer.report().rendered_size == size / 4U);
-        CHECK(renderer.report().vpls->interleave == 8);
-        CHECK(is_sane(coarse));
-        const Picture whole = fresh_picture();
-        CHECK(coarse != whole);
-        CHECK(mean(coarse) == doctest::Approx(mean(whole)).epsilon(0.05));
+TEST_CASE_FIXTURE(FrameBudgetTests,
+                  "frames have a lower quality while something moves, and full quality at rest") {
+    start(1e-3F);
+    const Picture coarse = moving();
+    CHECK(renderer.report().rendered_size == size / 4U);
+    CHECK(renderer.report().vpls->interleave == 8);
+    CHECK(is_sane(coarse));
+    const Picture whole = fresh_picture();
+    CHECK(coarse != whole);
+    CHECK(mean(coarse) == doctest::Approx(mean(whole)).epsilon(0.05));
 
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
-        CHECK(render(scene, size) == whole);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    CHECK(render(scene, size) == whole);
+    CHECK(renderer.report().rendered_size == size);
+    move_camera();
+    static_cast<void>(render(scene, size));
+    CHECK(renderer.report().rendered_size == size / 4U);
+}
+
+TEST_CASE_FIXTURE(FrameBudgetTests, "with a large budget, or without one, every frame has full quality") {
+    for (const float budget : {1e6F, 0.0F}) {
+        CAPTURE(budget);
+        start(budget);
+        const Picture picture = moving();
         CHECK(renderer.report().rendered_size == size);
-        move_camera();
-        static_cast<void>(render(scene, size));
-        CHECK(renderer.report().rendered_size == size / 4U);
-    }
-
-    TEST_CASE_FIXTURE(FrameBudgetTests, "with a large budget, or without one, every frame has full quality") {
-        for (const float budget : {1e6F, 0.0F}) {
-            CAPTURE(budget);
-            start(budget);
-            const Picture picture = moving();
-            CHECK(renderer.report().rendered_size == size);
-            CHECK(picture == fresh_picture());
-        }
-    }
-
-    TEST_CASE_FIXTURE(FrameBudgetTests, "refinement continues at rest, at full quality") {
-        start(1e-3F);
-        Configuration configuration = renderer.configuration();
-        configuration.refinement = {.enabled = true, .frames = 4};
-        configure(configuration);
-        static_cast<void>(moving());
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));
-        for (int i = 0; i < 6; ++i) static_cast<void>(render(scene, size));
-        CHECK(renderer.report().refined == 4);
-        CHECK(renderer.report().rendered_size == size);
+        CHECK(picture == fresh_picture());
     }
 }
+
+TEST_CASE_FIXTURE(FrameBudgetTests, "refinement continues at rest, at full quality") {
+    start(1e-3F);
+    Configuration configuration = renderer.configuration();
+    configuration.refinement = {.enabled = true, .frames = 4};
+    configure(configuration);
+    static_cast<void>(moving());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    for (int i = 0; i < 6; ++i) static_cast<void>(render(scene, size));
+    CHECK(renderer.report().refined == 4);
+    CHECK(renderer.report().rendered_size == size);
+}
+
+}  // TEST_SUITE("frame budget")

@@ -8,6 +8,8 @@
 
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("furnace") {
+
 using namespace candela;
 
 namespace {
@@ -67,58 +69,58 @@ class Furnace : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("furnace") {
-    TEST_CASE_FIXTURE(Furnace, "a sphere lit from its centre is equally bright everywhere") {
-        for (const double albedo : {0.5, 0.8}) {
-            CAPTURE(albedo);
-            const Scene scene = furnace_sphere(static_cast<float>(albedo));
-            renderer.invalidate();
-            // From any point of the sphere, every VPL has the same geometry term: VPLs that are points have
-            // only the noise of facets and of where paths end. Bounded ones lose the light of nearby
-            // surfaces, less with more VPLs.
-            const double points = sphere_error(scene, albedo, 1024, infinity);
-            const double few = sphere_error(scene, albedo, 128, 1.0F);
-            const double many = sphere_error(scene, albedo, 1024, 1.0F);
-            const double more = sphere_error(scene, albedo, 4096, 1.0F);
-            CHECK(points < 0.02);
-            CHECK(many < few);
-            CHECK(more < many);
-            CHECK(more < 0.02);
-        }
-    }
-
-    TEST_CASE_FIXTURE(Furnace, "the walls of a closed box receive the emitted flux times 1 / (1 - albedo)") {
-        for (const double albedo : {0.5, 0.8}) {
-            CAPTURE(albedo);
-            Scene scene = furnace_box(static_cast<float>(albedo));
-            scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
-                                                 .half_height = 1.0F,
-                                                 .near_plane = 0.0F,
-                                                 .far_plane = 4.0F});
-            renderer.invalidate();
-            Configuration configuration = furnace_configuration(1024);
-            configuration.show = Show::direct;
-            configure(configuration);
-            const double direct = arriving(scene, albedo);
-            // A light of 1 cd emits 4π lm. Sums over pixels integrate its smooth irradiance to 0.1 %.
-            CHECK(std::abs(direct / (4.0 * pi) - 1.0) < 1e-3);
-            const auto error = [&](std::uint32_t vpls, float bound) {
-                configuration = furnace_configuration(vpls);
-                configuration.geometry_bound = bound;
-                configuration.show = Show::indirect;
-                configure(configuration);
-                return arriving(scene, albedo) / direct / (albedo / (1.0 - albedo)) - 1.0;
-            };
-            // VPLs that are points lose nothing. Bounded ones lose in proportion to their R, which is
-            // proportional to 1/√N: half as much with four times as many VPLs, within the noise.
-            const double points = error(1024, infinity);
-            const double few = error(1024, 1.0F);
-            const double many = error(4096, 1.0F);
-            const double most = error(16384, 1.0F);
-            CHECK(std::abs(points) < 0.03);
-            CHECK(std::abs(many / few - 0.5) < 0.1);
-            CHECK(std::abs(most / many - 0.5) < 0.1);
-            CHECK(std::abs(most) < 0.03);
-        }
+TEST_CASE_FIXTURE(Furnace, "a sphere lit from its centre is equally bright everywhere") {
+    for (const double albedo : {0.5, 0.8}) {
+        CAPTURE(albedo);
+        const Scene scene = furnace_sphere(static_cast<float>(albedo));
+        renderer.invalidate();
+        // From any point of the sphere, every VPL has the same geometry term: VPLs that are points have
+        // only the noise of facets and of where paths end. Bounded ones lose the light of nearby
+        // surfaces, less with more VPLs.
+        const double points = sphere_error(scene, albedo, 1024, infinity);
+        const double few = sphere_error(scene, albedo, 128, 1.0F);
+        const double many = sphere_error(scene, albedo, 1024, 1.0F);
+        const double more = sphere_error(scene, albedo, 4096, 1.0F);
+        CHECK(points < 0.02);
+        CHECK(many < few);
+        CHECK(more < many);
+        CHECK(more < 0.02);
     }
 }
+
+TEST_CASE_FIXTURE(Furnace, "the walls of a closed box receive the emitted flux times 1 / (1 - albedo)") {
+    for (const double albedo : {0.5, 0.8}) {
+        CAPTURE(albedo);
+        Scene scene = furnace_box(static_cast<float>(albedo));
+        scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                             .half_height = 1.0F,
+                                             .near_plane = 0.0F,
+                                             .far_plane = 4.0F});
+        renderer.invalidate();
+        Configuration configuration = furnace_configuration(1024);
+        configuration.show = Show::direct;
+        configure(configuration);
+        const double direct = arriving(scene, albedo);
+        // A light of 1 cd emits 4π lm. Sums over pixels integrate its smooth irradiance to 0.1 %.
+        CHECK(std::abs(direct / (4.0 * pi) - 1.0) < 1e-3);
+        const auto error = [&](std::uint32_t vpls, float bound) {
+            configuration = furnace_configuration(vpls);
+            configuration.geometry_bound = bound;
+            configuration.show = Show::indirect;
+            configure(configuration);
+            return arriving(scene, albedo) / direct / (albedo / (1.0 - albedo)) - 1.0;
+        };
+        // VPLs that are points lose nothing. Bounded ones lose in proportion to their R, which is
+        // proportional to 1/√N: half as much with four times as many VPLs, within the noise.
+        const double points = error(1024, infinity);
+        const double few = error(1024, 1.0F);
+        const double many = error(4096, 1.0F);
+        const double most = error(16384, 1.0F);
+        CHECK(std::abs(points) < 0.03);
+        CHECK(std::abs(many / few - 0.5) < 0.1);
+        CHECK(std::abs(most / many - 0.5) < 0.1);
+        CHECK(std::abs(most) < 0.03);
+    }
+}
+
+}  // TEST_SUITE("furnace")

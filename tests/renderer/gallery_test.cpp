@@ -14,6 +14,8 @@
 #include "tests/renderer/exhibits.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("gallery") {
+
 using namespace candela;
 using namespace candela::test;
 
@@ -149,70 +151,68 @@ const std::vector<Variation>& variations() {
 
 }  // namespace
 
-TEST_SUITE("gallery") {
-    TEST_CASE_FIXTURE(Gallery, "the plain file shows a green tick on black") {
-        const Picture tick = picture_of(Exhibit{}.file());
-        // Its area, by the corners of its triangles, is 0.625 m² of 4 m².
-        const double share = 0.625 / 4.0;
-        const auto pixels = static_cast<double>(tick.pixels.size());
-        const auto seen = static_cast<double>(pixels_of_colour(tick, green));
-        CHECK(seen == doctest::Approx(share * pixels).epsilon(0.05));  // a tenth of its pixels is at an edge
-        CHECK(pixels_of_colour(tick, glm::vec3(0.0F)) == tick.pixels.size() - static_cast<std::size_t>(seen));
-    }
+TEST_CASE_FIXTURE(Gallery, "the plain file shows a green tick on black") {
+    const Picture tick = picture_of(Exhibit{}.file());
+    // Its area, by the corners of its triangles, is 0.625 m² of 4 m².
+    const double share = 0.625 / 4.0;
+    const auto pixels = static_cast<double>(tick.pixels.size());
+    const auto seen = static_cast<double>(pixels_of_colour(tick, green));
+    CHECK(seen == doctest::Approx(share * pixels).epsilon(0.05));  // a tenth of its pixels is at an edge
+    CHECK(pixels_of_colour(tick, glm::vec3(0.0F)) == tick.pixels.size() - static_cast<std::size_t>(seen));
+}
 
-    TEST_CASE_FIXTURE(Gallery, "each pair of ways to tell the same shows the same") {
-        const Picture tick = picture_of(Exhibit{}.file());
-        for (const Exhibit& exhibit : all_exhibits()) {
-            CAPTURE(static_cast<int>(exhibit.order));
-            CAPTURE(static_cast<int>(exhibit.layout));
-            CAPTURE(static_cast<int>(exhibit.place));
-            CAPTURE(static_cast<int>(exhibit.colour));
-            CAPTURE(static_cast<int>(exhibit.motion));
-            const Picture shown = picture_of(exhibit.file());
-            CHECK(warnings.empty());
-            // Transforms round positions: by 1e-4 of a pixel's width, or a hundredth for integers.
-            CHECK(different_pixels(shown, tick) <= 1);
-        }
-    }
-
-    TEST_CASE_FIXTURE(Gallery, "materials, and what is skipped, leave the tick as it is") {
-        const Picture tick = picture_of(Exhibit{}.file());
-        for (const Variation& variation : variations()) {
-            CAPTURE(variation.name);
-            GltfBuilder file = Exhibit{}.file();
-            variation.change(file);
-            const Picture shown = picture_of(file);
-            CHECK(warnings.size() == variation.warnings);
-            CHECK(different_pixels(shown, tick) == 0);
-        }
-    }
-
-    TEST_CASE_FIXTURE(Gallery, "nothing is seen of a single-sided back, or of what is blended away") {
-        GltfBuilder back = Exhibit{}.file();
-        turn_around(back);
-        GltfBuilder clear = Exhibit{}.file();
-        material_of(clear)["alphaMode"] = "BLEND";
-        material_of(clear)["pbrMetallicRoughness"]["baseColorFactor"] = {0, 1, 0, 0};
-        for (const GltfBuilder& file : {back, clear}) {
-            const Picture shown = picture_of(file);
-            CHECK(pixels_of_colour(shown, glm::vec3(0.0F)) == shown.pixels.size());
-        }
-    }
-
-    TEST_CASE_FIXTURE(Gallery, "in place of a missing picture a checker is seen, with one warning") {
-        GltfBuilder file = Exhibit{.colour = Exhibit::Colour::texture}.file();
-        file.document["images"][0] = {{"uri", "missing.png"}};
-        // All of the picture once over the tick.
-        file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor(
-            std::vector<float>{0.2F, 0.3F, 0, 0.5F, 0.4F, 0.5F, 0.4F, 1, 0.8F, 0, 1, 0.2F}, 5126, "VEC2", 2);
-        const Picture shown = picture_of(file);
-        CHECK(warnings.size() == 1);
-        const auto magenta =
-            static_cast<std::size_t>(std::ranges::count_if(shown.pixels, [](glm::vec3 pixel) {
-                return pixel.r > 0.5F && pixel.g == 0.0F && pixel.b > 0.5F;
-            }));
-        const std::size_t tick = pixels_of_colour(picture_of(Exhibit{}.file()), green);
-        CHECK(magenta > tick / 4);
-        CHECK(magenta < 3 * tick / 4);
+TEST_CASE_FIXTURE(Gallery, "each pair of ways to tell the same shows the same") {
+    const Picture tick = picture_of(Exhibit{}.file());
+    for (const Exhibit& exhibit : all_exhibits()) {
+        CAPTURE(static_cast<int>(exhibit.order));
+        CAPTURE(static_cast<int>(exhibit.layout));
+        CAPTURE(static_cast<int>(exhibit.place));
+        CAPTURE(static_cast<int>(exhibit.colour));
+        CAPTURE(static_cast<int>(exhibit.motion));
+        const Picture shown = picture_of(exhibit.file());
+        CHECK(warnings.empty());
+        // Transforms round positions: by 1e-4 of a pixel's width, or a hundredth for integers.
+        CHECK(different_pixels(shown, tick) <= 1);
     }
 }
+
+TEST_CASE_FIXTURE(Gallery, "materials, and what is skipped, leave the tick as it is") {
+    const Picture tick = picture_of(Exhibit{}.file());
+    for (const Variation& variation : variations()) {
+        CAPTURE(variation.name);
+        GltfBuilder file = Exhibit{}.file();
+        variation.change(file);
+        const Picture shown = picture_of(file);
+        CHECK(warnings.size() == variation.warnings);
+        CHECK(different_pixels(shown, tick) == 0);
+    }
+}
+
+TEST_CASE_FIXTURE(Gallery, "nothing is seen of a single-sided back, or of what is blended away") {
+    GltfBuilder back = Exhibit{}.file();
+    turn_around(back);
+    GltfBuilder clear = Exhibit{}.file();
+    material_of(clear)["alphaMode"] = "BLEND";
+    material_of(clear)["pbrMetallicRoughness"]["baseColorFactor"] = {0, 1, 0, 0};
+    for (const GltfBuilder& file : {back, clear}) {
+        const Picture shown = picture_of(file);
+        CHECK(pixels_of_colour(shown, glm::vec3(0.0F)) == shown.pixels.size());
+    }
+}
+
+TEST_CASE_FIXTURE(Gallery, "in place of a missing picture a checker is seen, with one warning") {
+    GltfBuilder file = Exhibit{.colour = Exhibit::Colour::texture}.file();
+    file.document["images"][0] = {{"uri", "missing.png"}};
+    // All of the picture once over the tick.
+    file.primitive()["attributes"]["TEXCOORD_0"] = file.add_accessor(
+        std::vector<float>{0.2F, 0.3F, 0, 0.5F, 0.4F, 0.5F, 0.4F, 1, 0.8F, 0, 1, 0.2F}, 5126, "VEC2", 2);
+    const Picture shown = picture_of(file);
+    CHECK(warnings.size() == 1);
+    const auto magenta = static_cast<std::size_t>(std::ranges::count_if(
+        shown.pixels, [](glm::vec3 pixel) { return pixel.r > 0.5F && pixel.g == 0.0F && pixel.b > 0.5F; }));
+    const std::size_t tick = pixels_of_colour(picture_of(Exhibit{}.file()), green);
+    CHECK(magenta > tick / 4);
+    CHECK(magenta < 3 * tick / 4);
+}
+
+}  // TEST_SUITE("gallery")

@@ -6,6 +6,8 @@
 #include "renderer/gl/raster_state.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
+TEST_SUITE("gl raster state") {
+
 using namespace candela;
 using namespace candela::gl;
 
@@ -45,46 +47,45 @@ std::vector<GLint> state_of(const Functions& gl) {
 
 }  // namespace
 
-TEST_SUITE("gl raster state") {
-    TEST_CASE_FIXTURE(GlFixture, "a state sets what it says") {
-        const Functions& gl = device.gl();
-        device.reset_raster_state();
-        device.set_raster_state({.depth_test = DepthTest::equal,
-                                 .writes_depth = false,
-                                 .blending = Blending::cover,
-                                 .culling = Culling::front,
-                                 .clockwise_front = true});
-        CHECK(state_of(gl) == std::vector<GLint>{1, 0, 0, 1, 1, 0, GL_CW, GL_ONE, GL_ONE_MINUS_SRC1_COLOR,
-                                                 GL_ONE, GL_ZERO, GL_EQUAL, GL_FRONT, GL_FUNC_ADD});
-    }
+TEST_CASE_FIXTURE(GlFixture, "a state sets what it says") {
+    const Functions& gl = device.gl();
+    device.reset_raster_state();
+    device.set_raster_state({.depth_test = DepthTest::equal,
+                             .writes_depth = false,
+                             .blending = Blending::cover,
+                             .culling = Culling::front,
+                             .clockwise_front = true});
+    CHECK(state_of(gl) == std::vector<GLint>{1, 0, 0, 1, 1, 0, GL_CW, GL_ONE, GL_ONE_MINUS_SRC1_COLOR, GL_ONE,
+                                             GL_ZERO, GL_EQUAL, GL_FRONT, GL_FUNC_ADD});
+}
 
-    TEST_CASE_FIXTURE(GlFixture, "a state is the same whichever one was set before") {
-        const Functions& gl = device.gl();
-        for (const RasterState& state : states) {
-            device.reset_raster_state();
+TEST_CASE_FIXTURE(GlFixture, "a state is the same whichever one was set before") {
+    const Functions& gl = device.gl();
+    for (const RasterState& state : states) {
+        device.reset_raster_state();
+        device.set_raster_state(state);
+        const std::vector<GLint> after_reset = state_of(gl);
+        for (const RasterState& before : states) {
+            device.set_raster_state(before);
             device.set_raster_state(state);
-            const std::vector<GLint> after_reset = state_of(gl);
-            for (const RasterState& before : states) {
-                device.set_raster_state(before);
-                device.set_raster_state(state);
-                CHECK(state_of(gl) == after_reset);
-            }
+            CHECK(state_of(gl) == after_reset);
         }
-    }
-
-    TEST_CASE_FIXTURE(GlFixture, "a reset sets the default, also where others have changed the state") {
-        const Functions& gl = device.gl();
-        device.reset_raster_state();
-        const std::vector<GLint> initial = state_of(gl);
-        CHECK(initial ==
-              std::vector<GLint>{0, 0, 0, 0, 0, 1, GL_CCW, GL_ONE, GL_ZERO, GL_ONE, GL_ZERO, 0, 0, 0});
-        for (const GLenum capability : capabilities) {
-            gl.Enable(capability);
-        }
-        gl.DepthMask(GL_FALSE);
-        gl.FrontFace(GL_CW);
-        gl.BlendFuncSeparate(GL_ZERO, GL_ONE, GL_ZERO, GL_ONE);
-        device.reset_raster_state();
-        CHECK(state_of(gl) == initial);
     }
 }
+
+TEST_CASE_FIXTURE(GlFixture, "a reset sets the default, also where others have changed the state") {
+    const Functions& gl = device.gl();
+    device.reset_raster_state();
+    const std::vector<GLint> initial = state_of(gl);
+    CHECK(initial == std::vector<GLint>{0, 0, 0, 0, 0, 1, GL_CCW, GL_ONE, GL_ZERO, GL_ONE, GL_ZERO, 0, 0, 0});
+    for (const GLenum capability : capabilities) {
+        gl.Enable(capability);
+    }
+    gl.DepthMask(GL_FALSE);
+    gl.FrontFace(GL_CW);
+    gl.BlendFuncSeparate(GL_ZERO, GL_ONE, GL_ZERO, GL_ONE);
+    device.reset_raster_state();
+    CHECK(state_of(gl) == initial);
+}
+
+}  // TEST_SUITE("gl raster state")

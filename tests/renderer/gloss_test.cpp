@@ -14,6 +14,8 @@
 #include "tests/renderer/gloss.hpp"
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("gloss") {
+
 using namespace candela;
 
 namespace {
@@ -146,213 +148,205 @@ std::vector<double> errors_in_mirror(const Picture& shown, const Picture& behind
 
 }  // namespace
 
-TEST_SUITE("gloss") {
-    TEST_CASE("the table of mirror shares is the integral of the reflection") {
-        // 1,024 samples an entry: their error is below 1 %.
-        for (const float roughness : {0.05F, 0.2F, 0.4F, 0.6F, 0.8F, 1.0F}) {
-            for (const float cosine : {0.1F, 0.3F, 0.6F, 1.0F}) {
-                CAPTURE(roughness);
-                CAPTURE(cosine);
-                const glm::vec3 shares = mirror_shares(cosine, roughness);
-                const auto c = static_cast<double>(cosine), r = static_cast<double>(roughness);
-                CHECK(relative_error(static_cast<double>(shares.x + shares.y), furnace(c, r, 1.0, 1.0)) <
-                      0.01);
-                // Of all the light: where y is small, so is its part.
-                CHECK(std::abs(static_cast<double>(shares.y) - furnace(c, r, 0.0, 1.0)) < 0.005);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture,
-                      "ground of metal or plastic under a light: the specification's formulas") {
-        const glm::dvec3 viewer = glm::normalize(glm::dvec3(2, 2, 0)), normal(0, 1, 0);
-        configure(linear_configuration());
-        for (const float roughness : {0.1F, 0.3F, 0.6F, 1.0F}) {
-            for (const glm::vec3 from :
-                 {glm::vec3(-2, 2.1F, 0.1F), glm::vec3(1, 3, -1), glm::vec3(-3, 0.6F, 0)}) {
-                CAPTURE(roughness);
-                CAPTURE(from.x);
-                const auto expect = [&](const std::shared_ptr<const Material>& material, double facing,
-                                        double grazing, double diffuse) {
-                    Scene scene = seen_ground(material);
-                    add(scene.world, at(from), PointLight{.intensity = 5.0F});
-                    const glm::dvec3 light = glm::normalize(glm::dvec3(from));
-                    const double irradiance = 5.0 / glm::dot(glm::dvec3(from), glm::dvec3(from)) * light.y;
-                    const double alpha = static_cast<double>(roughness) * static_cast<double>(roughness);
-                    const double fresnel =
-                        schlick(facing, grazing, glm::dot(viewer, glm::normalize(light + viewer)));
-                    const double expected =
-                        irradiance * (facets_towards(light, viewer, normal, alpha) * fresnel +
-                                      (1.0 - fresnel) * diffuse / pi);
-                    // The middle of the pixel is on the axis of the view up to rounding, which turns the half
-                    // vector by 1e-6: α is 1e-2 at least. Half floats of the material: 5e-4.
-                    CHECK(luminance_at_middle(render(scene, few)) ==
-                          doctest::Approx(expected).epsilon(0.002));
-                };
-                expect(metal(glm::vec3(0.75F), roughness), 0.75, 1.0, 0.0);
-                expect(plastic(glm::vec3(0.5F), roughness), 0.04, 1.0, 0.5);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "under the same sky everywhere, metal shows the closed form") {
-        Configuration configuration = linear_configuration();
-        configuration.indirect = false;
-        configure(configuration);
-        for (const float roughness : {0.0F, 0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F, 1.0F}) {
+TEST_CASE("the table of mirror shares is the integral of the reflection") {
+    // 1,024 samples an entry: their error is below 1 %.
+    for (const float roughness : {0.05F, 0.2F, 0.4F, 0.6F, 0.8F, 1.0F}) {
+        for (const float cosine : {0.1F, 0.3F, 0.6F, 1.0F}) {
             CAPTURE(roughness);
-            Scene scene = seen_ground(metal(glm::vec3(0.6F), roughness));
-            Environment sky;
-            sky.radiance = glm::vec3(2.0F);
-            add(scene.world, sky);
-            const double expected =
-                2.0 * furnace(std::sqrt(0.5), std::max(static_cast<double>(roughness), 0.01), 0.6, 1.0);
-            // Rays, or the irradiance of patches of the sky, whose sum is right to 1 %.
-            CHECK(relative_error(luminance_at_middle(render(scene, few)), expected) < 0.01);
-        }
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "rough metal under a small lamp shows the integral over the lamp") {
-        const glm::dvec3 viewer = glm::normalize(glm::dvec3(2, 2, 0));
-        constexpr float half = 0.1F;
-        configure(linear_configuration());
-        for (const float roughness : {0.2F, 0.4F, 0.55F}) {
-            CAPTURE(roughness);
-            // Where mirrors would show it, and aside.
-            for (const glm::vec3 from : {glm::vec3(-1.5F, 1.5F, 0), glm::vec3(-1, 2, 0.4F)}) {
-                CAPTURE(from.x);
-                Scene scene = seen_ground(metal(glm::vec3(1.0F), roughness));
-                add(scene.world, facing_origin(from), MeshInstance{square(half, emitter(glm::vec3(10.0F)))});
-                const double alpha = static_cast<double>(roughness) * static_cast<double>(roughness);
-                const double expected =
-                    10.0 * ground_under_square(glm::dvec3(from), static_cast<double>(half), viewer, alpha);
-                // 64 surfels of 0.025 m, 2.1 m away, for each of which α² grows by 1.1e-5: at a roughness of
-                // 0.2, a hundredth of it.
-                CHECK(relative_error(luminance_at_middle(render(scene, few)), expected) < 0.02);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "what hides a lamp hides it in rough metal, too") {
-        const glm::vec3 from(-1.5F, 1.5F, 0);
-        configure(linear_configuration());
-        // A black square half-way to the lamp, so much aside; it is as large as the lamp.
-        const auto shown_behind = [&](float aside, float radiance = 10.0F) {
-            Scene scene = seen_ground(metal(glm::vec3(1.0F), 0.4F));
-            add(scene.world, facing_origin(from), MeshInstance{square(0.1F, emitter(glm::vec3(radiance)))});
-            Transform pose = facing_origin(0.5F * from);
-            pose.translation.z += aside;
-            add(scene.world, pose, MeshInstance{square(0.1F, diffuse(glm::vec3(0.0F), true))});
-            return luminance_at_middle(render(scene, {48, 48}));
-        };
-        const double open = shown_behind(1.0F);
-        REQUIRE(open > 0.0);
-        CHECK(shown_behind(0.0F) < 0.001 * open);
-        // Half floats end at 65,504, and at 6e-8.
-        for (const float radiance : {1e6F, 1e-9F}) {
-            const double scale = static_cast<double>(radiance) / 10.0;
-            CHECK(shown_behind(1.0F, radiance) == doctest::Approx(scale * open).epsilon(0.001));
-            CHECK(shown_behind(0.0F, radiance) < 0.001 * scale * open);
-        }
-        // Its edge is in the middle of the lamp. A quarter of 25 rays tell how much is hidden: 0.2.
-        CHECK(std::abs(shown_behind(0.1F) / open - 0.5) < 0.3);
-    }
-
-    TEST_CASE_FIXTURE(PathFixture, "paths agree on glossy surfaces, also behind panes") {
-        Scene scene = cornell_box();
-        Material floor = *plastic(glm::vec3(0.5F), 0.2F);
-        add(scene.world, at({0, 0.01F, 0}),
-            MeshInstance{square(0.9F, std::make_shared<const Material>(floor))});
-        add(scene.world,
-            Transform{.translation = {-0.3F, 1.0F, 0.2F},
-                      .rotation = glm::angleAxis(1.0F, glm::vec3(1, 0, 0))},
-            MeshInstance{square(0.3F, metal({0.9F, 0.7F, 0.3F}, 0.5F))});
-        Material pane = *plastic({0.4F, 0.6F, 0.9F}, 0.1F);
-        pane.alpha_mode = AlphaMode::blend;
-        pane.base_colour.a = 0.4F;
-        pane.double_sided = true;
-        add(scene.world,
-            Transform{.translation = {0.3F, 0.8F, 0.5F},
-                      .rotation = glm::angleAxis(1.3F, glm::vec3(1, 0, 0))},
-            MeshInstance{square(0.3F, std::make_shared<const Material>(pane))});
-        for (const Interleave interleave : {Interleave::one, Interleave::four}) {
-            Configuration configuration = linear_configuration();
-            configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
-            configuration.interleave = interleave;
-            check_paths(scene, {52, 36}, configuration);
-        }
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "a flat mirror shows what is seen from behind it") {
-        // The camera and its image in the mirror, at x = -1, look at the same things; the picture is turned
-        // left to right. Direct light, as surfels would be placed differently.
-        Configuration configuration = linear_configuration();
-        configuration.indirect = false;
-        configure(configuration);
-        Scene scene = things_on_ground();
-        const Entity mirror =
-            add(scene.world, Transform{.translation = {-1, 1, 0}, .rotation = turned(-0.5F, {0, 0, 1})},
-                MeshInstance{square(0.9F, metal(glm::vec3(1.0F), 0.0F))});
-        scene.world.set(scene.camera, looking({0.3F, 1.0F, 0.1F}, {-1, 0.9F, 0}));
-        const Picture shown = render(scene, {48, 48});
-        scene.world.destroy(mirror);
-        scene.world.set(scene.camera, looking({-2.3F, 1.0F, 0.1F}, {-1, 0.9F, 0}));
-        const Picture behind = render(scene, {48, 48});
-        REQUIRE(mean(behind) > 0.01);
-        std::vector<double> errors;
-        for (std::uint32_t y = 0; y < 48; ++y) {
-            for (std::uint32_t x = 0; x < 48; ++x) {
-                const auto expected = static_cast<double>(behind.at(47 - x, y).g);
-                // Where nothing is seen, the light has the faint edge of its highlight.
-                if (expected < 0.01) continue;
-                errors.push_back(std::abs(static_cast<double>(shown.at(x, y).g) - expected) /
-                                 (expected + 0.001));
-            }
-        }
-        REQUIRE(errors.size() > 500);
-        std::ranges::sort(errors);
-        // The reflectance is 1 up to the table of shares, 1e-3, and a ray is off by 1e-5 of its length. At
-        // edges, rays and triangles may find different surfaces.
-        CHECK(errors[errors.size() * 3 / 4] < 0.005);
-    }
-
-    TEST_CASE_FIXTURE(RenderFixture, "a mirror shows highlights and bumps as they are seen from behind it") {
-        // Nothing else is there that the ground could reflect: what it reflects of other surfaces is the same
-        // mean in mirrors, but found by rays where it is seen itself.
-        Configuration configuration = linear_configuration();
-        configuration.indirect = false;
-        configure(configuration);
-        const auto expect = [&](const std::shared_ptr<const Mesh>& ground, const Transform& pose = {}) {
-            Scene seen_in_mirror = ground_for_mirror(ground, pose, false);
-            add_mirror(seen_in_mirror);
-            const Picture shown = render(seen_in_mirror, {48, 48});
-            renderer.invalidate();
-            const Picture behind = render(ground_for_mirror(ground, pose, true), {48, 48});
-            renderer.invalidate();
-            const double middle = mean(behind);
-            REQUIRE(middle > 0.01);
-            // The reflectance is 1 up to the table of shares, 1e-3; roughness is a half float, 5e-4, and
-            // normals of the ray's triangle have 16 bits.
-            const std::vector<double> all = errors_in_mirror(shown, behind, 0.1 * middle);
-            REQUIRE(all.size() > 1000);
-            CHECK(all[all.size() * 9 / 10] < 0.005);
-            const std::vector<double> bright = errors_in_mirror(shown, behind, 1.5 * middle);
-            REQUIRE(bright.size() > 20);
-            CHECK(bright[bright.size() * 9 / 10] < 0.01);
-        };
-        const Transform mirrored{.scale = {-1, 1, 1}};
-        for (const auto& made : {metal({0.9F, 0.8F, 0.7F}, 0.5F), plastic(glm::vec3(0.2F), 0.3F)}) {
-            CAPTURE(made->roughness);
-            Material material = *made;
-            expect(ground_of(material, true, false));
-            // Without bent normals, as rays do not interpolate the tangents of corners. One texel has no
-            // bilinear weights, which drivers round.
-            material.normal_texture = std::make_shared<const Image>(Image{
-                .width = 1, .height = 1, .texels = {{140, 134, 250, 255}}, .encoding = Encoding::linear});
-            material.normal_scale = 1.2F;
-            expect(ground_of(material, false, false));
-            expect(ground_of(material, false, true));
-            expect(ground_of(material, false, false), mirrored);
+            CAPTURE(cosine);
+            const glm::vec3 shares = mirror_shares(cosine, roughness);
+            const auto c = static_cast<double>(cosine), r = static_cast<double>(roughness);
+            CHECK(relative_error(static_cast<double>(shares.x + shares.y), furnace(c, r, 1.0, 1.0)) < 0.01);
+            // Of all the light: where y is small, so is its part.
+            CHECK(std::abs(static_cast<double>(shares.y) - furnace(c, r, 0.0, 1.0)) < 0.005);
         }
     }
 }
+
+TEST_CASE_FIXTURE(RenderFixture, "ground of metal or plastic under a light: the specification's formulas") {
+    const glm::dvec3 viewer = glm::normalize(glm::dvec3(2, 2, 0)), normal(0, 1, 0);
+    configure(linear_configuration());
+    for (const float roughness : {0.1F, 0.3F, 0.6F, 1.0F}) {
+        for (const glm::vec3 from :
+             {glm::vec3(-2, 2.1F, 0.1F), glm::vec3(1, 3, -1), glm::vec3(-3, 0.6F, 0)}) {
+            CAPTURE(roughness);
+            CAPTURE(from.x);
+            const auto expect = [&](const std::shared_ptr<const Material>& material, double facing,
+                                    double grazing, double diffuse) {
+                Scene scene = seen_ground(material);
+                add(scene.world, at(from), PointLight{.intensity = 5.0F});
+                const glm::dvec3 light = glm::normalize(glm::dvec3(from));
+                const double irradiance = 5.0 / glm::dot(glm::dvec3(from), glm::dvec3(from)) * light.y;
+                const double alpha = static_cast<double>(roughness) * static_cast<double>(roughness);
+                const double fresnel =
+                    schlick(facing, grazing, glm::dot(viewer, glm::normalize(light + viewer)));
+                const double expected = irradiance * (facets_towards(light, viewer, normal, alpha) * fresnel +
+                                                      (1.0 - fresnel) * diffuse / pi);
+                // The middle of the pixel is on the axis of the view up to rounding, which turns the half
+                // vector by 1e-6: α is 1e-2 at least. Half floats of the material: 5e-4.
+                CHECK(luminance_at_middle(render(scene, few)) == doctest::Approx(expected).epsilon(0.002));
+            };
+            expect(metal(glm::vec3(0.75F), roughness), 0.75, 1.0, 0.0);
+            expect(plastic(glm::vec3(0.5F), roughness), 0.04, 1.0, 0.5);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "under the same sky everywhere, metal shows the closed form") {
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    configure(configuration);
+    for (const float roughness : {0.0F, 0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F, 0.8F, 1.0F}) {
+        CAPTURE(roughness);
+        Scene scene = seen_ground(metal(glm::vec3(0.6F), roughness));
+        Environment sky;
+        sky.radiance = glm::vec3(2.0F);
+        add(scene.world, sky);
+        const double expected =
+            2.0 * furnace(std::sqrt(0.5), std::max(static_cast<double>(roughness), 0.01), 0.6, 1.0);
+        // Rays, or the irradiance of patches of the sky, whose sum is right to 1 %.
+        CHECK(relative_error(luminance_at_middle(render(scene, few)), expected) < 0.01);
+    }
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "rough metal under a small lamp shows the integral over the lamp") {
+    const glm::dvec3 viewer = glm::normalize(glm::dvec3(2, 2, 0));
+    constexpr float half = 0.1F;
+    configure(linear_configuration());
+    for (const float roughness : {0.2F, 0.4F, 0.55F}) {
+        CAPTURE(roughness);
+        // Where mirrors would show it, and aside.
+        for (const glm::vec3 from : {glm::vec3(-1.5F, 1.5F, 0), glm::vec3(-1, 2, 0.4F)}) {
+            CAPTURE(from.x);
+            Scene scene = seen_ground(metal(glm::vec3(1.0F), roughness));
+            add(scene.world, facing_origin(from), MeshInstance{square(half, emitter(glm::vec3(10.0F)))});
+            const double alpha = static_cast<double>(roughness) * static_cast<double>(roughness);
+            const double expected =
+                10.0 * ground_under_square(glm::dvec3(from), static_cast<double>(half), viewer, alpha);
+            // 64 surfels of 0.025 m, 2.1 m away, for each of which α² grows by 1.1e-5: at a roughness of
+            // 0.2, a hundredth of it.
+            CHECK(relative_error(luminance_at_middle(render(scene, few)), expected) < 0.02);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "what hides a lamp hides it in rough metal, too") {
+    const glm::vec3 from(-1.5F, 1.5F, 0);
+    configure(linear_configuration());
+    // A black square half-way to the lamp, so much aside; it is as large as the lamp.
+    const auto shown_behind = [&](float aside, float radiance = 10.0F) {
+        Scene scene = seen_ground(metal(glm::vec3(1.0F), 0.4F));
+        add(scene.world, facing_origin(from), MeshInstance{square(0.1F, emitter(glm::vec3(radiance)))});
+        Transform pose = facing_origin(0.5F * from);
+        pose.translation.z += aside;
+        add(scene.world, pose, MeshInstance{square(0.1F, diffuse(glm::vec3(0.0F), true))});
+        return luminance_at_middle(render(scene, {48, 48}));
+    };
+    const double open = shown_behind(1.0F);
+    REQUIRE(open > 0.0);
+    CHECK(shown_behind(0.0F) < 0.001 * open);
+    // Half floats end at 65,504, and at 6e-8.
+    for (const float radiance : {1e6F, 1e-9F}) {
+        const double scale = static_cast<double>(radiance) / 10.0;
+        CHECK(shown_behind(1.0F, radiance) == doctest::Approx(scale * open).epsilon(0.001));
+        CHECK(shown_behind(0.0F, radiance) < 0.001 * scale * open);
+    }
+    // Its edge is in the middle of the lamp. A quarter of 25 rays tell how much is hidden: 0.2.
+    CHECK(std::abs(shown_behind(0.1F) / open - 0.5) < 0.3);
+}
+
+TEST_CASE_FIXTURE(PathFixture, "paths agree on glossy surfaces, also behind panes") {
+    Scene scene = cornell_box();
+    Material floor = *plastic(glm::vec3(0.5F), 0.2F);
+    add(scene.world, at({0, 0.01F, 0}), MeshInstance{square(0.9F, std::make_shared<const Material>(floor))});
+    add(scene.world,
+        Transform{.translation = {-0.3F, 1.0F, 0.2F}, .rotation = glm::angleAxis(1.0F, glm::vec3(1, 0, 0))},
+        MeshInstance{square(0.3F, metal({0.9F, 0.7F, 0.3F}, 0.5F))});
+    Material pane = *plastic({0.4F, 0.6F, 0.9F}, 0.1F);
+    pane.alpha_mode = AlphaMode::blend;
+    pane.base_colour.a = 0.4F;
+    pane.double_sided = true;
+    add(scene.world,
+        Transform{.translation = {0.3F, 0.8F, 0.5F}, .rotation = glm::angleAxis(1.3F, glm::vec3(1, 0, 0))},
+        MeshInstance{square(0.3F, std::make_shared<const Material>(pane))});
+    for (const Interleave interleave : {Interleave::one, Interleave::four}) {
+        Configuration configuration = linear_configuration();
+        configuration.visibility = {.method = VplVisibility::maps, .map_resolution = 16};
+        configuration.interleave = interleave;
+        check_paths(scene, {52, 36}, configuration);
+    }
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "a flat mirror shows what is seen from behind it") {
+    // The camera and its image in the mirror, at x = -1, look at the same things; the picture is turned
+    // left to right. Direct light, as surfels would be placed differently.
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    configure(configuration);
+    Scene scene = things_on_ground();
+    const Entity mirror =
+        add(scene.world, Transform{.translation = {-1, 1, 0}, .rotation = turned(-0.5F, {0, 0, 1})},
+            MeshInstance{square(0.9F, metal(glm::vec3(1.0F), 0.0F))});
+    scene.world.set(scene.camera, looking({0.3F, 1.0F, 0.1F}, {-1, 0.9F, 0}));
+    const Picture shown = render(scene, {48, 48});
+    scene.world.destroy(mirror);
+    scene.world.set(scene.camera, looking({-2.3F, 1.0F, 0.1F}, {-1, 0.9F, 0}));
+    const Picture behind = render(scene, {48, 48});
+    REQUIRE(mean(behind) > 0.01);
+    std::vector<double> errors;
+    for (std::uint32_t y = 0; y < 48; ++y) {
+        for (std::uint32_t x = 0; x < 48; ++x) {
+            const auto expected = static_cast<double>(behind.at(47 - x, y).g);
+            // Where nothing is seen, the light has the faint edge of its highlight.
+            if (expected < 0.01) continue;
+            errors.push_back(std::abs(static_cast<double>(shown.at(x, y).g) - expected) / (expected + 0.001));
+        }
+    }
+    REQUIRE(errors.size() > 500);
+    std::ranges::sort(errors);
+    // The reflectance is 1 up to the table of shares, 1e-3, and a ray is off by 1e-5 of its length. At
+    // edges, rays and triangles may find different surfaces.
+    CHECK(errors[errors.size() * 3 / 4] < 0.005);
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "a mirror shows highlights and bumps as they are seen from behind it") {
+    // Nothing else is there that the ground could reflect: what it reflects of other surfaces is the same
+    // mean in mirrors, but found by rays where it is seen itself.
+    Configuration configuration = linear_configuration();
+    configuration.indirect = false;
+    configure(configuration);
+    const auto expect = [&](const std::shared_ptr<const Mesh>& ground, const Transform& pose = {}) {
+        Scene seen_in_mirror = ground_for_mirror(ground, pose, false);
+        add_mirror(seen_in_mirror);
+        const Picture shown = render(seen_in_mirror, {48, 48});
+        renderer.invalidate();
+        const Picture behind = render(ground_for_mirror(ground, pose, true), {48, 48});
+        renderer.invalidate();
+        const double middle = mean(behind);
+        REQUIRE(middle > 0.01);
+        // The reflectance is 1 up to the table of shares, 1e-3; roughness is a half float, 5e-4, and
+        // normals of the ray's triangle have 16 bits.
+        const std::vector<double> all = errors_in_mirror(shown, behind, 0.1 * middle);
+        REQUIRE(all.size() > 1000);
+        CHECK(all[all.size() * 9 / 10] < 0.005);
+        const std::vector<double> bright = errors_in_mirror(shown, behind, 1.5 * middle);
+        REQUIRE(bright.size() > 20);
+        CHECK(bright[bright.size() * 9 / 10] < 0.01);
+    };
+    const Transform mirrored{.scale = {-1, 1, 1}};
+    for (const auto& made : {metal({0.9F, 0.8F, 0.7F}, 0.5F), plastic(glm::vec3(0.2F), 0.3F)}) {
+        CAPTURE(made->roughness);
+        Material material = *made;
+        expect(ground_of(material, true, false));
+        // Without bent normals, as rays do not interpolate the tangents of corners. One texel has no
+        // bilinear weights, which drivers round.
+        material.normal_texture = std::make_shared<const Image>(
+            Image{.width = 1, .height = 1, .texels = {{140, 134, 250, 255}}, .encoding = Encoding::linear});
+        material.normal_scale = 1.2F;
+        expect(ground_of(material, false, false));
+        expect(ground_of(material, false, true));
+        expect(ground_of(material, false, false), mirrored);
+    }
+}
+
+}  // TEST_SUITE("gloss")

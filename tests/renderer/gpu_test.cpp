@@ -9,6 +9,8 @@
 #include "renderer/gpu/loop_parts.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
+TEST_SUITE("gpu") {
+
 using namespace candela;
 
 namespace {
@@ -35,33 +37,31 @@ constexpr std::array<gl::EmbeddedShader, 2> files{
 
 }  // namespace
 
-TEST_SUITE("gpu") {
-    TEST_CASE("a loop is cut into parts of at most a size, at least one") {
-        CHECK(loop_parts(0, 8).size() == 1);
-        CHECK(loop_parts(8, 8).size() == 1);
-        CHECK(loop_parts(9, 8).size() == 2);
-        std::vector<std::uint32_t> starts;
-        for (const gl::Uniforms& part : loop_parts(20, 8)) {
-            starts.push_back(std::get<std::uint32_t>(part.begin()->value));
-        }
-        CHECK(starts == std::vector<std::uint32_t>{0, 8, 16});
+TEST_CASE("a loop is cut into parts of at most a size, at least one") {
+    CHECK(loop_parts(0, 8).size() == 1);
+    CHECK(loop_parts(8, 8).size() == 1);
+    CHECK(loop_parts(9, 8).size() == 2);
+    std::vector<std::uint32_t> starts;
+    for (const gl::Uniforms& part : loop_parts(20, 8)) {
+        starts.push_back(std::get<std::uint32_t>(part.begin()->value));
     }
+    CHECK(starts == std::vector<std::uint32_t>{0, 8, 16});
+}
 
-    TEST_CASE_FIXTURE(GlFixture, "each step of a computation sees what those before it have written") {
-        Gpu gpu(context->get_proc(), gl::ShaderLibrary(files), {});
-        const gl::Buffer sums(gpu.device(), "sums", 128 * sizeof(std::uint32_t));
-        sums.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
-        constexpr std::uint32_t count = 1000;
-        ComputeSteps steps(gpu);
-        std::uint32_t written = 0;
-        for (const gl::Uniforms& part : loop_parts(count, 300)) {
-            steps.run(gpu.program({"sum.comp"}), {},
-                      part + gl::Uniforms{{"count", count}, {"written", written}});
-            written = 1 - written;
-        }
-        const std::vector<std::uint32_t> result = sums.download<std::uint32_t>();
-        for (std::size_t i = 0; i < 64; ++i) {
-            CHECK(result[64 * (1 - written) + i] == 64 * (count * (count - 1) / 2));
-        }
+TEST_CASE_FIXTURE(GlFixture, "each step of a computation sees what those before it have written") {
+    Gpu gpu(context->get_proc(), gl::ShaderLibrary(files), {});
+    const gl::Buffer sums(gpu.device(), "sums", 128 * sizeof(std::uint32_t));
+    sums.bind_base(GL_SHADER_STORAGE_BUFFER, 0);
+    constexpr std::uint32_t count = 1000;
+    ComputeSteps steps(gpu);
+    std::uint32_t written = 0;
+    for (const gl::Uniforms& part : loop_parts(count, 300)) {
+        steps.run(gpu.program({"sum.comp"}), {}, part + gl::Uniforms{{"count", count}, {"written", written}});
+        written = 1 - written;
+    }
+    const std::vector<std::uint32_t> result = sums.download<std::uint32_t>();
+    for (std::size_t i = 0; i < 64; ++i) {
+        CHECK(result[64 * (1 - written) + i] == 64 * (count * (count - 1) / 2));
     }
 }
+}  // TEST_SUITE("gpu")

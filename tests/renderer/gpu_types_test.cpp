@@ -10,6 +10,8 @@
 #include "renderer/gpu/gpu_types.hpp"
 #include "tests/renderer/context_fixture.hpp"
 
+TEST_SUITE("gpu types") {
+
 using namespace candela;
 
 namespace {
@@ -247,54 +249,52 @@ gl::Program compile_with_shipped(gl::Device& device, const std::string& compute_
 
 }  // namespace
 
-TEST_SUITE("gpu types") {
-    TEST_CASE_FIXTURE(GlFixture, "every struct has the layout in storage buffers that the driver reports") {
-        for (const Layout& layout : layouts()) {
-            CAPTURE(layout.name);
-            const gl::Program program = compile_with_shipped(device, copying_shader(layout.name));
-            const BlockMembers variables(device.gl(), program.name());
-            CHECK(variables.count() == static_cast<GLint>(layout.members.size()));
-            for (const Member& member : layout.members) {
-                CAPTURE(member.name);
-                const std::string name = "element[0]." + member.name;
-                CHECK(variables.get(name, GL_OFFSET) == static_cast<GLint>(member.offset));
-                CHECK(variables.get(name, GL_TOP_LEVEL_ARRAY_STRIDE) == static_cast<GLint>(layout.stride));
-            }
-            if (layout.name == "Instance") {
-                CHECK(variables.get("element[0].world[0]", GL_ARRAY_STRIDE) ==
-                      sizeof(gpu::Instance::world[0]));
-            }
-            if (layout.name == "Shadow") {
-                CHECK(variables.get("element[0].from_world", GL_MATRIX_STRIDE) == sizeof(glm::vec4));
-                CHECK(variables.get("element[0].from_world", GL_IS_ROW_MAJOR) == GL_FALSE);
-            }
+TEST_CASE_FIXTURE(GlFixture, "every struct has the layout in storage buffers that the driver reports") {
+    for (const Layout& layout : layouts()) {
+        CAPTURE(layout.name);
+        const gl::Program program = compile_with_shipped(device, copying_shader(layout.name));
+        const BlockMembers variables(device.gl(), program.name());
+        CHECK(variables.count() == static_cast<GLint>(layout.members.size()));
+        for (const Member& member : layout.members) {
+            CAPTURE(member.name);
+            const std::string name = "element[0]." + member.name;
+            CHECK(variables.get(name, GL_OFFSET) == static_cast<GLint>(member.offset));
+            CHECK(variables.get(name, GL_TOP_LEVEL_ARRAY_STRIDE) == static_cast<GLint>(layout.stride));
         }
-    }
-
-    TEST_CASE_FIXTURE(GlFixture, "structs in uniform blocks have the same layout as in storage buffers") {
-        std::size_t blocks = 0;
-        for (const Layout& layout : layouts()) {
-            if (!layout.name.ends_with("Constants")) continue;
-            CAPTURE(layout.name);
-            ++blocks;
-            const gl::Program program = compile_with_shipped(device, shader_with_constants(layout.name));
-            const BlockMembers members(device.gl(), program.name(), GL_UNIFORM);
-            for (const Member& member : layout.members) {
-                CAPTURE(member.name);
-                CHECK(members.get("constants." + member.name, GL_OFFSET) ==
-                      static_cast<GLint>(member.offset));
-            }
+        if (layout.name == "Instance") {
+            CHECK(variables.get("element[0].world[0]", GL_ARRAY_STRIDE) == sizeof(gpu::Instance::world[0]));
         }
-        CHECK(blocks == 4);
-    }
-
-    TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is compared") {
-        const std::string types = gl::ShaderLibrary(gl::embedded_shaders()).load("types.glsl");
-        std::size_t structs = 0;
-        for (std::size_t at = types.find("\nstruct "); at != std::string::npos;
-             at = types.find("\nstruct ", at + 1)) {
-            ++structs;
+        if (layout.name == "Shadow") {
+            CHECK(variables.get("element[0].from_world", GL_MATRIX_STRIDE) == sizeof(glm::vec4));
+            CHECK(variables.get("element[0].from_world", GL_IS_ROW_MAJOR) == GL_FALSE);
         }
-        CHECK(structs == layouts().size());
     }
 }
+
+TEST_CASE_FIXTURE(GlFixture, "structs in uniform blocks have the same layout as in storage buffers") {
+    std::size_t blocks = 0;
+    for (const Layout& layout : layouts()) {
+        if (!layout.name.ends_with("Constants")) continue;
+        CAPTURE(layout.name);
+        ++blocks;
+        const gl::Program program = compile_with_shipped(device, shader_with_constants(layout.name));
+        const BlockMembers members(device.gl(), program.name(), GL_UNIFORM);
+        for (const Member& member : layout.members) {
+            CAPTURE(member.name);
+            CHECK(members.get("constants." + member.name, GL_OFFSET) == static_cast<GLint>(member.offset));
+        }
+    }
+    CHECK(blocks == 4);
+}
+
+TEST_CASE_FIXTURE(GlFixture, "every struct of types.glsl is compared") {
+    const std::string types = gl::ShaderLibrary(gl::embedded_shaders()).load("types.glsl");
+    std::size_t structs = 0;
+    for (std::size_t at = types.find("\nstruct "); at != std::string::npos;
+         at = types.find("\nstruct ", at + 1)) {
+        ++structs;
+    }
+    CHECK(structs == layouts().size());
+}
+
+}  // TEST_SUITE("gpu types")

@@ -14,6 +14,8 @@
 #include "tests/renderer/host_view.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("host state") {
+
 using namespace candela;
 
 namespace {
@@ -391,76 +393,76 @@ class OddHost {
 
 }  // namespace
 
-TEST_SUITE("host state") {
-    TEST_CASE("the host's depth and rasterisation state neither changes the picture nor is changed") {
-        OddHost().check_harmless(depth_and_raster_oddities());
-    }
-
-    TEST_CASE("the host's pixel state neither changes the picture nor is changed") {
-        OddHost().check_harmless(pixel_oddities());
-    }
-
-    TEST_CASE("the host's bindings neither change the picture nor are changed") {
-        OddHost().check_harmless(binding_oddities());
-    }
-
-    TEST_CASE("transform feedback of the host goes on after a frame and contains nothing of it") {
-        const auto context = make_current_context();
-        TestedRenderer renderer(context->get_proc());
-        REQUIRE(renderer.configure(small_configuration(ShadingPath::forward)).empty());
-        Host host(device_of(renderer), context->get_proc());
-        const RenderTarget target(device_of(renderer), size);
-        const Scene scene = textured_scene();
-        constexpr float untouched = -1.0F;
-        host.buffer.upload(std::vector(1024, untouched));
-        host.gl.BindVertexArray(host.vertex_array.name());
-        host.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, host.framebuffer.name());
-        host.gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, host.buffer.name());
-        host.gl.UseProgram(host.make_program());
-        host.more.BeginTransformFeedback(GL_POINTS);
-        host.gl.DrawArrays(GL_POINTS, 0, 2);
-        renderer.render(scene.world, scene.camera, target.target());
-        host.gl.DrawArrays(GL_POINTS, 0, 3);
-        host.more.EndTransformFeedback();
-        std::vector expected(1024, untouched);
-        std::fill_n(expected.begin(), 5, 1.0F);
-        CHECK(host.buffer.download<float>() == expected);
-        CHECK(host.gl.GetError() == GL_NO_ERROR);
-    }
-
-    TEST_CASE("a program that the host has deleted while it was current is gone, without an error") {
-        const auto context = make_current_context();
-        TestedRenderer renderer(context->get_proc());
-        REQUIRE(renderer.configure(small_configuration(ShadingPath::forward)).empty());
-        const Host host(device_of(renderer), context->get_proc());
-        const RenderTarget target(device_of(renderer), size);
-        const Scene scene = textured_scene();
-        const GLuint program = host.make_program();
-        host.gl.UseProgram(program);
-        host.gl.DeleteProgram(program);
-        renderer.render(scene.world, scene.camera, target.target());
-        GLint current = -1;
-        host.gl.GetIntegerv(GL_CURRENT_PROGRAM, &current);
-        CHECK(current == 0);
-        CHECK(host.gl.GetError() == GL_NO_ERROR);
-    }
-
-    TEST_CASE("a pending error of the host is still there after a renderer was made, used and destroyed") {
-        const auto context = make_current_context();
-        const gl::Functions gl = gl::load_functions(context->get_proc());
-        const Scene scene = textured_scene();
-        gl.Enable(GL_RENDERER);  // no capability
-        {
-            TestedRenderer renderer(context->get_proc());
-            const RenderTarget target(device_of(renderer), size);
-            for (const ShadingPath path : {ShadingPath::forward_plus, ShadingPath::clustered_deferred}) {
-                REQUIRE(renderer.configure(small_configuration(path)).empty());
-                renderer.render(scene.world, scene.camera, target.target());
-            }
-            static_cast<void>(renderer.report());
-            static_cast<void>(renderer.take_frames(true));
-        }
-        CHECK(gl.GetError() == GL_INVALID_ENUM);
-        CHECK(gl.GetError() == GL_NO_ERROR);
-    }
+TEST_CASE("the host's depth and rasterisation state neither changes the picture nor is changed") {
+    OddHost().check_harmless(depth_and_raster_oddities());
 }
+
+TEST_CASE("the host's pixel state neither changes the picture nor is changed") {
+    OddHost().check_harmless(pixel_oddities());
+}
+
+TEST_CASE("the host's bindings neither change the picture nor are changed") {
+    OddHost().check_harmless(binding_oddities());
+}
+
+TEST_CASE("transform feedback of the host goes on after a frame and contains nothing of it") {
+    const auto context = make_current_context();
+    TestedRenderer renderer(context->get_proc());
+    REQUIRE(renderer.configure(small_configuration(ShadingPath::forward)).empty());
+    Host host(device_of(renderer), context->get_proc());
+    const RenderTarget target(device_of(renderer), size);
+    const Scene scene = textured_scene();
+    constexpr float untouched = -1.0F;
+    host.buffer.upload(std::vector(1024, untouched));
+    host.gl.BindVertexArray(host.vertex_array.name());
+    host.gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, host.framebuffer.name());
+    host.gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, host.buffer.name());
+    host.gl.UseProgram(host.make_program());
+    host.more.BeginTransformFeedback(GL_POINTS);
+    host.gl.DrawArrays(GL_POINTS, 0, 2);
+    renderer.render(scene.world, scene.camera, target.target());
+    host.gl.DrawArrays(GL_POINTS, 0, 3);
+    host.more.EndTransformFeedback();
+    std::vector expected(1024, untouched);
+    std::fill_n(expected.begin(), 5, 1.0F);
+    CHECK(host.buffer.download<float>() == expected);
+    CHECK(host.gl.GetError() == GL_NO_ERROR);
+}
+
+TEST_CASE("a program that the host has deleted while it was current is gone, without an error") {
+    const auto context = make_current_context();
+    TestedRenderer renderer(context->get_proc());
+    REQUIRE(renderer.configure(small_configuration(ShadingPath::forward)).empty());
+    const Host host(device_of(renderer), context->get_proc());
+    const RenderTarget target(device_of(renderer), size);
+    const Scene scene = textured_scene();
+    const GLuint program = host.make_program();
+    host.gl.UseProgram(program);
+    host.gl.DeleteProgram(program);
+    renderer.render(scene.world, scene.camera, target.target());
+    GLint current = -1;
+    host.gl.GetIntegerv(GL_CURRENT_PROGRAM, &current);
+    CHECK(current == 0);
+    CHECK(host.gl.GetError() == GL_NO_ERROR);
+}
+
+TEST_CASE("a pending error of the host is still there after a renderer was made, used and destroyed") {
+    const auto context = make_current_context();
+    const gl::Functions gl = gl::load_functions(context->get_proc());
+    const Scene scene = textured_scene();
+    gl.Enable(GL_RENDERER);  // no capability
+    {
+        TestedRenderer renderer(context->get_proc());
+        const RenderTarget target(device_of(renderer), size);
+        for (const ShadingPath path : {ShadingPath::forward_plus, ShadingPath::clustered_deferred}) {
+            REQUIRE(renderer.configure(small_configuration(path)).empty());
+            renderer.render(scene.world, scene.camera, target.target());
+        }
+        static_cast<void>(renderer.report());
+        static_cast<void>(renderer.take_frames(true));
+    }
+    CHECK(gl.GetError() == GL_INVALID_ENUM);
+    CHECK(gl.GetError() == GL_NO_ERROR);
+}
+
+}  // TEST_SUITE("host state")

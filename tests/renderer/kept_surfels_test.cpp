@@ -20,6 +20,8 @@
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("surfels: kept") {
+
 using namespace candela;
 
 namespace {
@@ -226,186 +228,180 @@ class KeptSurfelTests : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("surfels: kept") {
-    TEST_CASE("surfels that stay keep their slots, and no two share one") {
-        std::mt19937 engine(test_seed());
-        SurfelMaps last;
-        for (const std::size_t count : {20U, 20U, 31U, 12U, 0U, 40U}) {
-            CAPTURE(count);
-            const Ids ids = some_ids(count, engine);
-            const SurfelMaps maps = assign_slots(ids, &last);
-            check_slots(maps, ids);
-            for (std::uint32_t slot = 0; slot < last.cells.size(); ++slot) {
-                const auto stays = std::ranges::find(ids, last.cells[slot]);
-                if (stays != ids.end() && slot < count) CHECK(maps.cells[slot] == last.cells[slot]);
-            }
-            last = maps;
+TEST_CASE("surfels that stay keep their slots, and no two share one") {
+    std::mt19937 engine(test_seed());
+    SurfelMaps last;
+    for (const std::size_t count : {20U, 20U, 31U, 12U, 0U, 40U}) {
+        CAPTURE(count);
+        const Ids ids = some_ids(count, engine);
+        const SurfelMaps maps = assign_slots(ids, &last);
+        check_slots(maps, ids);
+        for (std::uint32_t slot = 0; slot < last.cells.size(); ++slot) {
+            const auto stays = std::ranges::find(ids, last.cells[slot]);
+            if (stays != ids.end() && slot < count) CHECK(maps.cells[slot] == last.cells[slot]);
         }
-        CHECK(assign_slots(Ids{7, 5, 9}, nullptr).slots == std::vector<std::uint32_t>{0, 1, 2});
+        last = maps;
     }
+    CHECK(assign_slots(Ids{7, 5, 9}, nullptr).slots == std::vector<std::uint32_t>{0, 1, 2});
+}
 
-    TEST_CASE("maps of surfels far from the focus are other ones for each focus") {
-        std::vector<gpu::Surfel> surfels(2);
-        surfels[1].position.x = 100.0F;
-        const Ids ids{1, 2};
-        const SurfelMaps first = place_maps(surfels, ids, ids, {glm::vec3(0.0F), 8.0F}, nullptr);
-        CHECK((surfels[0].map & SURFEL_MAP_OF_FOCUS) == 0);
-        CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) != 0);
-        const SurfelMaps second = place_maps(surfels, ids, ids, {glm::vec3(1.0F), 8.0F}, &first);
-        CHECK(first.keys[0] == second.keys[0]);
-        CHECK(first.keys[1] != second.keys[1]);
-        static_cast<void>(place_maps(surfels, ids, ids, {}, &second));
-        CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) == 0);
+TEST_CASE("maps of surfels far from the focus are other ones for each focus") {
+    std::vector<gpu::Surfel> surfels(2);
+    surfels[1].position.x = 100.0F;
+    const Ids ids{1, 2};
+    const SurfelMaps first = place_maps(surfels, ids, ids, {glm::vec3(0.0F), 8.0F}, nullptr);
+    CHECK((surfels[0].map & SURFEL_MAP_OF_FOCUS) == 0);
+    CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) != 0);
+    const SurfelMaps second = place_maps(surfels, ids, ids, {glm::vec3(1.0F), 8.0F}, &first);
+    CHECK(first.keys[0] == second.keys[0]);
+    CHECK(first.keys[1] != second.keys[1]);
+    static_cast<void>(place_maps(surfels, ids, ids, {}, &second));
+    CHECK((surfels[1].map & SURFEL_MAP_OF_FOCUS) == 0);
+}
+
+TEST_CASE("what far maps see encloses the focus, and stays while the focus moves a little") {
+    std::mt19937 engine(test_seed());
+    std::uniform_real_distribution<float> number(-1000.0F, 1000.0F);
+    for (const float radius : {0.7F, 4.0F, 1000.0F}) {
+        for (int i = 0; i < 100; ++i) {
+            const Focus focus{{number(engine), number(engine), number(engine)}, radius};
+            const Focus seen = focus_of_maps(std::vector<Focus>{focus});
+            CHECK(glm::distance(seen.centre, focus.centre) + radius < seen.radius);
+            CHECK(seen.radius <= 4.0F * radius);
+        }
+        const Focus focus{glm::vec3(0.0F), radius}, aside{glm::vec3(0.2F * radius, 0.0F, 0.0F), radius};
+        CHECK(focus_of_maps(std::vector<Focus>{focus}) == focus_of_maps(std::vector<Focus>{aside}));
+        CHECK(focus_of_maps(std::vector<Focus>{focus, aside}) == Focus{});
     }
+    CHECK(focus_of_maps({}) == Focus{});
+}
 
-    TEST_CASE("what far maps see encloses the focus, and stays while the focus moves a little") {
-        std::mt19937 engine(test_seed());
-        std::uniform_real_distribution<float> number(-1000.0F, 1000.0F);
-        for (const float radius : {0.7F, 4.0F, 1000.0F}) {
-            for (int i = 0; i < 100; ++i) {
-                const Focus focus{{number(engine), number(engine), number(engine)}, radius};
-                const Focus seen = focus_of_maps(std::vector<Focus>{focus});
-                CHECK(glm::distance(seen.centre, focus.centre) + radius < seen.radius);
-                CHECK(seen.radius <= 4.0F * radius);
-            }
-            const Focus focus{glm::vec3(0.0F), radius}, aside{glm::vec3(0.2F * radius, 0.0F, 0.0F), radius};
-            CHECK(focus_of_maps(std::vector<Focus>{focus}) == focus_of_maps(std::vector<Focus>{aside}));
-            CHECK(focus_of_maps(std::vector<Focus>{focus, aside}) == Focus{});
-        }
-        CHECK(focus_of_maps({}) == Focus{});
-    }
+TEST_CASE("surfels are found by their ids") {
+    CHECK(kept_surfels(Ids{5, 6, 7}, Ids{7, 8, 5, 9}).last ==
+          std::vector<std::uint32_t>{2, NO_SURFEL, 0, NO_SURFEL});
+    CHECK(kept_surfels(Ids{5, 6, 7}, Ids{5, 8, 7}).in_place);
+    CHECK_FALSE(kept_surfels(Ids{5, 6, 7}, Ids{6, 5, 7}).in_place);
+    CHECK_FALSE(kept_surfels(Ids{5, 6, 7}, Ids{5, 6}).in_place);
+}
 
-    TEST_CASE("surfels are found by their ids") {
-        CHECK(kept_surfels(Ids{5, 6, 7}, Ids{7, 8, 5, 9}).last ==
-              std::vector<std::uint32_t>{2, NO_SURFEL, 0, NO_SURFEL});
-        CHECK(kept_surfels(Ids{5, 6, 7}, Ids{5, 8, 7}).in_place);
-        CHECK_FALSE(kept_surfels(Ids{5, 6, 7}, Ids{6, 5, 7}).in_place);
-        CHECK_FALSE(kept_surfels(Ids{5, 6, 7}, Ids{5, 6}).in_place);
-    }
-
-    TEST_CASE_FIXTURE(KeptSurfelTests, "with the same surfels, nothing is traced") {
-        Visibility visibility(context->get_proc());
-        Ids ids = some_ids(31, engine_);
-        const std::uint64_t other = ids.back();
-        ids.pop_back();
-        static_cast<void>(visibility.find(box_.world, ids));
-        visibility.mark();
-        ids[0] = other;  // to make the pass run
-        const Found found = visibility.find(box_.world, ids);
-        for (std::size_t i = 1; i < ids.size(); ++i) {
-            for (std::size_t j = 1; j < ids.size(); ++j) {
-                CHECK(found.factors[i][j] == Visibility::marked_factor);
-            }
-            CHECK(found.cover[i] == std::vector<std::uint32_t>(COVER_PARTS, Visibility::marked_hits));
+TEST_CASE_FIXTURE(KeptSurfelTests, "with the same surfels, nothing is traced") {
+    Visibility visibility(context->get_proc());
+    Ids ids = some_ids(31, engine_);
+    const std::uint64_t other = ids.back();
+    ids.pop_back();
+    static_cast<void>(visibility.find(box_.world, ids));
+    visibility.mark();
+    ids[0] = other;  // to make the pass run
+    const Found found = visibility.find(box_.world, ids);
+    for (std::size_t i = 1; i < ids.size(); ++i) {
+        for (std::size_t j = 1; j < ids.size(); ++j) {
+            CHECK(found.factors[i][j] == Visibility::marked_factor);
         }
-    }
-
-    TEST_CASE_FIXTURE(KeptSurfelTests, "only rays of new surfels are traced, and all are as from scratch") {
-        Visibility visibility(context->get_proc()), anew(context->get_proc());
-        move_sheet({0.1F, 0.2F, 0.0F});
-        Ids ids = some_ids(30, engine_);
-        CHECK(visibility.find(box_.world, ids) == anew.find_anew(box_.world, ids));
-        for (const std::size_t stay : {15U, 22U, 0U, 30U}) {
-            CAPTURE(stay);
-            Ids next = shuffled(ids, engine_);
-            next.resize(std::min(stay, next.size()));
-            for (const std::uint64_t id : some_ids(in_the_box, engine_)) {
-                if (next.size() % 7 == 6 && next.size() > stay) break;
-                if (std::ranges::count(ids, id) == 0) next.push_back(id);
-            }
-            next = shuffled(std::move(next), engine_);
-            const Found expected = anew.find_anew(box_.world, next);
-            Visibility marked(context->get_proc());
-            static_cast<void>(marked.find(box_.world, ids));
-            marked.mark();
-            const Found with_marks = marked.find(box_.world, next);
-            const auto stays = [&](std::size_t i) { return std::ranges::count(ids, next[i]) > 0; };
-            for (std::size_t i = 0; i < next.size(); ++i) {
-                for (std::size_t j = 0; j < next.size(); ++j) {
-                    const bool is_kept = stays(i) && stays(j);
-                    CHECK(with_marks.factors[i][j] ==
-                          (is_kept ? Visibility::marked_factor : expected.factors[i][j]));
-                }
-                CHECK(with_marks.cover[i][0] == (stays(i) ? Visibility::marked_hits : expected.cover[i][0]));
-            }
-            CHECK(visibility.find(box_.world, next) == expected);
-            ids = next;
-        }
-        ids = shuffled(std::move(ids), engine_);
-        CHECK(visibility.find(box_.world, ids) == anew.find_anew(box_.world, ids));
-    }
-
-    TEST_CASE_FIXTURE(KeptSurfelTests, "of many things that move, each has a box of its own") {
-        constexpr float half = 0.05F;
-        std::vector<Entity> sheets;
-        std::vector<Box>
-            boxes;  // at least 0.05 larger, where metres are far more than rays start above surfaces
-        for (int i = 0; i < 16; ++i) {
-            const auto bit = [&](int b) { return (i >> b & 1) != 0 ? 0.75F : -0.75F; };
-            const glm::vec3 place(bit(0), bit(1), bit(2) + ((i >> 3 & 1) != 0 ? 0.15F : -0.15F));
-            sheets.push_back(
-                add(box_.world, at(place), MeshInstance{square(half, diffuse(glm::vec3(0.5F)))}));
-            boxes.push_back({place - 0.1F, place + 0.1F});
-        }
-        Box all;
-        for (const Box& box : boxes) all.grow(box);
-        Visibility visibility(context->get_proc()), anew(context->get_proc());
-        const Ids ids = some_ids(in_the_box, engine_);
-        static_cast<void>(visibility.find(box_.world, ids));
-        for (const Entity sheet : sheets) {
-            box_.world.edit<Transform>(sheet, [](Transform& t) { t.translation += glm::vec3(0.01F); });
-        }
-        visibility.mark();
-        const Found found = visibility.find(box_.world, ids);
-        const Found expected = anew.find_anew(box_.world, ids);
-        std::size_t kept = 0, in_all = 0;
-        for (std::size_t i = 0; i < ids.size(); ++i) {
-            for (std::size_t j = 0; j < ids.size(); ++j) {
-                const glm::dvec3 from(cell_in_box(ids[i]).position), to(cell_in_box(ids[j]).position);
-                const auto is_met = [&](const Box& box) { return meets(box, from, to); };
-                if (std::ranges::any_of(boxes, is_met)) {
-                    const std::uint16_t factor = found.factors[i][j];
-                    CHECK((factor == expected.factors[i][j] || factor == Visibility::marked_factor));
-                } else {
-                    CHECK(found.factors[i][j] == Visibility::marked_factor);
-                    ++kept;
-                    if (is_met(all)) ++in_all;
-                }
-            }
-        }
-        // Most rays pass between the things.
-        CHECK(kept > ids.size() * ids.size() / 2);
-        CHECK(in_all > ids.size() * ids.size() / 4);
-        CHECK(kept < ids.size() * ids.size());
-        CHECK(visibility.find_anew(box_.world, ids) == expected);
-    }
-
-    TEST_CASE_FIXTURE(KeptSurfelTests,
-                      "rays between surfels that stay are traced again where something moves") {
-        Visibility visibility(context->get_proc()), anew(context->get_proc());
-        const Ids ids = some_ids(40, engine_);
-        move_sheet({0.0F, 0.95F, 0.0F});
-        const Found before = visibility.find(box_.world, ids);
-        move_sheet({0.0F, 0.0F, 0.0F});
-        Ids next = shuffled(ids, engine_);
-        next.resize(33);
-        const Found expected = anew.find_anew(box_.world, next);
-        CHECK(visibility.find(box_.world, next) == expected);
-        // The sheet hides some that were visible.
-        std::size_t hidden = 0;
-        for (std::size_t i = 0; i < next.size(); ++i) {
-            for (std::size_t j = 0; j < next.size(); ++j) {
-                const auto last = [&](std::size_t k) {
-                    return std::ranges::find(ids, next[k]) - ids.begin();
-                };
-                const auto row = static_cast<std::size_t>(last(i)),
-                           column = static_cast<std::size_t>(last(j));
-                if (before.factors[row][column] != 0 && expected.factors[i][j] == 0) ++hidden;
-            }
-        }
-        CHECK(hidden > 10);
-        // In place.
-        move_sheet({0.2F, 0.3F, 0.0F});
-        CHECK(visibility.find(box_.world, next) == anew.find_anew(box_.world, next));
+        CHECK(found.cover[i] == std::vector<std::uint32_t>(COVER_PARTS, Visibility::marked_hits));
     }
 }
+
+TEST_CASE_FIXTURE(KeptSurfelTests, "only rays of new surfels are traced, and all are as from scratch") {
+    Visibility visibility(context->get_proc()), anew(context->get_proc());
+    move_sheet({0.1F, 0.2F, 0.0F});
+    Ids ids = some_ids(30, engine_);
+    CHECK(visibility.find(box_.world, ids) == anew.find_anew(box_.world, ids));
+    for (const std::size_t stay : {15U, 22U, 0U, 30U}) {
+        CAPTURE(stay);
+        Ids next = shuffled(ids, engine_);
+        next.resize(std::min(stay, next.size()));
+        for (const std::uint64_t id : some_ids(in_the_box, engine_)) {
+            if (next.size() % 7 == 6 && next.size() > stay) break;
+            if (std::ranges::count(ids, id) == 0) next.push_back(id);
+        }
+        next = shuffled(std::move(next), engine_);
+        const Found expected = anew.find_anew(box_.world, next);
+        Visibility marked(context->get_proc());
+        static_cast<void>(marked.find(box_.world, ids));
+        marked.mark();
+        const Found with_marks = marked.find(box_.world, next);
+        const auto stays = [&](std::size_t i) { return std::ranges::count(ids, next[i]) > 0; };
+        for (std::size_t i = 0; i < next.size(); ++i) {
+            for (std::size_t j = 0; j < next.size(); ++j) {
+                const bool is_kept = stays(i) && stays(j);
+                CHECK(with_marks.factors[i][j] ==
+                      (is_kept ? Visibility::marked_factor : expected.factors[i][j]));
+            }
+            CHECK(with_marks.cover[i][0] == (stays(i) ? Visibility::marked_hits : expected.cover[i][0]));
+        }
+        CHECK(visibility.find(box_.world, next) == expected);
+        ids = next;
+    }
+    ids = shuffled(std::move(ids), engine_);
+    CHECK(visibility.find(box_.world, ids) == anew.find_anew(box_.world, ids));
+}
+
+TEST_CASE_FIXTURE(KeptSurfelTests, "of many things that move, each has a box of its own") {
+    constexpr float half = 0.05F;
+    std::vector<Entity> sheets;
+    std::vector<Box> boxes;  // at least 0.05 larger, where metres are far more than rays start above surfaces
+    for (int i = 0; i < 16; ++i) {
+        const auto bit = [&](int b) { return (i >> b & 1) != 0 ? 0.75F : -0.75F; };
+        const glm::vec3 place(bit(0), bit(1), bit(2) + ((i >> 3 & 1) != 0 ? 0.15F : -0.15F));
+        sheets.push_back(add(box_.world, at(place), MeshInstance{square(half, diffuse(glm::vec3(0.5F)))}));
+        boxes.push_back({place - 0.1F, place + 0.1F});
+    }
+    Box all;
+    for (const Box& box : boxes) all.grow(box);
+    Visibility visibility(context->get_proc()), anew(context->get_proc());
+    const Ids ids = some_ids(in_the_box, engine_);
+    static_cast<void>(visibility.find(box_.world, ids));
+    for (const Entity sheet : sheets) {
+        box_.world.edit<Transform>(sheet, [](Transform& t) { t.translation += glm::vec3(0.01F); });
+    }
+    visibility.mark();
+    const Found found = visibility.find(box_.world, ids);
+    const Found expected = anew.find_anew(box_.world, ids);
+    std::size_t kept = 0, in_all = 0;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        for (std::size_t j = 0; j < ids.size(); ++j) {
+            const glm::dvec3 from(cell_in_box(ids[i]).position), to(cell_in_box(ids[j]).position);
+            const auto is_met = [&](const Box& box) { return meets(box, from, to); };
+            if (std::ranges::any_of(boxes, is_met)) {
+                const std::uint16_t factor = found.factors[i][j];
+                CHECK((factor == expected.factors[i][j] || factor == Visibility::marked_factor));
+            } else {
+                CHECK(found.factors[i][j] == Visibility::marked_factor);
+                ++kept;
+                if (is_met(all)) ++in_all;
+            }
+        }
+    }
+    // Most rays pass between the things.
+    CHECK(kept > ids.size() * ids.size() / 2);
+    CHECK(in_all > ids.size() * ids.size() / 4);
+    CHECK(kept < ids.size() * ids.size());
+    CHECK(visibility.find_anew(box_.world, ids) == expected);
+}
+
+TEST_CASE_FIXTURE(KeptSurfelTests, "rays between surfels that stay are traced again where something moves") {
+    Visibility visibility(context->get_proc()), anew(context->get_proc());
+    const Ids ids = some_ids(40, engine_);
+    move_sheet({0.0F, 0.95F, 0.0F});
+    const Found before = visibility.find(box_.world, ids);
+    move_sheet({0.0F, 0.0F, 0.0F});
+    Ids next = shuffled(ids, engine_);
+    next.resize(33);
+    const Found expected = anew.find_anew(box_.world, next);
+    CHECK(visibility.find(box_.world, next) == expected);
+    // The sheet hides some that were visible.
+    std::size_t hidden = 0;
+    for (std::size_t i = 0; i < next.size(); ++i) {
+        for (std::size_t j = 0; j < next.size(); ++j) {
+            const auto last = [&](std::size_t k) { return std::ranges::find(ids, next[k]) - ids.begin(); };
+            const auto row = static_cast<std::size_t>(last(i)), column = static_cast<std::size_t>(last(j));
+            if (before.factors[row][column] != 0 && expected.factors[i][j] == 0) ++hidden;
+        }
+    }
+    CHECK(hidden > 10);
+    // In place.
+    move_sheet({0.2F, 0.3F, 0.0F});
+    CHECK(visibility.find(box_.world, next) == anew.find_anew(box_.world, next));
+}
+
+}  // TEST_SUITE("surfels: kept")

@@ -11,6 +11,8 @@
 
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("light leaks") {
+
 using namespace candela;
 
 namespace {
@@ -115,117 +117,117 @@ Transform towards_room(glm::vec3 lamp) {
 
 }  // namespace
 
-TEST_SUITE("light leaks") {
-    TEST_CASE_FIXTURE(LightLeakTests, "no pixel of a closed room of single walls is lit by a lamp outside") {
+TEST_CASE_FIXTURE(LightLeakTests, "no pixel of a closed room of single walls is lit by a lamp outside") {
+    Scene scene = furnace_box(0.5F);
+    for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
+        const Configuration configuration = direct_light(path);
+        check_dark(configuration, scene, [](glm::vec3 lamp) { return at(lamp); });
+        Scene other = scene;
+        other.world.remove<PointLight>(other.light);
+        // A cube map, a flat map, and that of parallel light.
+        other.world.set(other.light, SpotLight{.inner_cone = 1.2F, .outer_cone = 1.3F});
+        check_dark(configuration, other, towards_room);
+        other.world.set(other.light, SpotLight{.inner_cone = 0.8F, .outer_cone = 0.9F});
+        check_dark(configuration, other, towards_room);
+        other.world.remove<SpotLight>(other.light);
+        other.world.set(other.light, DirectionalLight{.illuminance = 5.0F});
+        check_dark(configuration, other, towards_room);
+    }
+}
+
+TEST_CASE_FIXTURE(LightLeakTests, "a closed room stays dark, at the origin and 100 km away") {
+    for (const glm::vec3 offset : {glm::vec3(0.0F), glm::vec3(1e5F, -1e5F, 1e5F)}) {
+        CAPTURE(offset.x);
+        CAPTURE(offset.y);
+        check_dark_at(offset, direct_light(ShadingPath::deferred), 0.0);
+        Configuration indirect = linear_configuration();
+        indirect.show = Show::indirect;
+        indirect.visibility = {.method = VplVisibility::rays, .map_resolution = 64};
+        indirect.vpls.count = 128;
+        indirect.vpls.placement = VplPlacement::paths;
+        check_dark_at(offset, indirect, 0.0);
+        // Far away, coordinates are multiples of 8 mm. The points of surfels within half of that of a
+        // wall's foot are rounded onto the other wall: 0.4 % of those of a wall of 2 m.
+        const double most_of_surfels = offset == glm::vec3(0.0F) ? 0.0 : 4e-3;
+        indirect.vpls.placement = VplPlacement::surfels;
+        check_dark_at(offset, indirect, most_of_surfels);
+        // A texel of a map that sees the ground below a wall's foot lights what is just above it.
+        indirect.visibility.method = VplVisibility::maps;
+        check_dark_at(offset, indirect, std::max(1e-3, most_of_surfels));
+    }
+}
+
+TEST_CASE_FIXTURE(LightLeakTests,
+                  "what a plane hides gets no light from VPLs behind the height of the lift") {
+    // Ground, a plate above it and a ceiling above the plate. Seen from below the plate is culled, but it
+    // is in the way of light. The ceiling is lifted by at most 0.1 m: (ρ + 0.1 r) sin δ, with ρ < 1.1 m,
+    // r < 1.6 m and sin δ < 2√2 √3 / 64.
+    constexpr float gap = 0.15F;
+    const glm::quat downwards = glm::angleAxis(glm::pi<float>(), glm::vec3(1, 0, 0));
+    Scene scene;
+    add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.8F)))});
+    add(scene.world, at({0, 1, 0}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+    add(scene.world, Transform{.translation = {0, 1.0F + gap, 0}, .rotation = downwards},
+        MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
+    scene.light = add(scene.world, at({0.1F, 0.5F, 0.2F}), PointLight{});
+    scene.camera = add(scene.world, looking({0.0F, 0.6F, 0.0F}, {0.0F, 2.0F, 0.0F}, {0, 0, 1}), Camera{});
+    const auto light_by = [&](VplVisibility method) {
+        configure(vpl_light(VplPlacement::paths, method));
+        return mean(render(scene, small));
+    };
+    const double unhidden = light_by(VplVisibility::none);
+    REQUIRE(unhidden > 0.0);
+    CHECK(light_by(VplVisibility::rays) == 0.0);
+    // Four faces of the octahedron meet along the two diagonals of a map. There, in a strip two texels
+    // wide along each, look-ups do not see that it is one plane. Depths of texels alone would let 0.4 %
+    // through.
+    CHECK(light_by(VplVisibility::maps) < 0.004 * 4.0 / 64.0 * unhidden);
+}
+
+TEST_CASE_FIXTURE(LightLeakTests,
+                  "a room behind a thin wall of a lit one gets a thousandth of its light at most") {
+    for (const float thickness : {0.01F, 0.001F}) {
+        CAPTURE(thickness);
         Scene scene = furnace_box(0.5F);
-        for (const ShadingPath path : {ShadingPath::deferred, ShadingPath::forward}) {
-            const Configuration configuration = direct_light(path);
-            check_dark(configuration, scene, [](glm::vec3 lamp) { return at(lamp); });
-            Scene other = scene;
-            other.world.remove<PointLight>(other.light);
-            // A cube map, a flat map, and that of parallel light.
-            other.world.set(other.light, SpotLight{.inner_cone = 1.2F, .outer_cone = 1.3F});
-            check_dark(configuration, other, towards_room);
-            other.world.set(other.light, SpotLight{.inner_cone = 0.8F, .outer_cone = 0.9F});
-            check_dark(configuration, other, towards_room);
-            other.world.remove<SpotLight>(other.light);
-            other.world.set(other.light, DirectionalLight{.illuminance = 5.0F});
-            check_dark(configuration, other, towards_room);
-        }
-    }
-
-    TEST_CASE_FIXTURE(LightLeakTests, "a closed room stays dark, at the origin and 100 km away") {
-        for (const glm::vec3 offset : {glm::vec3(0.0F), glm::vec3(1e5F, -1e5F, 1e5F)}) {
-            CAPTURE(offset.x);
-            CAPTURE(offset.y);
-            check_dark_at(offset, direct_light(ShadingPath::deferred), 0.0);
-            Configuration indirect = linear_configuration();
-            indirect.show = Show::indirect;
-            indirect.visibility = {.method = VplVisibility::rays, .map_resolution = 64};
-            indirect.vpls.count = 128;
-            indirect.vpls.placement = VplPlacement::paths;
-            check_dark_at(offset, indirect, 0.0);
-            // Far away, coordinates are multiples of 8 mm. The points of surfels within half of that of a
-            // wall's foot are rounded onto the other wall: 0.4 % of those of a wall of 2 m.
-            const double most_of_surfels = offset == glm::vec3(0.0F) ? 0.0 : 4e-3;
-            indirect.vpls.placement = VplPlacement::surfels;
-            check_dark_at(offset, indirect, most_of_surfels);
-            // A texel of a map that sees the ground below a wall's foot lights what is just above it.
-            indirect.visibility.method = VplVisibility::maps;
-            check_dark_at(offset, indirect, std::max(1e-3, most_of_surfels));
-        }
-    }
-
-    TEST_CASE_FIXTURE(LightLeakTests,
-                      "what a plane hides gets no light from VPLs behind the height of the lift") {
-        // Ground, a plate above it and a ceiling above the plate. Seen from below the plate is culled, but it
-        // is in the way of light. The ceiling is lifted by at most 0.1 m: (ρ + 0.1 r) sin δ, with ρ < 1.1 m,
-        // r < 1.6 m and sin δ < 2√2 √3 / 64.
-        constexpr float gap = 0.15F;
-        const glm::quat downwards = glm::angleAxis(glm::pi<float>(), glm::vec3(1, 0, 0));
-        Scene scene;
-        add(scene.world, Transform{}, MeshInstance{square(1.0F, diffuse(glm::vec3(0.8F)))});
-        add(scene.world, at({0, 1, 0}), MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
-        add(scene.world, Transform{.translation = {0, 1.0F + gap, 0}, .rotation = downwards},
-            MeshInstance{square(4.0F, diffuse(glm::vec3(0.8F)))});
-        scene.light = add(scene.world, at({0.1F, 0.5F, 0.2F}), PointLight{});
-        scene.camera = add(scene.world, looking({0.0F, 0.6F, 0.0F}, {0.0F, 2.0F, 0.0F}, {0, 0, 1}), Camera{});
-        const auto light_by = [&](VplVisibility method) {
-            configure(vpl_light(VplPlacement::paths, method));
-            return mean(render(scene, small));
-        };
-        const double unhidden = light_by(VplVisibility::none);
-        REQUIRE(unhidden > 0.0);
-        CHECK(light_by(VplVisibility::rays) == 0.0);
-        // Four faces of the octahedron meet along the two diagonals of a map. There, in a strip two texels
-        // wide along each, look-ups do not see that it is one plane. Depths of texels alone would let 0.4 %
-        // through.
-        CHECK(light_by(VplVisibility::maps) < 0.004 * 4.0 / 64.0 * unhidden);
-    }
-
-    TEST_CASE_FIXTURE(LightLeakTests,
-                      "a room behind a thin wall of a lit one gets a thousandth of its light at most") {
-        for (const float thickness : {0.01F, 0.001F}) {
-            CAPTURE(thickness);
-            Scene scene = furnace_box(0.5F);
-            const glm::vec3 beyond(2.0F + thickness, 0.0F, 0.0F);
-            add(scene.world, at(beyond), MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.8F)))});
-            scene.world.set(scene.light, at(beyond + glm::vec3(0.2F, 0.3F, -0.1F)));
-            for (const VplPlacement placement : {VplPlacement::surfels, VplPlacement::paths}) {
-                CAPTURE(to_string(placement));
-                for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays}) {
-                    CAPTURE(to_string(method));
-                    configure(vpl_light(placement, method));
-                    scene.world.set(scene.camera, looking(beyond + glm::vec3(0.0F, 0.0F, 0.9F), beyond));
-                    const double bright = mean(render(scene, small));
-                    REQUIRE(bright > 0.1);
-                    // Texels that see both the wall and the floor in front of it let some light through.
-                    const bool maps = method == VplVisibility::maps;
-                    const double most = maps ? 1e-3 * bright : 0.0;
-                    for (const Transform& view : {looking({-0.5F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}),
-                                                  looking({0.2F, -0.2F, 0.1F}, {1.0F, -1.0F, 0.7F})}) {
-                        scene.world.set(scene.camera, view);
-                        CHECK(mean(render(scene, maps ? size : size / 2U)) <= most);
-                    }
+        const glm::vec3 beyond(2.0F + thickness, 0.0F, 0.0F);
+        add(scene.world, at(beyond), MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.8F)))});
+        scene.world.set(scene.light, at(beyond + glm::vec3(0.2F, 0.3F, -0.1F)));
+        for (const VplPlacement placement : {VplPlacement::surfels, VplPlacement::paths}) {
+            CAPTURE(to_string(placement));
+            for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays}) {
+                CAPTURE(to_string(method));
+                configure(vpl_light(placement, method));
+                scene.world.set(scene.camera, looking(beyond + glm::vec3(0.0F, 0.0F, 0.9F), beyond));
+                const double bright = mean(render(scene, small));
+                REQUIRE(bright > 0.1);
+                // Texels that see both the wall and the floor in front of it let some light through.
+                const bool maps = method == VplVisibility::maps;
+                const double most = maps ? 1e-3 * bright : 0.0;
+                for (const Transform& view : {looking({-0.5F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}),
+                                              looking({0.2F, -0.2F, 0.1F}, {1.0F, -1.0F, 0.7F})}) {
+                    scene.world.set(scene.camera, view);
+                    CHECK(mean(render(scene, maps ? size : size / 2U)) <= most);
                 }
             }
         }
     }
-
-    TEST_CASE_FIXTURE(GlFixture, "a scene so far from the origin that rounding shows is warned of once") {
-        std::vector<std::string> lines;
-        TestedRenderer renderer(context->get_proc(),
-                                {.log = [&](std::string_view line) { lines.emplace_back(line); }});
-        REQUIRE(renderer.configure(linear_configuration()).empty());
-        const RenderTarget target(device, {16, 12});
-        for (const float away : {0.0F, 1e3F, 1e5F, 1.1e5F}) {
-            Scene scene = room_above_ground();
-            translate(scene.world, {away, 0.0F, 0.0F});
-            renderer.render(scene.world, scene.camera, target.target());
-            CHECK(lines.size() == (away < 1e5F ? 0 : 1));
-        }
-        CHECK(lines.front() ==
-              "the scene is so far from the origin that positions are rounded to 7.8 mm: light may leak "
-              "where surfaces meet and through thin walls");
-    }
 }
+
+TEST_CASE_FIXTURE(GlFixture, "a scene so far from the origin that rounding shows is warned of once") {
+    std::vector<std::string> lines;
+    TestedRenderer renderer(context->get_proc(),
+                            {.log = [&](std::string_view line) { lines.emplace_back(line); }});
+    REQUIRE(renderer.configure(linear_configuration()).empty());
+    const RenderTarget target(device, {16, 12});
+    for (const float away : {0.0F, 1e3F, 1e5F, 1.1e5F}) {
+        Scene scene = room_above_ground();
+        translate(scene.world, {away, 0.0F, 0.0F});
+        renderer.render(scene.world, scene.camera, target.target());
+        CHECK(lines.size() == (away < 1e5F ? 0 : 1));
+    }
+    CHECK(lines.front() ==
+          "the scene is so far from the origin that positions are rounded to 7.8 mm: light may leak "
+          "where surfaces meet and through thin walls");
+}
+
+}  // TEST_SUITE("light leaks")

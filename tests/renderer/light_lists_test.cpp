@@ -12,6 +12,8 @@
 #include <candela/scene/hierarchy.hpp>
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("light lists") {
+
 using namespace candela;
 
 namespace {
@@ -92,28 +94,27 @@ double mean_lit(const Scene& scene, glm::uvec2 size, std::uint32_t tile_size) {
 
 }  // namespace
 
-TEST_SUITE("light lists") {
-    TEST_CASE_FIXTURE(PathFixture,
-                      "lists bounded by depth contain few lights that reach no visible surface") {
-        const Scene scene = shipped_scene("hall-256");
-        constexpr glm::uvec2 size{160, 120};
-        const auto listed = [&](ShadingPath path) {
-            Configuration configuration = direct_only();
-            configuration.path = path;
-            configure(configuration);
-            static_cast<void>(render(scene, size));
-            return renderer.report().lights.tile_mean;
-        };
-        const double lit = mean_lit(scene, size, renderer.configuration().lists.tile_size);
-        const double bound = listed(ShadingPath::forward_plus);
-        const double unbound = listed(ShadingPath::tiled_forward);
-        MESSAGE("hall-256 at 160 × 120: in the mean a tile's surfaces are lit by ", lit,
-                " lights; its list holds ", bound, " bound by depth (", bound / lit, " times as many) and ",
-                unbound, " unbound");
-        REQUIRE(lit > 1.0);
-        CHECK(bound >= lit);
-        CHECK(bound <= 3.0 * lit);
-        CHECK(bound < unbound);
-        CHECK(listed(ShadingPath::tiled_deferred) == bound);
-    }
+TEST_CASE_FIXTURE(PathFixture, "lists bounded by depth contain few lights that reach no visible surface") {
+    const Scene scene = shipped_scene("hall-256");
+    constexpr glm::uvec2 size{160, 120};
+    const auto listed = [&](ShadingPath path) {
+        Configuration configuration = direct_only();
+        configuration.path = path;
+        configure(configuration);
+        static_cast<void>(render(scene, size));
+        return renderer.report().lights.tile_mean;
+    };
+    const double lit = mean_lit(scene, size, renderer.configuration().lists.tile_size);
+    const double bound = listed(ShadingPath::forward_plus);
+    const double unbound = listed(ShadingPath::tiled_forward);
+    MESSAGE("hall-256 at 160 × 120: in the mean a tile's surfaces are lit by ", lit,
+            " lights; its list holds ", bound, " bound by depth (", bound / lit, " times as many) and ",
+            unbound, " unbound");
+    REQUIRE(lit > 1.0);
+    CHECK(bound >= lit);
+    CHECK(bound <= 3.0 * lit);
+    CHECK(bound < unbound);
+    CHECK(listed(ShadingPath::tiled_deferred) == bound);
 }
+
+}  // TEST_SUITE("light lists")

@@ -8,6 +8,8 @@
 
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("masks") {
+
 using namespace candela;
 
 namespace {
@@ -151,145 +153,144 @@ double relative_to(glm::dvec3 difference, glm::dvec3 whole) {
 
 }  // namespace
 
-TEST_SUITE("masks") {
-    TEST_CASE_FIXTURE(
-        Masks, "a masked surface is visible where alpha reaches the cutoff, and transparent elsewhere") {
-        Scene scene = masked_scene(0.5F);
-        scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
-        scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F, .casts_shadow = false});
-        for (const ShadingPath path : all_shading_paths) {
-            CAPTURE(to_string(path));
-            check(
-                scene, direct_light(scene, path),
-                [](const PixelRay& ray) { return spot_at(meets(ray.origin, ray.direction, 0.5)); },
-                [](Spot spot, std::uint32_t) { return 2.0 / pi * (spot == Spot::solid ? 0.9 : 0.5); });
-        }
+TEST_CASE_FIXTURE(Masks,
+                  "a masked surface is visible where alpha reaches the cutoff, and transparent elsewhere") {
+    Scene scene = masked_scene(0.5F);
+    scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+    scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F, .casts_shadow = false});
+    for (const ShadingPath path : all_shading_paths) {
+        CAPTURE(to_string(path));
+        check(
+            scene, direct_light(scene, path),
+            [](const PixelRay& ray) { return spot_at(meets(ray.origin, ray.direction, 0.5)); },
+            [](Spot spot, std::uint32_t) { return 2.0 / pi * (spot == Spot::solid ? 0.9 : 0.5); });
     }
+}
 
-    TEST_CASE_FIXTURE(Masks, "an alpha equal to the cutoff is opaque, a lower one is a hole") {
-        for (const float alpha : {0.5F, 0.499F}) {
-            CAPTURE(alpha);
-            Scene scene = ground();
-            Material material = *masked(0.9F, alpha);
-            material.alpha_cutoff = 0.5F;
-            add(scene.world, at({0, 0.5F, 0}),
-                MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
-            scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
-            scene.world.set(scene.light, DirectionalLight{});
-            for (const ShadingPath path : all_shading_paths) {
-                const double albedo = alpha < 0.5F ? 0.5 : 0.9;
-                const double radiance = static_cast<double>(direct_light(scene, path).at(48, 32).r);
-                CHECK(std::abs(radiance - albedo / pi) < tolerance / pi);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(Masks, "light passes through holes that are finer than a traced image of a colour is") {
-        Image stripes{.width = 1024, .height = 1024, .texels = {}};
-        for (std::uint32_t i = 0; i < stripes.width * stripes.height; ++i) {
-            stripes.texels.emplace_back(255, 255, 255, i / 2 % 2 * 255);
-        }
+TEST_CASE_FIXTURE(Masks, "an alpha equal to the cutoff is opaque, a lower one is a hole") {
+    for (const float alpha : {0.5F, 0.499F}) {
+        CAPTURE(alpha);
         Scene scene = ground();
-        add(scene.world, at({0, static_cast<float>(shading_height), 0}),
-            MeshInstance{square(static_cast<float>(half),
-                                masked(0.9F, factor_alpha, std::make_shared<const Image>(stripes)))});
-        scene.world.set(scene.camera, looking({0.4F, 1.3F, 1.0F}, {0, 0, 0}));
-        scene.world.set(scene.light, looking({0.1F, 1, 0}, {0, 0, 0}));
-        scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F});
-        // A stripe is two texels wide. Alpha rises linearly between the middles of neighbouring texels, and
-        // reaches the cutoff after 0.375 of a texel: 1.75 texels of four are holes.
-        const double lit = mean(direct_light(scene, ShadingPath::deferred, false));
-        const double through = mean(direct_light(scene, ShadingPath::deferred));
-        // 6,144 pixels: five times the deviation of the mean of as many random places.
-        CHECK(std::abs(through / lit - 1.75 / 4.0) < 0.03);
-    }
-
-    TEST_CASE_FIXTURE(Masks,
-                      "light passes through the holes: shadows of directional, spot and point lights") {
-        // The square is above the camera and invisible.
-        Scene scene = masked_scene(static_cast<float>(shading_height));
-        scene.world.set(scene.camera, looking({0, 1.2F, 0.6F}, {0, 0, 0}));
-        scene.world.set(scene.camera, Camera{.vertical_fov = 1.6F});
-        SUBCASE("sun") {
-            const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2, -1.0, 0.1));
-            scene.world.set(scene.light, looking({0, 0, 0}, glm::vec3(direction)));
-            scene.world.set(scene.light, DirectionalLight{});
-            check_shadow(scene, [&](glm::dvec3) { return direction; });
-        }
-        const glm::dvec3 light(0.2, 5.0, 0.1);
-        const auto from_light = [&](glm::dvec3 point) { return point - light; };
-        SUBCASE("spot") {
-            scene.world.set(scene.light, looking(glm::vec3(light), {0.2F, 0.0F, 0.1F}, {0, 0, 1}));
-            scene.world.set(scene.light, SpotLight{.inner_cone = 0.9F, .outer_cone = 1.0F});
-            check_shadow(scene, from_light);
-        }
-        SUBCASE("point") {
-            scene.world.set(scene.light, at(glm::vec3(light)));
-            scene.world.set(scene.light, PointLight{});
-            check_shadow(scene, from_light);
-        }
-    }
-
-    TEST_CASE_FIXTURE(Masks, "a surface that is all hole changes nothing") {
-        Scene without = ground();
-        Scene with = ground();
-        add(with.world, at({0, 0.7F, 0}), MeshInstance{square(1.0F, masked(0.9F, 0.2F))});
-        for (Scene* scene : {&without, &with}) {
-            scene->world.set(scene->light, at({0.1F, 1.5F, 0.2F}));
-            scene->world.set(scene->light, PointLight{});
-        }
-        const VplSettings settings{.count = 500, .bounces = 1};
-        const EnergyAccount expected = trace(without, settings);
-        const EnergyAccount found = trace(with, settings);
-        CHECK(found.absorbed == expected.absorbed);
-        CHECK(found.escaped == expected.escaped);
-        CHECK(found.truncated == expected.truncated);
-
-        const Picture picture = direct_light(without, ShadingPath::forward);
-        CHECK(mean(picture) > 0.01);
-        CHECK(direct_light(with, ShadingPath::forward) == picture);
-    }
-
-    TEST_CASE_FIXTURE(Masks, "for traced light, too, an alpha equal to the cutoff is opaque") {
-        const auto traced = [&](float alpha) {
-            Scene scene = ground();
-            scene.world.set(scene.light, at({0.1F, 1.5F, 0.2F}));
-            scene.world.set(scene.light, PointLight{});
-            Material material = *masked(0.9F, alpha);
-            material.alpha_cutoff = 0.5F;
-            add(scene.world, at({0, 0.7F, 0}),
-                MeshInstance{square(1.0F, std::make_shared<const Material>(std::move(material)))});
-            return trace(scene, {.count = 500, .bounces = 1}).absorbed;
-        };
-        // The square absorbs 0.1 of what meets it, the ground 0.5.
-        CHECK(traced(0.5F) == traced(1.0F));
-        CHECK(traced(0.499F).r > traced(1.0F).r);
-    }
-
-    TEST_CASE_FIXTURE(Masks, "traced light passes through the holes and no energy is lost") {
-        // The light is 0.5 m below a square of half width 0.5 m, which covers a sixth of its directions (one
-        // face of a cube around it). The checkerboard maps onto itself with solid blocks and holes exchanged
-        // when it is rotated by 90°, so the solid blocks absorb half of that.
-        const auto checker = [](std::uint32_t x, std::uint32_t y) {
-            return static_cast<std::uint8_t>((x + y) % 2 * 255);
-        };
-        // The larger image is traced at a reduced resolution.
-        for (const std::uint32_t texels : {64U, 512U}) {
-            CAPTURE(texels);
-            Scene scene = furnace_box(1.0F);
-            scene.world.set(scene.light, at({0, 0, 0}));
-            add(scene.world, at({0, 0.5F, 0}),
-                MeshInstance{square(0.5F, masked(0.0F, 0.6F, block_image(texels, checker)))});
-            const EnergyAccount once = trace(scene, {.count = 4000, .bounces = 1});
-            CHECK(relative_to(once.absorbed + once.truncated - once.emitted, once.emitted) < 1e-4);
-            // The error of 4,000 low-discrepancy points on 8 blocks is of the order of 10 · log N / N.
-            CHECK(relative_to(once.absorbed - once.emitted / 12.0, once.emitted) < 0.01);
-
-            const EnergyAccount flux = trace(scene, {.count = 4000, .bounces = 8});
-            const glm::dvec3 accounted = flux.absorbed + flux.escaped + flux.truncated + flux.roulette;
-            CHECK(relative_to(accounted - flux.emitted, flux.emitted) < 1e-3);
-            CHECK(flux.escaped == glm::dvec3(0.0));
-            CHECK(flux.absorbed.r > once.absorbed.r);
+        Material material = *masked(0.9F, alpha);
+        material.alpha_cutoff = 0.5F;
+        add(scene.world, at({0, 0.5F, 0}),
+            MeshInstance{square(4.0F, std::make_shared<const Material>(std::move(material)))});
+        scene.world.set(scene.light, looking({0, 1, 0}, {0, 0, 0}, {0, 0, 1}));
+        scene.world.set(scene.light, DirectionalLight{});
+        for (const ShadingPath path : all_shading_paths) {
+            const double albedo = alpha < 0.5F ? 0.5 : 0.9;
+            const double radiance = static_cast<double>(direct_light(scene, path).at(48, 32).r);
+            CHECK(std::abs(radiance - albedo / pi) < tolerance / pi);
         }
     }
 }
+
+TEST_CASE_FIXTURE(Masks, "light passes through holes that are finer than a traced image of a colour is") {
+    Image stripes{.width = 1024, .height = 1024, .texels = {}};
+    for (std::uint32_t i = 0; i < stripes.width * stripes.height; ++i) {
+        stripes.texels.emplace_back(255, 255, 255, i / 2 % 2 * 255);
+    }
+    Scene scene = ground();
+    add(scene.world, at({0, static_cast<float>(shading_height), 0}),
+        MeshInstance{square(static_cast<float>(half),
+                            masked(0.9F, factor_alpha, std::make_shared<const Image>(stripes)))});
+    scene.world.set(scene.camera, looking({0.4F, 1.3F, 1.0F}, {0, 0, 0}));
+    scene.world.set(scene.light, looking({0.1F, 1, 0}, {0, 0, 0}));
+    scene.world.set(scene.light, DirectionalLight{.illuminance = 2.0F});
+    // A stripe is two texels wide. Alpha rises linearly between the middles of neighbouring texels, and
+    // reaches the cutoff after 0.375 of a texel: 1.75 texels of four are holes.
+    const double lit = mean(direct_light(scene, ShadingPath::deferred, false));
+    const double through = mean(direct_light(scene, ShadingPath::deferred));
+    // 6,144 pixels: five times the deviation of the mean of as many random places.
+    CHECK(std::abs(through / lit - 1.75 / 4.0) < 0.03);
+}
+
+TEST_CASE_FIXTURE(Masks, "light passes through the holes: shadows of directional, spot and point lights") {
+    // The square is above the camera and invisible.
+    Scene scene = masked_scene(static_cast<float>(shading_height));
+    scene.world.set(scene.camera, looking({0, 1.2F, 0.6F}, {0, 0, 0}));
+    scene.world.set(scene.camera, Camera{.vertical_fov = 1.6F});
+    SUBCASE("sun") {
+        const glm::dvec3 direction = glm::normalize(glm::dvec3(0.2, -1.0, 0.1));
+        scene.world.set(scene.light, looking({0, 0, 0}, glm::vec3(direction)));
+        scene.world.set(scene.light, DirectionalLight{});
+        check_shadow(scene, [&](glm::dvec3) { return direction; });
+    }
+    const glm::dvec3 light(0.2, 5.0, 0.1);
+    const auto from_light = [&](glm::dvec3 point) { return point - light; };
+    SUBCASE("spot") {
+        scene.world.set(scene.light, looking(glm::vec3(light), {0.2F, 0.0F, 0.1F}, {0, 0, 1}));
+        scene.world.set(scene.light, SpotLight{.inner_cone = 0.9F, .outer_cone = 1.0F});
+        check_shadow(scene, from_light);
+    }
+    SUBCASE("point") {
+        scene.world.set(scene.light, at(glm::vec3(light)));
+        scene.world.set(scene.light, PointLight{});
+        check_shadow(scene, from_light);
+    }
+}
+
+TEST_CASE_FIXTURE(Masks, "a surface that is all hole changes nothing") {
+    Scene without = ground();
+    Scene with = ground();
+    add(with.world, at({0, 0.7F, 0}), MeshInstance{square(1.0F, masked(0.9F, 0.2F))});
+    for (Scene* scene : {&without, &with}) {
+        scene->world.set(scene->light, at({0.1F, 1.5F, 0.2F}));
+        scene->world.set(scene->light, PointLight{});
+    }
+    const VplSettings settings{.count = 500, .bounces = 1};
+    const EnergyAccount expected = trace(without, settings);
+    const EnergyAccount found = trace(with, settings);
+    CHECK(found.absorbed == expected.absorbed);
+    CHECK(found.escaped == expected.escaped);
+    CHECK(found.truncated == expected.truncated);
+
+    const Picture picture = direct_light(without, ShadingPath::forward);
+    CHECK(mean(picture) > 0.01);
+    CHECK(direct_light(with, ShadingPath::forward) == picture);
+}
+
+TEST_CASE_FIXTURE(Masks, "for traced light, too, an alpha equal to the cutoff is opaque") {
+    const auto traced = [&](float alpha) {
+        Scene scene = ground();
+        scene.world.set(scene.light, at({0.1F, 1.5F, 0.2F}));
+        scene.world.set(scene.light, PointLight{});
+        Material material = *masked(0.9F, alpha);
+        material.alpha_cutoff = 0.5F;
+        add(scene.world, at({0, 0.7F, 0}),
+            MeshInstance{square(1.0F, std::make_shared<const Material>(std::move(material)))});
+        return trace(scene, {.count = 500, .bounces = 1}).absorbed;
+    };
+    // The square absorbs 0.1 of what meets it, the ground 0.5.
+    CHECK(traced(0.5F) == traced(1.0F));
+    CHECK(traced(0.499F).r > traced(1.0F).r);
+}
+
+TEST_CASE_FIXTURE(Masks, "traced light passes through the holes and no energy is lost") {
+    // The light is 0.5 m below a square of half width 0.5 m, which covers a sixth of its directions (one
+    // face of a cube around it). The checkerboard maps onto itself with solid blocks and holes exchanged
+    // when it is rotated by 90°, so the solid blocks absorb half of that.
+    const auto checker = [](std::uint32_t x, std::uint32_t y) {
+        return static_cast<std::uint8_t>((x + y) % 2 * 255);
+    };
+    // The larger image is traced at a reduced resolution.
+    for (const std::uint32_t texels : {64U, 512U}) {
+        CAPTURE(texels);
+        Scene scene = furnace_box(1.0F);
+        scene.world.set(scene.light, at({0, 0, 0}));
+        add(scene.world, at({0, 0.5F, 0}),
+            MeshInstance{square(0.5F, masked(0.0F, 0.6F, block_image(texels, checker)))});
+        const EnergyAccount once = trace(scene, {.count = 4000, .bounces = 1});
+        CHECK(relative_to(once.absorbed + once.truncated - once.emitted, once.emitted) < 1e-4);
+        // The error of 4,000 low-discrepancy points on 8 blocks is of the order of 10 · log N / N.
+        CHECK(relative_to(once.absorbed - once.emitted / 12.0, once.emitted) < 0.01);
+
+        const EnergyAccount flux = trace(scene, {.count = 4000, .bounces = 8});
+        const glm::dvec3 accounted = flux.absorbed + flux.escaped + flux.truncated + flux.roulette;
+        CHECK(relative_to(accounted - flux.emitted, flux.emitted) < 1e-3);
+        CHECK(flux.escaped == glm::dvec3(0.0));
+        CHECK(flux.absorbed.r > once.absorbed.r);
+    }
+}
+
+}  // TEST_SUITE("masks")

@@ -11,6 +11,8 @@
 
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("paths: random scenes") {
+
 using namespace candela;
 
 namespace {
@@ -192,19 +194,19 @@ bool holds(int rounds, Property property) {
 
 }  // namespace
 
-TEST_SUITE("paths: random scenes") {
-    TEST_CASE_FIXTURE(PathFixture, "every path gives the picture of forward: random scenes") {
-        const auto measure = [&](const ScenePlan& plan) {
-            return worst_path(build(plan), {64, 48}, configuration_of(plan));
-        };
-        // Random scenes may be dark; this one must not be.
-        const ScenePlan lit{.lights = {{.from = {0, 20, 0}, .range = 5}}, .eye = {0, 0, 40}};
-        CHECK(measure(lit).reference_mean > 0.0);
-        CHECK(holds(15, [&] {
-            const ScenePlan plan = *scene_plans();
-            const PathError worst = measure(plan);
-            RC_LOG() << plan << to_string(worst.path) << " is off by " << worst.error << '\n';
-            RC_ASSERT(worst.error < path_tolerance);
-        }));
-    }
+TEST_CASE_FIXTURE(PathFixture, "every path gives the picture of forward: random scenes") {
+    const auto measure = [&](const ScenePlan& plan) {
+        return worst_path(build(plan), {64, 48}, configuration_of(plan));
+    };
+    // Random scenes may be dark; this one must not be.
+    const ScenePlan lit{.lights = {{.from = {0, 20, 0}, .range = 5}}, .eye = {0, 0, 40}};
+    CHECK(measure(lit).reference_mean > 0.0);
+    CHECK(holds(15, [&] {
+        const ScenePlan plan = *scene_plans();
+        const PathError worst = measure(plan);
+        RC_LOG() << plan << to_string(worst.path) << " is off by " << worst.error << '\n';
+        RC_ASSERT(worst.error < path_tolerance);
+    }));
 }
+
+}  // TEST_SUITE("paths: random scenes")

@@ -15,6 +15,8 @@
 
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("paths agree") {
+
 using namespace candela;
 
 namespace {
@@ -277,61 +279,61 @@ class PathsAgree : public PathFixture {
 
 }  // namespace
 
-TEST_SUITE("paths agree") {
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: lights around the view, and across its planes") {
-        check_all(lights_around_the_view());
-    }
-
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: cameras in walls, without perspective; tiny lights, spots") {
-        check_all(cameras_and_lights());
-    }
-
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: targets of all shapes, cells of all sizes") {
-        check_all(shapes_of_targets());
-        check_all(sizes_of_cells());
-    }
-
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: many lights, also ten thousand in one tile") {
-        check_all(shipped_with_many_lights());
-        constexpr int count = 10'000;
-        std::vector<Point> points;
-        for (int i = 0; i < count; ++i) {
-            const glm::vec3 spread = glm::fract(static_cast<float>(i) * glm::vec3(0.618F, 0.382F, 0.755F));
-            points.push_back({glm::vec3(-1.6F, -1.0F, -1.95F) + 0.2F * spread, 0.15F});
-        }
-        // One of 3 × 2 tiles sees the corner of the room where the lights are.
-        check_paths(room_with(points), {33, 17}, direct_only());
-        const LightReport lights = renderer.report().lights;
-        CHECK(lights.global == 0);
-        CHECK(lights.tile_max == count);
-    }
-
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: shadows, VPLs and blended surfaces") {
-        check_all(shadows_and_vpls());
-    }
-
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: lamps and skies") {
-        check_all(lamps_and_skies());
-    }
-
-    TEST_CASE_FIXTURE(PathsAgree, "paths agree: VPLs with visibility by rays") {
-        // At the edge of a shadow, the rounding of a position decides about a whole VPL.
-        const Scene scene = cornell_box();
-        Configuration configuration = vpls(VplVisibility::rays);
-        Picture reference;
-        for (const ShadingPath path : all_shading_paths) {
-            CAPTURE(to_string(path));
-            configuration.path = path;
-            configure(configuration);
-            const Picture picture = render(scene, few_tiles);
-            if (path == ShadingPath::forward) reference = picture;
-            std::size_t off = 0;
-            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-                const glm::vec3 difference = glm::abs(picture.pixels[i] - reference.pixels[i]);
-                off += glm::length(difference) > 1e-3F * glm::length(reference.pixels[i]) ? 1 : 0;
-            }
-            CHECK(off <= picture.pixels.size() / 500);
-        }
-        CHECK(mean(reference) > 0.0);
-    }
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: lights around the view, and across its planes") {
+    check_all(lights_around_the_view());
 }
+
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: cameras in walls, without perspective; tiny lights, spots") {
+    check_all(cameras_and_lights());
+}
+
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: targets of all shapes, cells of all sizes") {
+    check_all(shapes_of_targets());
+    check_all(sizes_of_cells());
+}
+
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: many lights, also ten thousand in one tile") {
+    check_all(shipped_with_many_lights());
+    constexpr int count = 10'000;
+    std::vector<Point> points;
+    for (int i = 0; i < count; ++i) {
+        const glm::vec3 spread = glm::fract(static_cast<float>(i) * glm::vec3(0.618F, 0.382F, 0.755F));
+        points.push_back({glm::vec3(-1.6F, -1.0F, -1.95F) + 0.2F * spread, 0.15F});
+    }
+    // One of 3 × 2 tiles sees the corner of the room where the lights are.
+    check_paths(room_with(points), {33, 17}, direct_only());
+    const LightReport lights = renderer.report().lights;
+    CHECK(lights.global == 0);
+    CHECK(lights.tile_max == count);
+}
+
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: shadows, VPLs and blended surfaces") {
+    check_all(shadows_and_vpls());
+}
+
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: lamps and skies") {
+    check_all(lamps_and_skies());
+}
+
+TEST_CASE_FIXTURE(PathsAgree, "paths agree: VPLs with visibility by rays") {
+    // At the edge of a shadow, the rounding of a position decides about a whole VPL.
+    const Scene scene = cornell_box();
+    Configuration configuration = vpls(VplVisibility::rays);
+    Picture reference;
+    for (const ShadingPath path : all_shading_paths) {
+        CAPTURE(to_string(path));
+        configuration.path = path;
+        configure(configuration);
+        const Picture picture = render(scene, few_tiles);
+        if (path == ShadingPath::forward) reference = picture;
+        std::size_t off = 0;
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            const glm::vec3 difference = glm::abs(picture.pixels[i] - reference.pixels[i]);
+            off += glm::length(difference) > 1e-3F * glm::length(reference.pixels[i]) ? 1 : 0;
+        }
+        CHECK(off <= picture.pixels.size() / 500);
+    }
+    CHECK(mean(reference) > 0.0);
+}
+
+}  // TEST_SUITE("paths agree")

@@ -12,6 +12,8 @@
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/uploads.hpp"
 
+TEST_SUITE("scene edits") {
+
 using namespace candela;
 
 namespace {
@@ -48,84 +50,84 @@ Configuration traced(VplPlacement placement) {
 
 }  // namespace
 
-TEST_SUITE("scene edits") {
-    TEST_CASE_FIXTURE(GlFixture, "only what comes or moves is uploaded") {
-        TestedRenderer renderer(Uploads::counting(context->get_proc()));
-        Configuration configuration = traced(VplPlacement::paths);
-        REQUIRE(renderer.configure(configuration).empty());
-        Scene scene = lit_ground();
-        add(scene.world, at({0, 1, 0}), MeshInstance{soup(20'000, 3)});
-        add(scene.world, at({1, 1, 0}), MeshInstance{square(0.5F, textured(512, 1))});
-        const RenderTarget target(device, picture_size);
-        const auto uploaded = [&] {
-            static_cast<void>(Uploads::take());
-            renderer.render(scene.world, scene.camera, target.target());
-            return Uploads::take();
-        };
-        // 20,000 triangles: 60,000 vertices and indices, 96 bytes for each triangle traced. The rest is less:
-        // nodes of the hierarchy and 1 MiB of texels.
-        const std::uint64_t all = uploaded();
-        CHECK(all > 60'000 * (sizeof(Vertex) + 4) + 20'000 * 96);
+TEST_CASE_FIXTURE(GlFixture, "only what comes or moves is uploaded") {
+    TestedRenderer renderer(Uploads::counting(context->get_proc()));
+    Configuration configuration = traced(VplPlacement::paths);
+    REQUIRE(renderer.configure(configuration).empty());
+    Scene scene = lit_ground();
+    add(scene.world, at({0, 1, 0}), MeshInstance{soup(20'000, 3)});
+    add(scene.world, at({1, 1, 0}), MeshInstance{square(0.5F, textured(512, 1))});
+    const RenderTarget target(device, picture_size);
+    const auto uploaded = [&] {
+        static_cast<void>(Uploads::take());
+        renderer.render(scene.world, scene.camera, target.target());
+        return Uploads::take();
+    };
+    // 20,000 triangles: 60,000 vertices and indices, 96 bytes for each triangle traced. The rest is less:
+    // nodes of the hierarchy and 1 MiB of texels.
+    const std::uint64_t all = uploaded();
+    CHECK(all > 60'000 * (sizeof(Vertex) + 4) + 20'000 * 96);
 
-        // A box of 12 triangles, and tables that do not depend on the number of triangles: of them, the top
-        // of the hierarchy has the most, at least 2 · 1,024 nodes of 32 bytes.
-        constexpr std::uint64_t little = 100'000;
-        static_assert(little < 60'000 * sizeof(Vertex) / 20);
-        const Entity box =
-            add(scene.world, at({0, 0.3F, 1}), MeshInstance{box_inwards(0.2F, diffuse({1, 0, 0}))});
-        CHECK(uploaded() < little);
-        scene.world.set(box, at({0.2F, 0.3F, 1}));
-        CHECK(uploaded() < little);
-        scene.world.set(box, MeshInstance{square(0.2F, textured(32, 2))});
-        CHECK(uploaded() < little);
-        scene.world.destroy(box);
-        CHECK(uploaded() < little);
+    // A box of 12 triangles, and tables that do not depend on the number of triangles: of them, the top
+    // of the hierarchy has the most, at least 2 · 1,024 nodes of 32 bytes.
+    constexpr std::uint64_t little = 100'000;
+    static_assert(little < 60'000 * sizeof(Vertex) / 20);
+    const Entity box =
+        add(scene.world, at({0, 0.3F, 1}), MeshInstance{box_inwards(0.2F, diffuse({1, 0, 0}))});
+    CHECK(uploaded() < little);
+    scene.world.set(box, at({0.2F, 0.3F, 1}));
+    CHECK(uploaded() < little);
+    scene.world.set(box, MeshInstance{square(0.2F, textured(32, 2))});
+    CHECK(uploaded() < little);
+    scene.world.destroy(box);
+    CHECK(uploaded() < little);
 
-        renderer.invalidate();
-        CHECK(uploaded() > all / 2);
-    }
+    renderer.invalidate();
+    CHECK(uploaded() > all / 2);
+}
 
-    TEST_CASE_FIXTURE(PathFixture, "light does not leak through a wall under which the floor has moved") {
-        // Which part of a floor's cell lies behind the wall changes, though nothing has moved near the rays
-        // that find it: they run 0.15 m above the floor, and the floor is flat.
-        Scene scene = lit_ground();
-        const Entity floor =
-            add(scene.world, at({0, 0.05F, 0}), MeshInstance{square(1.0F, diffuse({0.9F, 0.5F, 0.2F}))});
-        const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
-        add(scene.world, Transform{.translation = {0.3F, 0.55F, 0}, .rotation = upright},
-            MeshInstance{square(0.5F, diffuse(glm::vec3(0.5F), true))});
-        Configuration configuration = traced(VplPlacement::surfels);
-        configuration.vpls.count = 200;
-        configure(configuration);
-        static_cast<void>(render(scene, picture_size));
-        for (const float x : {0.2F, 0.45F, -0.3F}) {
-            CAPTURE(x);
-            scene.world.set(floor, at({x, 0.05F, 0}));
-            CHECK(render(scene, picture_size) == from_scratch(scene, picture_size));
-        }
-    }
-
-    TEST_CASE_FIXTURE(GlFixture, "what is gone takes no memory for long") {
-        TestedRenderer renderer(context->get_proc());
-        REQUIRE(renderer.configure(direct_only()).empty());
-        Scene scene = lit_ground();
-        const RenderTarget target(device, picture_size);
-        const auto bytes = [&] {
-            renderer.render(scene.world, scene.camera, target.target());
-            return renderer.report().memory.buffer_bytes;
-        };
-        Entity mesh = add(scene.world, at({0, 1, 0}), MeshInstance{soup(5000, 0)});
-        static_cast<void>(bytes());
-        std::uint64_t most = 0;
-        std::uint64_t first = 0;
-        for (std::uint32_t i = 1; i < 20; ++i) {
-            const Entity next = add(scene.world, at({0, 1, 0}), MeshInstance{soup(5000, i)});
-            most = std::max(most, bytes());
-            scene.world.destroy(std::exchange(mesh, next));
-            const std::uint64_t now = bytes();
-            first = i == 1 ? now : first;
-        }
-        // Two are in the world at a time; buffers may be twice as large as what is in them, and grow by half.
-        CHECK(most <= 3 * first);
+TEST_CASE_FIXTURE(PathFixture, "light does not leak through a wall under which the floor has moved") {
+    // Which part of a floor's cell lies behind the wall changes, though nothing has moved near the rays
+    // that find it: they run 0.15 m above the floor, and the floor is flat.
+    Scene scene = lit_ground();
+    const Entity floor =
+        add(scene.world, at({0, 0.05F, 0}), MeshInstance{square(1.0F, diffuse({0.9F, 0.5F, 0.2F}))});
+    const glm::quat upright = glm::angleAxis(glm::half_pi<float>(), glm::vec3(0, 0, 1));
+    add(scene.world, Transform{.translation = {0.3F, 0.55F, 0}, .rotation = upright},
+        MeshInstance{square(0.5F, diffuse(glm::vec3(0.5F), true))});
+    Configuration configuration = traced(VplPlacement::surfels);
+    configuration.vpls.count = 200;
+    configure(configuration);
+    static_cast<void>(render(scene, picture_size));
+    for (const float x : {0.2F, 0.45F, -0.3F}) {
+        CAPTURE(x);
+        scene.world.set(floor, at({x, 0.05F, 0}));
+        CHECK(render(scene, picture_size) == from_scratch(scene, picture_size));
     }
 }
+
+TEST_CASE_FIXTURE(GlFixture, "what is gone takes no memory for long") {
+    TestedRenderer renderer(context->get_proc());
+    REQUIRE(renderer.configure(direct_only()).empty());
+    Scene scene = lit_ground();
+    const RenderTarget target(device, picture_size);
+    const auto bytes = [&] {
+        renderer.render(scene.world, scene.camera, target.target());
+        return renderer.report().memory.buffer_bytes;
+    };
+    Entity mesh = add(scene.world, at({0, 1, 0}), MeshInstance{soup(5000, 0)});
+    static_cast<void>(bytes());
+    std::uint64_t most = 0;
+    std::uint64_t first = 0;
+    for (std::uint32_t i = 1; i < 20; ++i) {
+        const Entity next = add(scene.world, at({0, 1, 0}), MeshInstance{soup(5000, i)});
+        most = std::max(most, bytes());
+        scene.world.destroy(std::exchange(mesh, next));
+        const std::uint64_t now = bytes();
+        first = i == 1 ? now : first;
+    }
+    // Two are in the world at a time; buffers may be twice as large as what is in them, and grow by half.
+    CHECK(most <= 3 * first);
+}
+
+}  // TEST_SUITE("scene edits")

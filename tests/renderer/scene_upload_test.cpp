@@ -8,6 +8,8 @@
 #include "renderer/passes/scene/scene_upload.hpp"
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("scene upload") {
+
 using namespace candela;
 
 namespace {
@@ -54,41 +56,41 @@ std::shared_ptr<const Image> grey() {
 
 }  // namespace
 
-TEST_SUITE("scene upload") {
-    TEST_CASE_FIXTURE(GlFixture, "materials that differ in factors are drawn in one call") {
-        World world;
-        const auto image = grey();
-        for (const float shade : {0.2F, 0.5F, 0.8F}) {
-            add_square(world, [&](Material& material) {
-                material.base_colour = glm::vec4(shade);
-                material.base_colour_texture = image;
-            });
-        }
-        CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>{3});
-    }
-
-    TEST_CASE_FIXTURE(GlFixture, "materials that bind something else, and mirrored meshes, are drawn apart") {
-        World world;
-        const auto image = grey();
-        const auto plain = [](Material&) {};
-        add_square(world, plain);
-        add_square(world, plain, {.scale = {-1.0F, 1.0F, 1.0F}});
-        add_square(world, [&](Material& material) { material.base_colour_texture = image; });
-        add_square(world, [&](Material& material) { material.base_colour_texture = grey(); });
-        add_square(world, [&](Material& material) { material.emissive = glm::vec3(1.0F); });
+TEST_CASE_FIXTURE(GlFixture, "materials that differ in factors are drawn in one call") {
+    World world;
+    const auto image = grey();
+    for (const float shade : {0.2F, 0.5F, 0.8F}) {
         add_square(world, [&](Material& material) {
-            material.emissive = glm::vec3(1.0F);
-            material.emissive_texture = image;
+            material.base_colour = glm::vec4(shade);
+            material.base_colour_texture = image;
         });
-        add_square(world, [&](Material& material) { material.double_sided = true; });
-        add_square(world, [&](Material& material) { material.alpha_mode = AlphaMode::mask; });
-        CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>(8, 1));
     }
-
-    TEST_CASE_FIXTURE(GlFixture, "blended meshes are drawn one by one") {
-        World world;
-        add_square(world, make_glass);
-        add_square(world, make_glass);
-        CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>{1, 1});
-    }
+    CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>{3});
 }
+
+TEST_CASE_FIXTURE(GlFixture, "materials that bind something else, and mirrored meshes, are drawn apart") {
+    World world;
+    const auto image = grey();
+    const auto plain = [](Material&) {};
+    add_square(world, plain);
+    add_square(world, plain, {.scale = {-1.0F, 1.0F, 1.0F}});
+    add_square(world, [&](Material& material) { material.base_colour_texture = image; });
+    add_square(world, [&](Material& material) { material.base_colour_texture = grey(); });
+    add_square(world, [&](Material& material) { material.emissive = glm::vec3(1.0F); });
+    add_square(world, [&](Material& material) {
+        material.emissive = glm::vec3(1.0F);
+        material.emissive_texture = image;
+    });
+    add_square(world, [&](Material& material) { material.double_sided = true; });
+    add_square(world, [&](Material& material) { material.alpha_mode = AlphaMode::mask; });
+    CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>(8, 1));
+}
+
+TEST_CASE_FIXTURE(GlFixture, "blended meshes are drawn one by one") {
+    World world;
+    add_square(world, make_glass);
+    add_square(world, make_glass);
+    CHECK(group_sizes(context->get_proc(), world) == std::vector<std::uint32_t>{1, 1});
+}
+
+}  // TEST_SUITE("scene upload")

@@ -18,6 +18,8 @@
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
+TEST_SUITE("second compiler") {
+
 using namespace candela;
 
 namespace {
@@ -124,114 +126,113 @@ std::string ending(GLenum stage) {
 
 }  // namespace
 
-TEST_SUITE("second compiler") {
-    TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") {
-        TestedRenderer renderer(noting(context->get_proc()));
-        Configuration configuration;
-        configuration.refinement.enabled = true;
-        const auto configure_each = [&](VplPlacement placement, Show show) {
-            configuration.vpls.placement = placement;
-            configuration.show = show;
-            for (const ShadingPath path : all_shading_paths) {
-                for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
-                    for (const Interleave interleave : {Interleave::one, Interleave::eight}) {
-                        configuration.path = path;
-                        configuration.visibility.method = method;
-                        configuration.interleave = interleave;
-                        // 16 are so few that the shading passes gather them themselves.
-                        configuration.vpls.count = interleave == Interleave::one ? 16 : 256;
-                        REQUIRE(renderer.configure(configuration).empty());
-                    }
+TEST_CASE_FIXTURE(GlFixture, "glslang compiles every variant of every program") {
+    TestedRenderer renderer(noting(context->get_proc()));
+    Configuration configuration;
+    configuration.refinement.enabled = true;
+    const auto configure_each = [&](VplPlacement placement, Show show) {
+        configuration.vpls.placement = placement;
+        configuration.show = show;
+        for (const ShadingPath path : all_shading_paths) {
+            for (const auto method : {VplVisibility::none, VplVisibility::maps, VplVisibility::rays}) {
+                for (const Interleave interleave : {Interleave::one, Interleave::eight}) {
+                    configuration.path = path;
+                    configuration.visibility.method = method;
+                    configuration.interleave = interleave;
+                    // 16 are so few that the shading passes gather them themselves.
+                    configuration.vpls.count = interleave == Interleave::one ? 16 : 256;
+                    REQUIRE(renderer.configure(configuration).empty());
                 }
             }
-        };
-        configure_each(VplPlacement::surfels, Show::total);
-        configure_each(VplPlacement::paths, Show::total);
-        configuration.tone_map.automatic_exposure = true;
-        REQUIRE(renderer.configure(configuration).empty());
-        for (const Show show : {Show::indirect, Show::irradiance, Show::albedo, Show::normals}) {
-            configure_each(VplPlacement::surfels, show);
         }
-        // The renderer builds what the last world needs: here a sun, a sky and a surface that emits light.
-        World world;
-        add(world, Transform{}, DirectionalLight{});
-        add(world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
-        add(world, Transform{}, MeshInstance{square(1.0F, emitter(glm::vec3(1.0F)))});
-        const Entity camera = add(world, at({0.0F, 1.0F, 0.0F}), Camera{});
-        const RenderTarget target(device, {1, 1});
-        renderer.set_receivers({{.position = {}, .normal = {0.0F, 1.0F, 0.0F}}});
-        renderer.render(world, camera, target.target());
-        configure_each(VplPlacement::surfels, Show::total);
-        // Surfaces with normal textures, without glossy ones.
-        for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
-            add(world, Transform{}, bumpy_square(mode));
-        }
-        renderer.render(world, camera, target.target());
-        configure_each(VplPlacement::surfels, Show::total);
-        configure_each(VplPlacement::surfels, Show::normals);
-        // And with one.
-        Material metal;
-        metal.metalness = 1.0F;
-        add(world, Transform{}, MeshInstance{square(1.0F, std::make_shared<const Material>(metal))});
-        renderer.render(world, camera, target.target());
-        for (const Show show : {Show::roughness, Show::metalness, Show::total}) {
-            configure_each(VplPlacement::surfels, show);
-        }
-        // And with all that images may lie by, and glass.
-        add(world, Transform{}, glass_square());
-        renderer.render(world, camera, target.target());
-        configure_each(VplPlacement::surfels, Show::total);
-        // Inspection of textures, of integers and of light lists, and the difference of two pictures.
-        Extension integers{.name = "integers", .place = ExtensionPlace::after_surfaces};
-        integers.declare = [](FrameGraph& graph, ViewFrame&) {
-            graph.add("integers", [&](Pass& pass) {
-                static_cast<void>(
-                    pass.write(graph.texture("integers", {{1, 1}, Format::r32ui}), Usage::copy));
-            });
-        };
-        REQUIRE(renderer.extend(integers).empty());
-        ResourceInspector inspector(renderer);
-        for (const char* const name : {"albedo", "integers", "light-clusters count"}) {
-            REQUIRE(inspector.show(Inspection{.resource = name}).empty());
-            CHECK(renderer.describe(GraphFormat::text).find(name) != std::string::npos);
-        }
-        const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
-        draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
-        CHECK(sources.size() > 40);
-        for (const auto& variant : std::vector<std::vector<std::string>>{{"AUTOMATIC"},
-                                                                         {"BUMPY"},
-                                                                         {"BUMPY", "MASKED"},
-                                                                         {"BUMPY", "GLOSSY"},
-                                                                         {"BUMPY", "DIRECTED"},
-                                                                         {"DIRECTED", "COLUMNS"},
-                                                                         {"DIRECTED", "GLOSSY"},
-                                                                         {"MIRRORED"},
-                                                                         {"EMITTERS", "EMISSION", "SKY"},
-                                                                         {"EMITTERS", "BUMPY"},
-                                                                         {"SECOND_UV", "GLOSSY"},
-                                                                         {"SECOND_UV", "GLASS"}}) {
-            CAPTURE(variant.front());
-            CAPTURE(variant.back());
-            CHECK(has_variant(variant));
-        }
-
-        // A driver that offers fewer storage blocks than the largest program needs is refused at once.
-        std::uint32_t most = 0;
-        for (const GLuint program : programs) most = std::max(most, storage_blocks_of(device.gl(), program));
-        CHECK(most == MOST_STORAGE_BLOCKS);
-
-        const sandbox::TemporaryFolder folder;
-        std::string command = CANDELA_GLSLANG;
-        int number = 0;
-        for (const auto& [stage, text] : sources) {
-            const std::string name = std::to_string(number++) + "." + ending(stage);
-            std::ofstream(folder / name.c_str()) << text;
-            command += " " + (folder / name.c_str()).string();
-        }
-        command += " > " + (folder / "said").string();
-        const int status = std::system(command.c_str());
-        std::ifstream said(folder / "said");
-        const std::string log{std::istreambuf_iterator<char>(said), {}};
-        CHECK_MESSAGE(WEXITSTATUS(status) == 0, log);
+    };
+    configure_each(VplPlacement::surfels, Show::total);
+    configure_each(VplPlacement::paths, Show::total);
+    configuration.tone_map.automatic_exposure = true;
+    REQUIRE(renderer.configure(configuration).empty());
+    for (const Show show : {Show::indirect, Show::irradiance, Show::albedo, Show::normals}) {
+        configure_each(VplPlacement::surfels, show);
     }
+    // The renderer builds what the last world needs: here a sun, a sky and a surface that emits light.
+    World world;
+    add(world, Transform{}, DirectionalLight{});
+    add(world, Environment{.radiance = glm::vec3(1.0F), .picture = nullptr});
+    add(world, Transform{}, MeshInstance{square(1.0F, emitter(glm::vec3(1.0F)))});
+    const Entity camera = add(world, at({0.0F, 1.0F, 0.0F}), Camera{});
+    const RenderTarget target(device, {1, 1});
+    renderer.set_receivers({{.position = {}, .normal = {0.0F, 1.0F, 0.0F}}});
+    renderer.render(world, camera, target.target());
+    configure_each(VplPlacement::surfels, Show::total);
+    // Surfaces with normal textures, without glossy ones.
+    for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
+        add(world, Transform{}, bumpy_square(mode));
+    }
+    renderer.render(world, camera, target.target());
+    configure_each(VplPlacement::surfels, Show::total);
+    configure_each(VplPlacement::surfels, Show::normals);
+    // And with one.
+    Material metal;
+    metal.metalness = 1.0F;
+    add(world, Transform{}, MeshInstance{square(1.0F, std::make_shared<const Material>(metal))});
+    renderer.render(world, camera, target.target());
+    for (const Show show : {Show::roughness, Show::metalness, Show::total}) {
+        configure_each(VplPlacement::surfels, show);
+    }
+    // And with all that images may lie by, and glass.
+    add(world, Transform{}, glass_square());
+    renderer.render(world, camera, target.target());
+    configure_each(VplPlacement::surfels, Show::total);
+    // Inspection of textures, of integers and of light lists, and the difference of two pictures.
+    Extension integers{.name = "integers", .place = ExtensionPlace::after_surfaces};
+    integers.declare = [](FrameGraph& graph, ViewFrame&) {
+        graph.add("integers", [&](Pass& pass) {
+            static_cast<void>(pass.write(graph.texture("integers", {{1, 1}, Format::r32ui}), Usage::copy));
+        });
+    };
+    REQUIRE(renderer.extend(integers).empty());
+    ResourceInspector inspector(renderer);
+    for (const char* const name : {"albedo", "integers", "light-clusters count"}) {
+        REQUIRE(inspector.show(Inspection{.resource = name}).empty());
+        CHECK(renderer.describe(GraphFormat::text).find(name) != std::string::npos);
+    }
+    const gl::Texture picture(device, "picture", {{1, 1}, Format::rgba8});
+    draw_difference(renderer, picture.name(), picture.name(), 1.0F, target.target());
+    CHECK(sources.size() > 40);
+    for (const auto& variant : std::vector<std::vector<std::string>>{{"AUTOMATIC"},
+                                                                     {"BUMPY"},
+                                                                     {"BUMPY", "MASKED"},
+                                                                     {"BUMPY", "GLOSSY"},
+                                                                     {"BUMPY", "DIRECTED"},
+                                                                     {"DIRECTED", "COLUMNS"},
+                                                                     {"DIRECTED", "GLOSSY"},
+                                                                     {"MIRRORED"},
+                                                                     {"EMITTERS", "EMISSION", "SKY"},
+                                                                     {"EMITTERS", "BUMPY"},
+                                                                     {"SECOND_UV", "GLOSSY"},
+                                                                     {"SECOND_UV", "GLASS"}}) {
+        CAPTURE(variant.front());
+        CAPTURE(variant.back());
+        CHECK(has_variant(variant));
+    }
+
+    // A driver that offers fewer storage blocks than the largest program needs is refused at once.
+    std::uint32_t most = 0;
+    for (const GLuint program : programs) most = std::max(most, storage_blocks_of(device.gl(), program));
+    CHECK(most == MOST_STORAGE_BLOCKS);
+
+    const sandbox::TemporaryFolder folder;
+    std::string command = CANDELA_GLSLANG;
+    int number = 0;
+    for (const auto& [stage, text] : sources) {
+        const std::string name = std::to_string(number++) + "." + ending(stage);
+        std::ofstream(folder / name.c_str()) << text;
+        command += " " + (folder / name.c_str()).string();
+    }
+    command += " > " + (folder / "said").string();
+    const int status = std::system(command.c_str());
+    std::ifstream said(folder / "said");
+    const std::string log{std::istreambuf_iterator<char>(said), {}};
+    CHECK_MESSAGE(WEXITSTATUS(status) == 0, log);
 }
+
+}  // TEST_SUITE("second compiler")

@@ -8,6 +8,8 @@
 #include "tests/renderer/random_edits.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("sequences") {
+
 using namespace candela;
 
 namespace {
@@ -57,26 +59,25 @@ class Sequence : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("sequences") {
-    TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: surfels, maps") {
-        check_sequence(1, VplPlacement::surfels, VplVisibility::maps);
-    }
-
-    TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: surfels, rays") {
-        check_sequence(2, VplPlacement::surfels, VplVisibility::rays);
-    }
-
-    TEST_CASE_FIXTURE(Sequence,
-                      "after random edits a frame equals that of a new renderer once nothing waits") {
-        check_sequence(5, VplPlacement::surfels, VplVisibility::maps, 3);
-        check_sequence(6, VplPlacement::surfels, VplVisibility::rays, 3);
-    }
-
-    TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: paths, rays") {
-        check_sequence(3, VplPlacement::paths, VplVisibility::rays);
-    }
-
-    TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: lamps and skies") {
-        check_sequence(4, VplPlacement::surfels, VplVisibility::maps);
-    }
+TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: surfels, maps") {
+    check_sequence(1, VplPlacement::surfels, VplVisibility::maps);
 }
+
+TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: surfels, rays") {
+    check_sequence(2, VplPlacement::surfels, VplVisibility::rays);
+}
+
+TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer once nothing waits") {
+    check_sequence(5, VplPlacement::surfels, VplVisibility::maps, 3);
+    check_sequence(6, VplPlacement::surfels, VplVisibility::rays, 3);
+}
+
+TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: paths, rays") {
+    check_sequence(3, VplPlacement::paths, VplVisibility::rays);
+}
+
+TEST_CASE_FIXTURE(Sequence, "after random edits a frame equals that of a new renderer: lamps and skies") {
+    check_sequence(4, VplPlacement::surfels, VplVisibility::maps);
+}
+
+}  // TEST_SUITE("sequences")

@@ -11,6 +11,8 @@
 #include "renderer/passes/lights/shadow_draws.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("shadow draws") {
+
 using namespace candela;
 
 namespace {
@@ -98,55 +100,54 @@ std::size_t times_drawn(const std::vector<gpu::DrawCommand>& draws, std::uint32_
 
 }  // namespace
 
-TEST_SUITE("shadow draws") {
-    TEST_CASE("every triangle that marks a texel of a map is drawn once, and others are left out") {
-        Random random;
-        std::size_t triangles = 0, drawn = 0, marking = 0;
-        for (int i = 0; i < 60; ++i) {
-            // From a single part to several; the last one is not full.
-            const Primitive primitive = strip(random, 200 + 230 * static_cast<std::uint32_t>(i % 10));
-            const SceneLayout layout = layout_of(primitive);
-            const glm::mat4 world =
-                glm::translate(glm::rotate(glm::mat4(1.0F), random.number(0.0F, 6.0F), random.point(1.0F)),
-                               random.point(2.0F));
-            const ScenePlacement placement{.world = {world}, .deformed = {}};
-            const glm::vec3 light = random.point(4.0F);
-            const glm::mat4 clip = face(light, light + random.point(1.0F));
-            std::vector<gpu::DrawCommand> draws;
-            append_shadow_draws(shadow_casters(layout, placement, 1e-4F), clip, resolution, draws);
-            const auto count = static_cast<std::uint32_t>(primitive.indices.size() / 3);
-            for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
-                const std::size_t times = times_drawn(draws, triangle);
-                const bool must = marks(clip * world, primitive, triangle);
-                REQUIRE(times <= 1);
-                if (must) REQUIRE(times == 1);
-                marking += must ? 1 : 0;
-                drawn += times;
-                ++triangles;
-            }
-            for (const gpu::DrawCommand& draw : draws) {
-                CHECK(draw.first_index >= 30);
-                CHECK(draw.first_index + draw.index_count <= 30 + 3 * count);
-                CHECK(draw.base_vertex == 7);
-                CHECK(draw.instance_count == 1);
-            }
-        }
-        // A face sees about a sixth of the directions, and the boxes are not much larger than their
-        // triangles.
-        CHECK(marking > 0);
-        CHECK(drawn < triangles / 2);
-    }
-
-    TEST_CASE("parts that follow each other are drawn by one command") {
-        Random random;
-        const Primitive primitive = strip(random, 4 * triangles_per_part + 1);
+TEST_CASE("every triangle that marks a texel of a map is drawn once, and others are left out") {
+    Random random;
+    std::size_t triangles = 0, drawn = 0, marking = 0;
+    for (int i = 0; i < 60; ++i) {
+        // From a single part to several; the last one is not full.
+        const Primitive primitive = strip(random, 200 + 230 * static_cast<std::uint32_t>(i % 10));
         const SceneLayout layout = layout_of(primitive);
-        const ScenePlacement placement{.world = {glm::mat4(1.0F)}, .deformed = {}};
+        const glm::mat4 world = glm::translate(
+            glm::rotate(glm::mat4(1.0F), random.number(0.0F, 6.0F), random.point(1.0F)), random.point(2.0F));
+        const ScenePlacement placement{.world = {world}, .deformed = {}};
+        const glm::vec3 light = random.point(4.0F);
+        const glm::mat4 clip = face(light, light + random.point(1.0F));
         std::vector<gpu::DrawCommand> draws;
-        append_shadow_draws(shadow_casters(layout, placement, 0.0F), face({0.0F, 0.0F, 30.0F}, {}),
-                            resolution, draws);
-        REQUIRE(draws.size() == 1);
-        CHECK(draws[0].first_index == layout.draws[0].first_index);
-        CHECK(draws[0].index_count == layout.draws[0].index_count);
+        append_shadow_draws(shadow_casters(layout, placement, 1e-4F), clip, resolution, draws);
+        const auto count = static_cast<std::uint32_t>(primitive.indices.size() / 3);
+        for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
+            const std::size_t times = times_drawn(draws, triangle);
+            const bool must = marks(clip * world, primitive, triangle);
+            REQUIRE(times <= 1);
+            if (must) REQUIRE(times == 1);
+            marking += must ? 1 : 0;
+            drawn += times;
+            ++triangles;
+        }
+        for (const gpu::DrawCommand& draw : draws) {
+            CHECK(draw.first_index >= 30);
+            CHECK(draw.first_index + draw.index_count <= 30 + 3 * count);
+            CHECK(draw.base_vertex == 7);
+            CHECK(draw.instance_count == 1);
+        }
     }
+    // A face sees about a sixth of the directions, and the boxes are not much larger than their
+    // triangles.
+    CHECK(marking > 0);
+    CHECK(drawn < triangles / 2);
 }
+
+TEST_CASE("parts that follow each other are drawn by one command") {
+    Random random;
+    const Primitive primitive = strip(random, 4 * triangles_per_part + 1);
+    const SceneLayout layout = layout_of(primitive);
+    const ScenePlacement placement{.world = {glm::mat4(1.0F)}, .deformed = {}};
+    std::vector<gpu::DrawCommand> draws;
+    append_shadow_draws(shadow_casters(layout, placement, 0.0F), face({0.0F, 0.0F, 30.0F}, {}), resolution,
+                        draws);
+    REQUIRE(draws.size() == 1);
+    CHECK(draws[0].first_index == layout.draws[0].first_index);
+    CHECK(draws[0].index_count == layout.draws[0].index_count);
+}
+
+}  // TEST_SUITE("shadow draws")

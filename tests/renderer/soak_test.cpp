@@ -16,6 +16,8 @@
 #include "tests/renderer/random_edits.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("soak") {
+
 using namespace candela;
 
 namespace {
@@ -74,33 +76,32 @@ class SoakFixture : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("soak") {
-    TEST_CASE_FIXTURE(SoakFixture, "edits, switches, resizes and reloads leave nothing behind") {
-        using enum gl::ObjectKind;
-        const int rounds = (soak_frames() + frames_per_round - 1) / frames_per_round;
-        for (int round = 0; round < 3; ++round) edit_for_a_round(round);  // fills the driver's caches
-        const gl::ObjectCounts objects = objects_at_rest();
-        const std::uint64_t memory = test::resident_bytes();
-        for (int round = 0; round < rounds; ++round) {
-            edit_for_a_round(3 + round);
-            CAPTURE(round);
-            const gl::ObjectCounts now = objects_at_rest();
-            for (const auto kind : {buffer, texture, vertex_array, sampler}) {
-                REQUIRE(now[kind] == objects[kind]);
-            }
-            // The rest is kept for reuse: programs of all variants that were needed so far, queries for the
-            // most passes of a frame, and framebuffers for all attachments together that passes have used
-            // while these exist.
-            REQUIRE(now[program] <= 4 * objects[program]);
-            REQUIRE(now[query] <= 2 * objects[query]);
-            REQUIRE(now[framebuffer] <= 2 * objects[framebuffer]);
+TEST_CASE_FIXTURE(SoakFixture, "edits, switches, resizes and reloads leave nothing behind") {
+    using enum gl::ObjectKind;
+    const int rounds = (soak_frames() + frames_per_round - 1) / frames_per_round;
+    for (int round = 0; round < 3; ++round) edit_for_a_round(round);  // fills the driver's caches
+    const gl::ObjectCounts objects = objects_at_rest();
+    const std::uint64_t memory = test::resident_bytes();
+    for (int round = 0; round < rounds; ++round) {
+        edit_for_a_round(3 + round);
+        CAPTURE(round);
+        const gl::ObjectCounts now = objects_at_rest();
+        for (const auto kind : {buffer, texture, vertex_array, sampler}) {
+            REQUIRE(now[kind] == objects[kind]);
         }
-        const std::uint64_t grown = test::resident_bytes() - memory;
-        MESSAGE((rounds * frames_per_round)
-                << " frames, resident memory from " << (memory >> 20U) << " MiB by "
-                << (static_cast<std::int64_t>(grown) >> 20) << " MiB");
-        // The driver keeps code for each state in which a shader was used: about 90 MiB until frame 2,000,
-        // and no more until frame 10,000. AddressSanitizer delays freeing memory, and finds leaks by itself.
-        if (!test::is_sanitized) CHECK(static_cast<std::int64_t>(grown) < std::int64_t{128} << 20);
+        // The rest is kept for reuse: programs of all variants that were needed so far, queries for the
+        // most passes of a frame, and framebuffers for all attachments together that passes have used
+        // while these exist.
+        REQUIRE(now[program] <= 4 * objects[program]);
+        REQUIRE(now[query] <= 2 * objects[query]);
+        REQUIRE(now[framebuffer] <= 2 * objects[framebuffer]);
     }
+    const std::uint64_t grown = test::resident_bytes() - memory;
+    MESSAGE((rounds * frames_per_round) << " frames, resident memory from " << (memory >> 20U) << " MiB by "
+                                        << (static_cast<std::int64_t>(grown) >> 20) << " MiB");
+    // The driver keeps code for each state in which a shader was used: about 90 MiB until frame 2,000,
+    // and no more until frame 10,000. AddressSanitizer delays freeing memory, and finds leaks by itself.
+    if (!test::is_sanitized) CHECK(static_cast<std::int64_t>(grown) < std::int64_t{128} << 20);
 }
+
+}  // TEST_SUITE("soak")

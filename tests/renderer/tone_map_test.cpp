@@ -15,6 +15,8 @@
 
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("tone map") {
+
 using namespace candela;
 
 namespace {
@@ -111,206 +113,200 @@ constexpr ToneMapSettings automatic{.automatic_exposure = true};
 
 }  // namespace
 
-TEST_SUITE("tone map") {
-    TEST_CASE_FIXTURE(ToneMapTests, "the curves are those of their publications") {
-        std::vector<glm::vec3> colours;
-        for (const float value : {0.0F, 1e-3F, 0.04F, 0.08F, 0.18F, 0.76F, 0.8F, 0.81F, 1.0F, 10.0F, 1e4F}) {
-            for (const glm::vec3 hue :
-                 {glm::vec3(1), glm::vec3(1, 0, 0), glm::vec3(0.2F, 1, 0.5F), glm::vec3(0.9F, 0.1F, 1)}) {
-                colours.push_back(value * hue);
-            }
+TEST_CASE_FIXTURE(ToneMapTests, "the curves are those of their publications") {
+    std::vector<glm::vec3> colours;
+    for (const float value : {0.0F, 1e-3F, 0.04F, 0.08F, 0.18F, 0.76F, 0.8F, 0.81F, 1.0F, 10.0F, 1e4F}) {
+        for (const glm::vec3 hue :
+             {glm::vec3(1), glm::vec3(1, 0, 0), glm::vec3(0.2F, 1, 0.5F), glm::vec3(0.9F, 0.1F, 1)}) {
+            colours.push_back(value * hue);
         }
-        const glm::uvec2 row(colours.size(), 1);
-        for (const NamedCurve& each : curves) {
-            CAPTURE(to_string(each.curve));
-            for (const float ev : {0.0F, -1.0F}) {
-                set({.exposure_ev = ev, .curve = each.curve});
-                const Picture shown = mapped(colours, row);
-                for (std::size_t i = 0; i < colours.size(); ++i) {
-                    CAPTURE(i);
-                    const glm::dvec3 expected = each.of(glm::dvec3(colours[i]) * std::exp2(double{ev}));
-                    for (int c = 0; c < 3; ++c) {
-                        CHECK(std::abs(encoded(expected[c]) - double{shown.pixels[i][c]}) < rounding);
-                    }
+    }
+    const glm::uvec2 row(colours.size(), 1);
+    for (const NamedCurve& each : curves) {
+        CAPTURE(to_string(each.curve));
+        for (const float ev : {0.0F, -1.0F}) {
+            set({.exposure_ev = ev, .curve = each.curve});
+            const Picture shown = mapped(colours, row);
+            for (std::size_t i = 0; i < colours.size(); ++i) {
+                CAPTURE(i);
+                const glm::dvec3 expected = each.of(glm::dvec3(colours[i]) * std::exp2(double{ev}));
+                for (int c = 0; c < 3; ++c) {
+                    CHECK(std::abs(encoded(expected[c]) - double{shown.pixels[i][c]}) < rounding);
                 }
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "the neutral curve keeps base colours but for 0.04, and all hues") {
-        set({.curve = ToneCurve::neutral});
-        const std::vector<glm::vec3> colours{{0.1F, 0.5F, 0.3F},
-                                             {0.8F, 0.2F, 0.4F},
-                                             {0.5F, 0.5F, 0.5F},
-                                             {3.0F, 1.0F, 0.5F},
-                                             {2.0F, 9.0F, 4.0F}};
-        const Picture shown = mapped(colours, {colours.size(), 1});
-        for (std::size_t i = 0; i < colours.size(); ++i) {
-            CAPTURE(i);
-            const glm::dvec3 in(colours[i]);
-            const glm::dvec3 out = decoded(shown.pixels[i]);
-            for (int c = 0; c < 3 && i < 3; ++c) CHECK(std::abs(out[c] - (in[c] - 0.04)) < 2.0 * rounding);
-            // Hue: where the middle channel lies between the others, which are at least 0.1 apart.
-            const auto [least, most] = std::minmax({in.r, in.g, in.b});
-            if (least == most) continue;
-            const double spread = std::max({out.r, out.g, out.b}) - std::min({out.r, out.g, out.b});
-            REQUIRE(spread > 0.1);
-            for (int c = 0; c < 3; ++c) {
-                const double place = (out[c] - std::min({out.r, out.g, out.b})) / spread;
-                CHECK(std::abs(place - (in[c] - least) / (most - least)) < 4.0 * rounding / 0.1);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "all curves are finite for infinite light") {
-        for (const NamedCurve& each : curves) {
-            CAPTURE(to_string(each.curve));
-            set({.curve = each.curve});
-            const float infinity = std::numeric_limits<float>::infinity();
-            const Picture shown = mapped({{infinity, infinity, infinity}, {3e38F, 3e38F, 3e38F}}, {2, 1});
-            for (const glm::vec3 colour : shown.pixels) CHECK(colour.g == doctest::Approx(1.0));
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "a uniform picture becomes 18 % grey, within ten stops") {
-        for (const float level : {2e-4F, 0.01F, 0.18F, 3.0F, 180.0F}) {
-            CAPTURE(level);
-            for (const float ev : {0.0F, 1.0F, -2.0F}) {
-                set({.exposure_ev = ev, .automatic_exposure = true});
-                const Picture shown = mapped(std::vector(pixels, glm::vec3(level)));
-                const double expected = encoded(filmic(glm::dvec3(0.18 * std::exp2(double{ev}))).r);
-                for (const glm::vec3 colour : shown.pixels) {
-                    REQUIRE(std::abs(double{colour.r} - expected) < rounding);
-                }
-            }
-        }
-        set(automatic);
-        for (const float level : {1e-5F, 1e3F}) {
-            const double exposed = double{level} * (level < 1.0F ? 1024.0 : 1.0 / 1024.0);
-            const Picture shown = mapped(std::vector(pixels, glm::vec3(level)));
-            CHECK(std::abs(double{shown.pixels[7].r} - encoded(filmic(glm::dvec3(exposed)).r)) < rounding);
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests,
-                      "two halves are exposed for their geometric mean, in pictures of all sizes") {
-        set(automatic);
-        for (const glm::uvec2 of : {glm::uvec2(2, 1), glm::uvec2(30, 1), size, glm::uvec2(200, 100)}) {
-            CAPTURE(of.x);
-            std::vector<glm::vec3> radiance(std::size_t{of.x} * of.y, glm::vec3(0.04F));
-            std::fill_n(radiance.begin(), radiance.size() / 2, glm::vec3(4.0F));
-            const Picture shown = mapped(radiance, of);
-            // The darker half counts 1 - 4e-4, which changes the mean of 6.6 stops by 1e-3 of a stop.
-            CHECK(exposure_of(shown.pixels.back(), 0.04) == doctest::Approx(0.18 / 0.4).epsilon(2e-3));
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "colours count by their luminance") {
-        set(automatic);
-        const glm::vec3 colour(0.5F, 0.1F, 2.0F);
-        std::vector<glm::vec3> radiance(pixels, colour);
-        const Picture shown = mapped(radiance);
-        const double exposure = 0.18 / luminance(colour);
-        for (int c = 0; c < 3; ++c) {
-            const double expected = encoded(filmic(glm::dvec3(colour) * exposure)[c]);
-            CHECK(std::abs(double{shown.pixels[5][c]} - expected) < rounding);
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests,
-                      "few bright pixels hardly change the exposure, and black ones not at all") {
-        set(automatic);
-        std::vector<glm::vec3> radiance(pixels, glm::vec3(1.0F));
-        radiance[100] = glm::vec3(1e6F);
-        const double exposure = exposure_of(mapped(radiance).pixels[5], 1.0);
-        // The arithmetic mean would divide it by 1,300. The colour determines it to 1e-3.
-        CHECK(exposure == doctest::Approx(0.18 / std::pow(1e6, 1.0 / 768.0)).epsilon(1e-3));
-        CHECK(exposure < 0.18);
-
-        radiance.assign(pixels, glm::vec3(3.0F));
-        const glm::vec3 plain = mapped(radiance).pixels.back();
-        for (const float dark : {0.0F, 1e-40F, 1e-9F}) {
-            CAPTURE(dark);
-            std::fill_n(radiance.begin(), pixels / 2, glm::vec3(dark));
-            const glm::vec3 beside = mapped(radiance).pixels.back();
-            // 1e-9 counts 6.6e-5, which times its 30 stops is 2e-3 of a stop. Sums of other numbers of pixels
-            // round differently.
-            CHECK(std::abs(double{beside.r} - double{plain.r}) < (dark < 1e-30F ? 1e-5 : 2e-3));
-        }
-        CHECK(mapped(std::vector(pixels, glm::vec3(0.0F))).pixels == std::vector(pixels, glm::vec3(0.0F)));
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "what is not finite or negative does not count") {
-        set(automatic);
-        std::vector<glm::vec3> radiance(pixels, glm::vec3(0.3F, 0.7F, 0.2F));
-        for (std::size_t i = 0; i < pixels; i += 5) radiance[i] = glm::vec3(0.0F);
-        const Picture black = mapped(radiance);
-        const float undefined = std::numeric_limits<float>::quiet_NaN();
-        const float infinity = std::numeric_limits<float>::infinity();
-        const std::array odd{glm::vec3(undefined, 1.0F, 1.0F), glm::vec3(infinity), glm::vec3(-1.0F)};
-        for (std::size_t i = 0; i < pixels; i += 5) radiance[i] = odd.at(i / 5 % odd.size());
-        const Picture shown = mapped(radiance);
-        for (std::size_t i = 0; i < pixels; ++i) {
-            if (i % 5 != 0) REQUIRE(shown.pixels[i] == black.pixels[i]);
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests,
-                      "a frame is exposed like a picture from elsewhere, and like a first frame") {
-        Scene scene = cornell_box();
-        scene.world.set(scene.light, at({0.0F, 1.5F, 0.5F}));
-        scene.world.set(scene.light, PointLight{.intensity = 0.01F});
-        const RenderTarget target(device, size);
-        const RenderTarget other(device, size);
-        for (const ToneCurve curve : {ToneCurve::filmic, ToneCurve::neutral, ToneCurve::aces}) {
-            set({.exposure_ev = 0.5F, .curve = curve, .automatic_exposure = true});
-            for (const float intensity : {0.01F, 100.0F}) {
-                scene.world.edit<PointLight>(scene.light, [&](PointLight& l) { l.intensity = intensity; });
-                const RenderView view{
-                    .camera = scene.camera, .target = target.target(), .keep = {.radiance = true}};
-                renderer.render(scene.world, {&view, 1});
-                CHECK(ran("exposure"));
-                renderer.tone_map(renderer.results().radiance.texture, other.target());
-                CHECK(target.read() == other.read());
-                CHECK(target.read() == from_scratch(scene, size));
-                renderer.render(scene.world, {&view, 1});
-                CHECK_FALSE(ran("exposure"));
-                CHECK(target.read() == other.read());
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "each view has its own exposure") {
-        Scene scene = cornell_box();
-        const Entity second = add(scene.world, at({0.0F, 1.0F, 0.5F}), Camera{.vertical_fov = 0.3F});
-        set(automatic);
-        const std::array alone{render(scene.world, scene.camera, size), render(scene.world, second, size)};
-        const std::array targets{RenderTarget(device, size), RenderTarget(device, size)};
-        const std::array views{RenderView{.camera = scene.camera, .target = targets[0].target()},
-                               RenderView{.camera = second, .target = targets[1].target()}};
-        renderer.render(scene.world, views);
-        CHECK(targets[0].read() == alone[0]);
-        CHECK(targets[1].read() == alone[1]);
-    }
-
-    TEST_CASE_FIXTURE(ToneMapTests, "only what is tone-mapped light is exposed automatically") {
-        const Scene scene = cornell_box();
-        Configuration configuration = linear_configuration();
-        for (const Show show : all_shows) {
-            for (const bool enabled : {false, true}) {
-                CAPTURE(to_string(show));
-                CAPTURE(enabled);
-                configuration.show = show;
-                configuration.tone_map = {.enabled = enabled, .exposure_ev = 1.0F};
-                configure(configuration);
-                const Picture manual = render(scene, size);
-                CHECK_FALSE(has_exposure());
-                configuration.tone_map.automatic_exposure = true;
-                configure(configuration);
-                const Picture shown = render(scene, size);
-                CHECK(has_exposure() == (enabled && shows_light(show)));
-                if (!has_exposure()) CHECK(shown == manual);
             }
         }
     }
 }
+
+TEST_CASE_FIXTURE(ToneMapTests, "the neutral curve keeps base colours but for 0.04, and all hues") {
+    set({.curve = ToneCurve::neutral});
+    const std::vector<glm::vec3> colours{
+        {0.1F, 0.5F, 0.3F}, {0.8F, 0.2F, 0.4F}, {0.5F, 0.5F, 0.5F}, {3.0F, 1.0F, 0.5F}, {2.0F, 9.0F, 4.0F}};
+    const Picture shown = mapped(colours, {colours.size(), 1});
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        CAPTURE(i);
+        const glm::dvec3 in(colours[i]);
+        const glm::dvec3 out = decoded(shown.pixels[i]);
+        for (int c = 0; c < 3 && i < 3; ++c) CHECK(std::abs(out[c] - (in[c] - 0.04)) < 2.0 * rounding);
+        // Hue: where the middle channel lies between the others, which are at least 0.1 apart.
+        const auto [least, most] = std::minmax({in.r, in.g, in.b});
+        if (least == most) continue;
+        const double spread = std::max({out.r, out.g, out.b}) - std::min({out.r, out.g, out.b});
+        REQUIRE(spread > 0.1);
+        for (int c = 0; c < 3; ++c) {
+            const double place = (out[c] - std::min({out.r, out.g, out.b})) / spread;
+            CHECK(std::abs(place - (in[c] - least) / (most - least)) < 4.0 * rounding / 0.1);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "all curves are finite for infinite light") {
+    for (const NamedCurve& each : curves) {
+        CAPTURE(to_string(each.curve));
+        set({.curve = each.curve});
+        const float infinity = std::numeric_limits<float>::infinity();
+        const Picture shown = mapped({{infinity, infinity, infinity}, {3e38F, 3e38F, 3e38F}}, {2, 1});
+        for (const glm::vec3 colour : shown.pixels) CHECK(colour.g == doctest::Approx(1.0));
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "a uniform picture becomes 18 % grey, within ten stops") {
+    for (const float level : {2e-4F, 0.01F, 0.18F, 3.0F, 180.0F}) {
+        CAPTURE(level);
+        for (const float ev : {0.0F, 1.0F, -2.0F}) {
+            set({.exposure_ev = ev, .automatic_exposure = true});
+            const Picture shown = mapped(std::vector(pixels, glm::vec3(level)));
+            const double expected = encoded(filmic(glm::dvec3(0.18 * std::exp2(double{ev}))).r);
+            for (const glm::vec3 colour : shown.pixels) {
+                REQUIRE(std::abs(double{colour.r} - expected) < rounding);
+            }
+        }
+    }
+    set(automatic);
+    for (const float level : {1e-5F, 1e3F}) {
+        const double exposed = double{level} * (level < 1.0F ? 1024.0 : 1.0 / 1024.0);
+        const Picture shown = mapped(std::vector(pixels, glm::vec3(level)));
+        CHECK(std::abs(double{shown.pixels[7].r} - encoded(filmic(glm::dvec3(exposed)).r)) < rounding);
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "two halves are exposed for their geometric mean, in pictures of all sizes") {
+    set(automatic);
+    for (const glm::uvec2 of : {glm::uvec2(2, 1), glm::uvec2(30, 1), size, glm::uvec2(200, 100)}) {
+        CAPTURE(of.x);
+        std::vector<glm::vec3> radiance(std::size_t{of.x} * of.y, glm::vec3(0.04F));
+        std::fill_n(radiance.begin(), radiance.size() / 2, glm::vec3(4.0F));
+        const Picture shown = mapped(radiance, of);
+        // The darker half counts 1 - 4e-4, which changes the mean of 6.6 stops by 1e-3 of a stop.
+        CHECK(exposure_of(shown.pixels.back(), 0.04) == doctest::Approx(0.18 / 0.4).epsilon(2e-3));
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "colours count by their luminance") {
+    set(automatic);
+    const glm::vec3 colour(0.5F, 0.1F, 2.0F);
+    std::vector<glm::vec3> radiance(pixels, colour);
+    const Picture shown = mapped(radiance);
+    const double exposure = 0.18 / luminance(colour);
+    for (int c = 0; c < 3; ++c) {
+        const double expected = encoded(filmic(glm::dvec3(colour) * exposure)[c]);
+        CHECK(std::abs(double{shown.pixels[5][c]} - expected) < rounding);
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "few bright pixels hardly change the exposure, and black ones not at all") {
+    set(automatic);
+    std::vector<glm::vec3> radiance(pixels, glm::vec3(1.0F));
+    radiance[100] = glm::vec3(1e6F);
+    const double exposure = exposure_of(mapped(radiance).pixels[5], 1.0);
+    // The arithmetic mean would divide it by 1,300. The colour determines it to 1e-3.
+    CHECK(exposure == doctest::Approx(0.18 / std::pow(1e6, 1.0 / 768.0)).epsilon(1e-3));
+    CHECK(exposure < 0.18);
+
+    radiance.assign(pixels, glm::vec3(3.0F));
+    const glm::vec3 plain = mapped(radiance).pixels.back();
+    for (const float dark : {0.0F, 1e-40F, 1e-9F}) {
+        CAPTURE(dark);
+        std::fill_n(radiance.begin(), pixels / 2, glm::vec3(dark));
+        const glm::vec3 beside = mapped(radiance).pixels.back();
+        // 1e-9 counts 6.6e-5, which times its 30 stops is 2e-3 of a stop. Sums of other numbers of pixels
+        // round differently.
+        CHECK(std::abs(double{beside.r} - double{plain.r}) < (dark < 1e-30F ? 1e-5 : 2e-3));
+    }
+    CHECK(mapped(std::vector(pixels, glm::vec3(0.0F))).pixels == std::vector(pixels, glm::vec3(0.0F)));
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "what is not finite or negative does not count") {
+    set(automatic);
+    std::vector<glm::vec3> radiance(pixels, glm::vec3(0.3F, 0.7F, 0.2F));
+    for (std::size_t i = 0; i < pixels; i += 5) radiance[i] = glm::vec3(0.0F);
+    const Picture black = mapped(radiance);
+    const float undefined = std::numeric_limits<float>::quiet_NaN();
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::array odd{glm::vec3(undefined, 1.0F, 1.0F), glm::vec3(infinity), glm::vec3(-1.0F)};
+    for (std::size_t i = 0; i < pixels; i += 5) radiance[i] = odd.at(i / 5 % odd.size());
+    const Picture shown = mapped(radiance);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        if (i % 5 != 0) REQUIRE(shown.pixels[i] == black.pixels[i]);
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "a frame is exposed like a picture from elsewhere, and like a first frame") {
+    Scene scene = cornell_box();
+    scene.world.set(scene.light, at({0.0F, 1.5F, 0.5F}));
+    scene.world.set(scene.light, PointLight{.intensity = 0.01F});
+    const RenderTarget target(device, size);
+    const RenderTarget other(device, size);
+    for (const ToneCurve curve : {ToneCurve::filmic, ToneCurve::neutral, ToneCurve::aces}) {
+        set({.exposure_ev = 0.5F, .curve = curve, .automatic_exposure = true});
+        for (const float intensity : {0.01F, 100.0F}) {
+            scene.world.edit<PointLight>(scene.light, [&](PointLight& l) { l.intensity = intensity; });
+            const RenderView view{
+                .camera = scene.camera, .target = target.target(), .keep = {.radiance = true}};
+            renderer.render(scene.world, {&view, 1});
+            CHECK(ran("exposure"));
+            renderer.tone_map(renderer.results().radiance.texture, other.target());
+            CHECK(target.read() == other.read());
+            CHECK(target.read() == from_scratch(scene, size));
+            renderer.render(scene.world, {&view, 1});
+            CHECK_FALSE(ran("exposure"));
+            CHECK(target.read() == other.read());
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "each view has its own exposure") {
+    Scene scene = cornell_box();
+    const Entity second = add(scene.world, at({0.0F, 1.0F, 0.5F}), Camera{.vertical_fov = 0.3F});
+    set(automatic);
+    const std::array alone{render(scene.world, scene.camera, size), render(scene.world, second, size)};
+    const std::array targets{RenderTarget(device, size), RenderTarget(device, size)};
+    const std::array views{RenderView{.camera = scene.camera, .target = targets[0].target()},
+                           RenderView{.camera = second, .target = targets[1].target()}};
+    renderer.render(scene.world, views);
+    CHECK(targets[0].read() == alone[0]);
+    CHECK(targets[1].read() == alone[1]);
+}
+
+TEST_CASE_FIXTURE(ToneMapTests, "only what is tone-mapped light is exposed automatically") {
+    const Scene scene = cornell_box();
+    Configuration configuration = linear_configuration();
+    for (const Show show : all_shows) {
+        for (const bool enabled : {false, true}) {
+            CAPTURE(to_string(show));
+            CAPTURE(enabled);
+            configuration.show = show;
+            configuration.tone_map = {.enabled = enabled, .exposure_ev = 1.0F};
+            configure(configuration);
+            const Picture manual = render(scene, size);
+            CHECK_FALSE(has_exposure());
+            configuration.tone_map.automatic_exposure = true;
+            configure(configuration);
+            const Picture shown = render(scene, size);
+            CHECK(has_exposure() == (enabled && shows_light(show)));
+            if (!has_exposure()) CHECK(shown == manual);
+        }
+    }
+}
+
+}  // TEST_SUITE("tone map")

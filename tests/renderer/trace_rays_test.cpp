@@ -17,6 +17,8 @@
 #include "tests/renderer/scene_builder.hpp"
 #include "tests/seed.hpp"
 
+TEST_SUITE("compute tracer") {
+
 using namespace candela;
 
 namespace {
@@ -171,125 +173,123 @@ class TraceRays : public GlFixture {
 
 }  // namespace
 
-TEST_SUITE("compute tracer") {
-    TEST_CASE_FIXTURE(TraceRays, "hits in the Cornell box equal those on the CPU") {
-        check(tracer, cornell_box().world, random_rays(20'000, {0, 1, 0}, 0.95F), 0.7);
-    }
+TEST_CASE_FIXTURE(TraceRays, "hits in the Cornell box equal those on the CPU") {
+    check(tracer, cornell_box().world, random_rays(20'000, {0, 1, 0}, 0.95F), 0.7);
+}
 
-    TEST_CASE_FIXTURE(TraceRays, "hits among 100,000 triangles equal those on the CPU") {
-        World world;
-        add(world, Transform{}, MeshInstance{soup(100'000, 3)});
-        check(tracer, world, random_rays(10'000, {0, 0, 0}, 1.2F), 0.5);
-    }
+TEST_CASE_FIXTURE(TraceRays, "hits among 100,000 triangles equal those on the CPU") {
+    World world;
+    add(world, Transform{}, MeshInstance{soup(100'000, 3)});
+    check(tracer, world, random_rays(10'000, {0, 0, 0}, 1.2F), 0.5);
+}
 
-    TEST_CASE_FIXTURE(TraceRays, "hits with one triangle, and with none, equal those on the CPU") {
-        World world;
-        check(tracer, world, random_rays(100, {0, 0, 0}, 1.0F), -1.0);
-        add(world, Transform{}, MeshInstance{soup(1, 3)});
-        check(tracer, world, random_rays(1000, {0, 0, 0}, 1.0F), -1.0);
-    }
+TEST_CASE_FIXTURE(TraceRays, "hits with one triangle, and with none, equal those on the CPU") {
+    World world;
+    check(tracer, world, random_rays(100, {0, 0, 0}, 1.0F), -1.0);
+    add(world, Transform{}, MeshInstance{soup(1, 3)});
+    check(tracer, world, random_rays(1000, {0, 0, 0}, 1.0F), -1.0);
+}
 
-    TEST_CASE_FIXTURE(TraceRays, "hits of mirrored and sheared instances equal brute force") {
-        World world;
-        const Entity parent = add(world, Transform{.scale = {-0.7F, 1.3F, 1.0F}});
-        add(world, Transform{.rotation = glm::angleAxis(0.7F, glm::vec3(0, 0, 1)), .parent = parent},
-            MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
-        const auto rays = random_rays(2000, {0, 0, 0}, 0.3F);
-        const auto hits = tracer.trace(world, rays);
-        const auto triangles = world_triangles(world);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            // Two-sided brute force over the world's own triangles: mirrored ones have another order of
-            // corners.
-            float nearest = rays[i].t_max;
-            for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-                const auto hit =
-                    intersect(triangles[t], t,
-                              {.origin = rays[i].origin, .direction = rays[i].direction, .t_max = nearest});
-                if (hit) nearest = hit->t;
-            }
-            REQUIRE((nearest < rays[i].t_max) == std::isfinite(hits[i].t));
-            if (!std::isfinite(hits[i].t)) continue;
-            REQUIRE(std::abs(hits[i].t - nearest) <= 1e-5F * std::max(nearest, 1.0F));
-            // Counter-clockwise as seen from the front, which faces inwards.
-            const Triangle& t = hits[i].triangle;
-            CHECK(glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a) < 0.0F);
+TEST_CASE_FIXTURE(TraceRays, "hits of mirrored and sheared instances equal brute force") {
+    World world;
+    const Entity parent = add(world, Transform{.scale = {-0.7F, 1.3F, 1.0F}});
+    add(world, Transform{.rotation = glm::angleAxis(0.7F, glm::vec3(0, 0, 1)), .parent = parent},
+        MeshInstance{box_inwards(1.0F, diffuse(glm::vec3(0.5F)))});
+    const auto rays = random_rays(2000, {0, 0, 0}, 0.3F);
+    const auto hits = tracer.trace(world, rays);
+    const auto triangles = world_triangles(world);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        // Two-sided brute force over the world's own triangles: mirrored ones have another order of
+        // corners.
+        float nearest = rays[i].t_max;
+        for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+            const auto hit =
+                intersect(triangles[t], t,
+                          {.origin = rays[i].origin, .direction = rays[i].direction, .t_max = nearest});
+            if (hit) nearest = hit->t;
         }
-    }
-
-    TEST_CASE_FIXTURE(TraceRays,
-                      "hits equal those on the CPU after each of many additions, moves and removals") {
-        std::mt19937 random(test_seed(12));
-        const auto number = [&](float lower, float upper) {
-            return std::uniform_real_distribution<float>(lower, upper)(random);
-        };
-        const auto anywhere = [&] {
-            const float x = number(-0.7F, 0.7F), y = number(-0.7F, 0.7F), angle = number(0.0F, 6.0F);
-            return Transform{.translation = {x, y, number(-0.7F, 0.7F)},
-                             .rotation = glm::angleAxis(angle, glm::normalize(glm::vec3(1, x, y))),
-                             .scale = {number(0.1F, 0.8F), 0.4F, 0.3F}};
-        };
-        World world;
-        std::vector<Entity> soups;
-        const auto any = [&] { return soups[random() % soups.size()]; };
-        const auto rays = random_rays(500, {0, 0, 0}, 1.0F);
-        for (std::uint32_t edit = 0; edit < 60; ++edit) {
-            CAPTURE(edit);
-            // Sizes from a leaf to more triangles than all others have together.
-            const std::size_t triangles = std::size_t{1} << (random() % 13);
-            switch (soups.empty() ? 0 : random() % 5) {
-                case 0:
-                case 1:
-                    soups.push_back(add(world, anywhere(), MeshInstance{soup(triangles, edit, 0.3F)}));
-                    break;
-                case 2: {
-                    const auto gone = soups.begin() + static_cast<std::ptrdiff_t>(random() % soups.size());
-                    world.destroy(*gone);
-                    soups.erase(gone);
-                    break;
-                }
-                default:
-                    world.set(any(), anywhere());
-                    if (edit % 2 == 0) world.set(any(), anywhere());
-            }
-            check(tracer, world, rays, -1.0);
-        }
-    }
-
-    TEST_CASE_FIXTURE(TraceRays,
-                      "of surfaces in one place the same one is hit, whatever came and went before") {
-        // Each of another colour.
-        const auto sheet = [](std::uint32_t number) {
-            Mesh mesh = *soup(50, 1, 0.5F);
-            for (Vertex& vertex : mesh.primitives.front().vertices) {
-                vertex.colour = {number << 10U, 0, 0, 65535};
-            }
-            return std::make_shared<const Mesh>(std::move(mesh));
-        };
-        std::mt19937 random(test_seed(13));
-        World world;
-        std::vector<Entity> sheets;
-        const auto rays = random_rays(50, {0, 0, 0}, 1.0F);
-        for (std::uint32_t edit = 0; edit < 30; ++edit) {
-            CAPTURE(edit);
-            if (sheets.size() < 2 || random() % 2 == 0) {
-                sheets.push_back(add(world, MeshInstance{sheet(edit)}));
-            } else if (random() % 2 == 0) {
-                // Moves the last component of the pool into the gap.
-                world.destroy(sheets.front());
-                sheets.erase(sheets.begin());
-            } else {
-                world.set(sheets[random() % sheets.size()], MeshInstance{sheet(edit)});
-            }
-            Tracer fresh(context->get_proc());
-            const auto hits = tracer.trace(world, rays);
-            const auto wanted = fresh.trace(world, rays);
-            std::size_t count = 0;
-            for (std::size_t i = 0; i < rays.size(); ++i) {
-                CHECK(hits[i].t == wanted[i].t);
-                CHECK(hits[i].colour == wanted[i].colour);
-                count += std::isfinite(hits[i].t) ? 1 : 0;
-            }
-            CHECK(count > 0);
-        }
+        REQUIRE((nearest < rays[i].t_max) == std::isfinite(hits[i].t));
+        if (!std::isfinite(hits[i].t)) continue;
+        REQUIRE(std::abs(hits[i].t - nearest) <= 1e-5F * std::max(nearest, 1.0F));
+        // Counter-clockwise as seen from the front, which faces inwards.
+        const Triangle& t = hits[i].triangle;
+        CHECK(glm::dot(glm::cross(t.b - t.a, t.c - t.a), t.a) < 0.0F);
     }
 }
+
+TEST_CASE_FIXTURE(TraceRays, "hits equal those on the CPU after each of many additions, moves and removals") {
+    std::mt19937 random(test_seed(12));
+    const auto number = [&](float lower, float upper) {
+        return std::uniform_real_distribution<float>(lower, upper)(random);
+    };
+    const auto anywhere = [&] {
+        const float x = number(-0.7F, 0.7F), y = number(-0.7F, 0.7F), angle = number(0.0F, 6.0F);
+        return Transform{.translation = {x, y, number(-0.7F, 0.7F)},
+                         .rotation = glm::angleAxis(angle, glm::normalize(glm::vec3(1, x, y))),
+                         .scale = {number(0.1F, 0.8F), 0.4F, 0.3F}};
+    };
+    World world;
+    std::vector<Entity> soups;
+    const auto any = [&] { return soups[random() % soups.size()]; };
+    const auto rays = random_rays(500, {0, 0, 0}, 1.0F);
+    for (std::uint32_t edit = 0; edit < 60; ++edit) {
+        CAPTURE(edit);
+        // Sizes from a leaf to more triangles than all others have together.
+        const std::size_t triangles = std::size_t{1} << (random() % 13);
+        switch (soups.empty() ? 0 : random() % 5) {
+            case 0:
+            case 1:
+                soups.push_back(add(world, anywhere(), MeshInstance{soup(triangles, edit, 0.3F)}));
+                break;
+            case 2: {
+                const auto gone = soups.begin() + static_cast<std::ptrdiff_t>(random() % soups.size());
+                world.destroy(*gone);
+                soups.erase(gone);
+                break;
+            }
+            default:
+                world.set(any(), anywhere());
+                if (edit % 2 == 0) world.set(any(), anywhere());
+        }
+        check(tracer, world, rays, -1.0);
+    }
+}
+
+TEST_CASE_FIXTURE(TraceRays, "of surfaces in one place the same one is hit, whatever came and went before") {
+    // Each of another colour.
+    const auto sheet = [](std::uint32_t number) {
+        Mesh mesh = *soup(50, 1, 0.5F);
+        for (Vertex& vertex : mesh.primitives.front().vertices) {
+            vertex.colour = {number << 10U, 0, 0, 65535};
+        }
+        return std::make_shared<const Mesh>(std::move(mesh));
+    };
+    std::mt19937 random(test_seed(13));
+    World world;
+    std::vector<Entity> sheets;
+    const auto rays = random_rays(50, {0, 0, 0}, 1.0F);
+    for (std::uint32_t edit = 0; edit < 30; ++edit) {
+        CAPTURE(edit);
+        if (sheets.size() < 2 || random() % 2 == 0) {
+            sheets.push_back(add(world, MeshInstance{sheet(edit)}));
+        } else if (random() % 2 == 0) {
+            // Moves the last component of the pool into the gap.
+            world.destroy(sheets.front());
+            sheets.erase(sheets.begin());
+        } else {
+            world.set(sheets[random() % sheets.size()], MeshInstance{sheet(edit)});
+        }
+        Tracer fresh(context->get_proc());
+        const auto hits = tracer.trace(world, rays);
+        const auto wanted = fresh.trace(world, rays);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            CHECK(hits[i].t == wanted[i].t);
+            CHECK(hits[i].colour == wanted[i].colour);
+            count += std::isfinite(hits[i].t) ? 1 : 0;
+        }
+        CHECK(count > 0);
+    }
+}
+
+}  // TEST_SUITE("compute tracer")

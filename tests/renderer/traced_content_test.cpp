@@ -9,6 +9,8 @@
 #include <candela/graph/compile.hpp>
 #include "tests/engine/recording_backend.hpp"
 
+TEST_SUITE("traced content") {
+
 using namespace candela;
 
 namespace {
@@ -68,22 +70,22 @@ class TracingPass {
 
 }  // namespace
 
-TEST_SUITE("traced content") {
-    TEST_CASE_FIXTURE(TracingPass, "all of it is traced first, then where something has moved") {
-        CHECK(outdated(0, 1, 8) == std::nullopt);
-        CHECK(outdated(0, 1, 8) == std::vector<Box>{});
-        CHECK(outdated(1, 1, 8) == std::vector<Box>{box});
-        CHECK(outdated(1, 1, 8) == std::vector<Box>{});
-        CHECK(outdated(3, 1, 8) == std::nullopt);  // the boxes of step 2 are not known
-    }
-
-    TEST_CASE_FIXTURE(TracingPass, "another key, another object or other content make all of it outdated") {
-        CHECK(outdated(0, 1, 8) == std::nullopt);
-        CHECK(outdated(0, 2, 8) == std::nullopt);
-        CHECK(outdated(0, 2, 8) == std::vector<Box>{});
-        CHECK(outdated(0, 2, 80) == std::nullopt);
-        CHECK(outdated(0, 2, 8) == std::vector<Box>{});
-        (void)outdated(0, -1, 8);
-        CHECK(outdated(0, 2, 8) == std::nullopt);
-    }
+TEST_CASE_FIXTURE(TracingPass, "all of it is traced first, then where something has moved") {
+    CHECK(outdated(0, 1, 8) == std::nullopt);
+    CHECK(outdated(0, 1, 8) == std::vector<Box>{});
+    CHECK(outdated(1, 1, 8) == std::vector<Box>{box});
+    CHECK(outdated(1, 1, 8) == std::vector<Box>{});
+    CHECK(outdated(3, 1, 8) == std::nullopt);  // the boxes of step 2 are not known
 }
+
+TEST_CASE_FIXTURE(TracingPass, "another key, another object or other content make all of it outdated") {
+    CHECK(outdated(0, 1, 8) == std::nullopt);
+    CHECK(outdated(0, 2, 8) == std::nullopt);
+    CHECK(outdated(0, 2, 8) == std::vector<Box>{});
+    CHECK(outdated(0, 2, 80) == std::nullopt);
+    CHECK(outdated(0, 2, 8) == std::vector<Box>{});
+    (void)outdated(0, -1, 8);
+    CHECK(outdated(0, 2, 8) == std::nullopt);
+}
+
+}  // TEST_SUITE("traced content")

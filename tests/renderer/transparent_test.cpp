@@ -7,6 +7,8 @@
 
 #include "tests/renderer/scene_builder.hpp"
 
+TEST_SUITE("transparent surfaces") {
+
 using namespace candela;
 
 namespace {
@@ -125,134 +127,133 @@ std::vector<glm::vec4> with_alpha(const gl::Functions& gl, Renderer& renderer, c
 
 }  // namespace
 
-TEST_SUITE("transparent surfaces") {
-    TEST_CASE_FIXTURE(Transparent, "a pane is blended with the background by its alpha") {
-        for (const float alpha : {0.0F, 0.3F, 1.0F}) {
-            CAPTURE(alpha);
-            Scene scene = lit_ground();
-            const Pane pane{.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = alpha};
-            add_pane(scene, pane);
-            renderer.invalidate();
-            check(scene, {pane});
-        }
-    }
-
-    TEST_CASE_FIXTURE(Transparent,
-                      "panes are drawn back to front, in any order of creation and after they move") {
-        const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
-        const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
-        for (const bool lower_first : {true, false}) {
-            CAPTURE(lower_first);
-            Scene scene = lit_ground();
-            const Entity first = add_pane(scene, lower_first ? lower : upper);
-            const Entity second = add_pane(scene, lower_first ? upper : lower);
-            renderer.invalidate();
-            check(scene, {lower, upper});
-
-            // They swap heights.
-            const auto swap_height = [&](Entity entity, float height) {
-                scene.world.set(entity, at({0, height, 0}));
-            };
-            swap_height(first, lower_first ? upper.height : lower.height);
-            swap_height(second, lower_first ? lower.height : upper.height);
-            Pane now_lower = upper, now_upper = lower;
-            now_lower.height = lower.height;
-            now_upper.height = upper.height;
-            check(scene, {now_lower, now_upper});
-        }
-    }
-
-    TEST_CASE_FIXTURE(Transparent, "panes are also sorted for an orthographic camera") {
-        const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
-        const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
+TEST_CASE_FIXTURE(Transparent, "a pane is blended with the background by its alpha") {
+    for (const float alpha : {0.0F, 0.3F, 1.0F}) {
+        CAPTURE(alpha);
         Scene scene = lit_ground();
-        add_pane(scene, upper);
-        add_pane(scene, lower);
+        const Pane pane{.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = alpha};
+        add_pane(scene, pane);
+        renderer.invalidate();
+        check(scene, {pane});
+    }
+}
+
+TEST_CASE_FIXTURE(Transparent,
+                  "panes are drawn back to front, in any order of creation and after they move") {
+    const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
+    const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
+    for (const bool lower_first : {true, false}) {
+        CAPTURE(lower_first);
+        Scene scene = lit_ground();
+        const Entity first = add_pane(scene, lower_first ? lower : upper);
+        const Entity second = add_pane(scene, lower_first ? upper : lower);
+        renderer.invalidate();
+        check(scene, {lower, upper});
+
+        // They swap heights.
+        const auto swap_height = [&](Entity entity, float height) {
+            scene.world.set(entity, at({0, height, 0}));
+        };
+        swap_height(first, lower_first ? upper.height : lower.height);
+        swap_height(second, lower_first ? lower.height : upper.height);
+        Pane now_lower = upper, now_upper = lower;
+        now_lower.height = lower.height;
+        now_upper.height = upper.height;
+        check(scene, {now_lower, now_upper});
+    }
+}
+
+TEST_CASE_FIXTURE(Transparent, "panes are also sorted for an orthographic camera") {
+    const Pane lower{.height = 0.5F, .half = 0.8F, .albedo = 0.2F, .alpha = 0.6F};
+    const Pane upper{.height = 1.4F, .half = 0.5F, .albedo = 1.0F, .alpha = 0.4F};
+    Scene scene = lit_ground();
+    add_pane(scene, upper);
+    add_pane(scene, lower);
+    scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
+                                         .half_height = 1.5F,
+                                         .near_plane = 0.0F,
+                                         .far_plane = 10.0F});
+    check(scene, {lower, upper});
+}
+
+TEST_CASE_FIXTURE(Transparent, "the far side of a double-sided surface is drawn before the near one") {
+    // A box seen from directly above. Its top and bottom are at different distances from the light.
+    // Mirroring it reverses the order of its triangles.
+    for (const float mirror : {1.0F, -1.0F}) {
+        CAPTURE(mirror);
+        Scene scene = lit_ground();
+        add(scene.world, Transform{.translation = {0, 1.0F, 0}, .scale = {1, mirror, 1}},
+            MeshInstance{box_outwards(0.6F, glass(glm::vec3(0.8F), 0.5F, true))});
+        scene.world.set(scene.camera, looking({0, 3, 0}, {0, 0, 0}, {0, 0, 1}));
         scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
                                              .half_height = 1.5F,
                                              .near_plane = 0.0F,
                                              .far_plane = 10.0F});
-        check(scene, {lower, upper});
+        renderer.invalidate();
+        const Pane bottom{.height = 0.4F, .half = 0.6F, .albedo = 0.8F, .alpha = 0.5F};
+        const Pane top{.height = 1.6F, .half = 0.6F, .albedo = 0.8F, .alpha = 0.5F};
+        check(scene, {bottom, top});
     }
+}
 
-    TEST_CASE_FIXTURE(Transparent, "the far side of a double-sided surface is drawn before the near one") {
-        // A box seen from directly above. Its top and bottom are at different distances from the light.
-        // Mirroring it reverses the order of its triangles.
-        for (const float mirror : {1.0F, -1.0F}) {
-            CAPTURE(mirror);
-            Scene scene = lit_ground();
-            add(scene.world, Transform{.translation = {0, 1.0F, 0}, .scale = {1, mirror, 1}},
-                MeshInstance{box_outwards(0.6F, glass(glm::vec3(0.8F), 0.5F, true))});
-            scene.world.set(scene.camera, looking({0, 3, 0}, {0, 0, 0}, {0, 0, 1}));
-            scene.world.set(scene.camera, Camera{.projection = Camera::Projection::orthographic,
-                                                 .half_height = 1.5F,
-                                                 .near_plane = 0.0F,
-                                                 .far_plane = 10.0F});
-            renderer.invalidate();
-            const Pane bottom{.height = 0.4F, .half = 0.6F, .albedo = 0.8F, .alpha = 0.5F};
-            const Pane top{.height = 1.6F, .half = 0.6F, .albedo = 0.8F, .alpha = 0.5F};
-            check(scene, {bottom, top});
+TEST_CASE_FIXTURE(Transparent,
+                  "backs of single-sided panes, and panes behind opaque surfaces, are not drawn") {
+    const Scene without = lit_ground();
+    Scene with = lit_ground();
+    add(with.world,
+        Transform{.translation = {0, 1, 0}, .rotation = glm::angleAxis(3.14159265F, glm::vec3(1, 0, 0))},
+        MeshInstance{square(0.6F, glass(glm::vec3(0.9F), 0.5F))});
+    add(with.world, at({0, -0.5F, 0}), MeshInstance{square(0.6F, glass(glm::vec3(0.9F), 0.5F))});
+    for (const ShadingPath path : all_shading_paths) {
+        renderer.invalidate();
+        const Picture expected = picture(without, path);
+        renderer.invalidate();
+        CHECK(picture(with, path) == expected);
+    }
+}
+
+TEST_CASE_FIXTURE(Transparent,
+                  "a pane over the background is blended with black, and its pixels have an alpha of 1") {
+    Scene scene = lit_ground();
+    Scene empty;
+    empty.camera = add(empty.world, scene.world.get<Transform>(scene.camera), Camera{});
+    add(empty.world, at(glm::vec3(light_position)), PointLight{.intensity = static_cast<float>(intensity)});
+    add_pane(empty, {.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F});
+    check(empty, {{.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F}}, 0.0);
+
+    const RenderTarget target(device, size);
+    for (const ShadingPath path : all_shading_paths) {
+        configure(linear_configuration(path));
+        renderer.invalidate();
+        std::size_t covered = 0;
+        for (const glm::vec4& pixel : with_alpha(device.gl(), renderer, empty, target)) {
+            CHECK(pixel.a == (pixel.r > 0.0F ? 1.0F : 0.0F));
+            covered += pixel.a == 1.0F ? 1 : 0;
         }
-    }
-
-    TEST_CASE_FIXTURE(Transparent,
-                      "backs of single-sided panes, and panes behind opaque surfaces, are not drawn") {
-        const Scene without = lit_ground();
-        Scene with = lit_ground();
-        add(with.world,
-            Transform{.translation = {0, 1, 0}, .rotation = glm::angleAxis(3.14159265F, glm::vec3(1, 0, 0))},
-            MeshInstance{square(0.6F, glass(glm::vec3(0.9F), 0.5F))});
-        add(with.world, at({0, -0.5F, 0}), MeshInstance{square(0.6F, glass(glm::vec3(0.9F), 0.5F))});
-        for (const ShadingPath path : all_shading_paths) {
-            renderer.invalidate();
-            const Picture expected = picture(without, path);
-            renderer.invalidate();
-            CHECK(picture(with, path) == expected);
-        }
-    }
-
-    TEST_CASE_FIXTURE(Transparent,
-                      "a pane over the background is blended with black, and its pixels have an alpha of 1") {
-        Scene scene = lit_ground();
-        Scene empty;
-        empty.camera = add(empty.world, scene.world.get<Transform>(scene.camera), Camera{});
-        add(empty.world, at(glm::vec3(light_position)),
-            PointLight{.intensity = static_cast<float>(intensity)});
-        add_pane(empty, {.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F});
-        check(empty, {{.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F}}, 0.0);
-
-        const RenderTarget target(device, size);
-        for (const ShadingPath path : all_shading_paths) {
-            configure(linear_configuration(path));
-            renderer.invalidate();
-            std::size_t covered = 0;
-            for (const glm::vec4& pixel : with_alpha(device.gl(), renderer, empty, target)) {
-                CHECK(pixel.a == (pixel.r > 0.0F ? 1.0F : 0.0F));
-                covered += pixel.a == 1.0F ? 1 : 0;
-            }
-            CHECK(covered > 300);
-            add_pane(scene, {.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F});
-            renderer.invalidate();
-            for (const glm::vec4& pixel : with_alpha(device.gl(), renderer, scene, target)) {
-                CHECK(pixel.a == 1.0F);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(Transparent,
-                      "light passes through panes: shadows, VPLs and the number of triangles do not change") {
-        const Scene without = lit_ground();
-        Scene with = lit_ground();
-        add_pane(with, {.height = 3.5F, .half = 2.0F, .albedo = 0.9F, .alpha = 0.9F});  // above the camera
-        for (const ShadingPath path : all_shading_paths) {
-            renderer.invalidate();
-            const Picture expected = picture(without, path, true);
-            const Report report = renderer.report();
-            renderer.invalidate();
-            CHECK(picture(with, path, true) == expected);
-            CHECK(renderer.report().triangles == report.triangles);
-            CHECK(renderer.report().vpls->alive == report.vpls->alive);
-            CHECK(renderer.report().vpls->flux.absorbed == report.vpls->flux.absorbed);
+        CHECK(covered > 300);
+        add_pane(scene, {.height = 1.0F, .half = 0.6F, .albedo = 0.9F, .alpha = 0.3F});
+        renderer.invalidate();
+        for (const glm::vec4& pixel : with_alpha(device.gl(), renderer, scene, target)) {
+            CHECK(pixel.a == 1.0F);
         }
     }
 }
+
+TEST_CASE_FIXTURE(Transparent,
+                  "light passes through panes: shadows, VPLs and the number of triangles do not change") {
+    const Scene without = lit_ground();
+    Scene with = lit_ground();
+    add_pane(with, {.height = 3.5F, .half = 2.0F, .albedo = 0.9F, .alpha = 0.9F});  // above the camera
+    for (const ShadingPath path : all_shading_paths) {
+        renderer.invalidate();
+        const Picture expected = picture(without, path, true);
+        const Report report = renderer.report();
+        renderer.invalidate();
+        CHECK(picture(with, path, true) == expected);
+        CHECK(renderer.report().triangles == report.triangles);
+        CHECK(renderer.report().vpls->alive == report.vpls->alive);
+        CHECK(renderer.report().vpls->flux.absorbed == report.vpls->flux.absorbed);
+    }
+}
+
+}  // TEST_SUITE("transparent surfaces")

@@ -10,6 +10,8 @@
 
 #include "tests/renderer/path_fixture.hpp"
 
+TEST_SUITE("geometry term") {
+
 using namespace candela;
 
 namespace {
@@ -74,68 +76,68 @@ class VplGeometry : public RenderFixture {
 
 }  // namespace
 
-TEST_SUITE("geometry term") {
-    // VPLs represent discs with a radius R of 0.05 m here: R² = 4A / (π N), with 8 m² and 4096 VPLs.
-    constexpr double radius = 0.05;
-    constexpr double scatter = 0.02;  // of the VPLs: more than 1/√N, as the sun's footprint wastes some
+// VPLs represent discs with a radius R of 0.05 m here: R² = 4A / (π N), with 8 m² and 4096 VPLs.
+constexpr double radius = 0.05;
+constexpr double scatter = 0.02;  // of the VPLs: more than 1/√N, as the sun's footprint wastes some
 
-    TEST_CASE_FIXTURE(VplGeometry, "a wall that stands on a lit floor is lit down to the floor") {
-        for (const glm::quat& turn : turns) {
-            CAPTURE(glm::degrees(glm::angle(turn)));
-            const std::vector<double> found = rows(sunlit_floor(0.0F, 0.0F, turn));
-            for (std::uint32_t y = 0; y < size.y; ++y) {
-                const double height = 2.0 * (y + 0.5) / size.y;
-                const double exact = albedo * albedo / pi * floor_factor(height, 2.0);
-                CAPTURE(height);
-                // A disc alone would remove all light towards the foot. The loss fades as R over the height.
-                CHECK(found[y] > exact * (1.0 - std::min(0.3, 0.2 * radius / height) - scatter));
-                CHECK(found[y] < exact * (1.0 + scatter));
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(VplGeometry, "the light of a wall beyond the edge of a lit floor starts at zero") {
-        const double gap = 2.0 * radius;
-        for (const glm::quat& turn : turns) {
-            CAPTURE(glm::degrees(glm::angle(turn)));
-            const std::vector<double> found = rows(sunlit_floor(static_cast<float>(gap), -1.0F, turn));
-            const double peak = *std::ranges::max_element(found);
-            for (std::uint32_t y = 0; y < size.y; ++y) {
-                const double height = 2.0 * (y + 0.5) / size.y - 1.0;
-                const double factor = floor_factor(height, 2.0 + gap) - floor_factor(height, gap);
-                const double exact = height < 0.0 ? 0.0 : albedo * albedo / pi * factor;
-                CAPTURE(height);
-                // Discs two radii away are slightly blurred, and VPLs are noisy. If the floor were assumed to
-                // extend to the wall, the lowest rows would be off by an eighth of the peak or more.
-                CHECK(std::abs(found[y] - exact) < 0.07 * peak);
-            }
-        }
-    }
-
-    TEST_CASE_FIXTURE(VplGeometry, "no pixel on the edge between two walls is dark") {
-        // The camera looks straight into a box: the edges between walls run at 45 degrees, through pixel
-        // centres.
-        const Scene scene = shipped_scene("furnace");
-        Configuration configuration = linear_configuration();
-        configuration.show = Show::indirect;
-        configuration.vpls.placement = VplPlacement::paths;
-        // With more VPLs the discs are so small that the pixel in a corner is deep inside them.
-        configuration.vpls.count = 256;
-        const auto picture = [&](VplVisibility method) {
-            configuration.visibility.method = method;
-            configure(configuration);
-            return render(scene, {96, 96});
-        };
-        const Picture open = picture(VplVisibility::none);
-        // All walls are lit equally, except for the light that is removed near VPLs, mostly in the corners of
-        // the box.
-        CHECK(static_cast<double>(std::ranges::min_element(open.pixels, {}, &glm::vec3::r)->r) >
-              0.5 * mean(open));
-        CHECK(worst_error(picture(VplVisibility::rays), open, 0.0) < 1e-4);  // sums in another order
-        // Half of the texels that a look-up in a map reads may be of the other wall.
-        const Picture mapped = picture(VplVisibility::maps);
-        for (std::size_t i = 0; i < open.pixels.size(); ++i) {
-            CHECK(mapped.pixels[i].r > 0.5F * open.pixels[i].r);
+TEST_CASE_FIXTURE(VplGeometry, "a wall that stands on a lit floor is lit down to the floor") {
+    for (const glm::quat& turn : turns) {
+        CAPTURE(glm::degrees(glm::angle(turn)));
+        const std::vector<double> found = rows(sunlit_floor(0.0F, 0.0F, turn));
+        for (std::uint32_t y = 0; y < size.y; ++y) {
+            const double height = 2.0 * (y + 0.5) / size.y;
+            const double exact = albedo * albedo / pi * floor_factor(height, 2.0);
+            CAPTURE(height);
+            // A disc alone would remove all light towards the foot. The loss fades as R over the height.
+            CHECK(found[y] > exact * (1.0 - std::min(0.3, 0.2 * radius / height) - scatter));
+            CHECK(found[y] < exact * (1.0 + scatter));
         }
     }
 }
+
+TEST_CASE_FIXTURE(VplGeometry, "the light of a wall beyond the edge of a lit floor starts at zero") {
+    const double gap = 2.0 * radius;
+    for (const glm::quat& turn : turns) {
+        CAPTURE(glm::degrees(glm::angle(turn)));
+        const std::vector<double> found = rows(sunlit_floor(static_cast<float>(gap), -1.0F, turn));
+        const double peak = *std::ranges::max_element(found);
+        for (std::uint32_t y = 0; y < size.y; ++y) {
+            const double height = 2.0 * (y + 0.5) / size.y - 1.0;
+            const double factor = floor_factor(height, 2.0 + gap) - floor_factor(height, gap);
+            const double exact = height < 0.0 ? 0.0 : albedo * albedo / pi * factor;
+            CAPTURE(height);
+            // Discs two radii away are slightly blurred, and VPLs are noisy. If the floor were assumed to
+            // extend to the wall, the lowest rows would be off by an eighth of the peak or more.
+            CHECK(std::abs(found[y] - exact) < 0.07 * peak);
+        }
+    }
+}
+
+TEST_CASE_FIXTURE(VplGeometry, "no pixel on the edge between two walls is dark") {
+    // The camera looks straight into a box: the edges between walls run at 45 degrees, through pixel
+    // centres.
+    const Scene scene = shipped_scene("furnace");
+    Configuration configuration = linear_configuration();
+    configuration.show = Show::indirect;
+    configuration.vpls.placement = VplPlacement::paths;
+    // With more VPLs the discs are so small that the pixel in a corner is deep inside them.
+    configuration.vpls.count = 256;
+    const auto picture = [&](VplVisibility method) {
+        configuration.visibility.method = method;
+        configure(configuration);
+        return render(scene, {96, 96});
+    };
+    const Picture open = picture(VplVisibility::none);
+    // All walls are lit equally, except for the light that is removed near VPLs, mostly in the corners of
+    // the box.
+    CHECK(static_cast<double>(std::ranges::min_element(open.pixels, {}, &glm::vec3::r)->r) >
+          0.5 * mean(open));
+    CHECK(worst_error(picture(VplVisibility::rays), open, 0.0) < 1e-4);  // sums in another order
+    // Half of the texels that a look-up in a map reads may be of the other wall.
+    const Picture mapped = picture(VplVisibility::maps);
+    for (std::size_t i = 0; i < open.pixels.size(); ++i) {
+        CHECK(mapped.pixels[i].r > 0.5F * open.pixels[i].r);
+    }
+}
+
+}  // TEST_SUITE("geometry term")

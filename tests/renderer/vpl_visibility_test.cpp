@@ -166,177 +166,176 @@ Scene closed_rooms() {
 }  // namespace
 
 TEST_SUITE("VPL visibility") {
-    TEST_CASE_FIXTURE(VplVisibilityTests, "an unoccluded plane is not darkened") {
-        for (const float scale : scales) {
-            const Scene scene = lit_wall(scale, 0.4F);
-            Configuration configuration = indirect_only(VplVisibility::none);
-            configuration.vpls.count = 64;
-            const Picture lit = picture(scene, configuration);
-            REQUIRE(mean(lit) > 1e-4);
-            configuration.visibility.method = VplVisibility::maps;
-            for (const std::uint32_t resolution : resolutions) {
-                CAPTURE(scale);
-                CAPTURE(resolution);
-                configuration.visibility.map_resolution = resolution;
-                // No pixel differs by more than 1 %.
-                CHECK(worst_error(picture(scene, configuration), lit, 1e-12) < 0.01);
-            }
-            configuration.visibility.method = VplVisibility::rays;
-            CHECK(picture(scene, configuration) == lit);
-        }
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests, "smooth normals do not darken the inside of a sphere") {
-        Scene scene;
-        // Facets of 8°: shading normals differ by up to 5° from the normals of facets.
-        add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 3, diffuse(glm::vec3(0.5F)))});
-        add(scene.world, at({0.5F, 0.3F, 0.2F}), PointLight{});
-        scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+TEST_CASE_FIXTURE(VplVisibilityTests, "an unoccluded plane is not darkened") {
+    for (const float scale : scales) {
+        const Scene scene = lit_wall(scale, 0.4F);
         Configuration configuration = indirect_only(VplVisibility::none);
-        configuration.vpls.count = 12;  // few, so that missing one of them makes a large difference
+        configuration.vpls.count = 64;
         const Picture lit = picture(scene, configuration);
+        REQUIRE(mean(lit) > 1e-4);
         configuration.visibility.method = VplVisibility::maps;
         for (const std::uint32_t resolution : resolutions) {
-            configuration.visibility.map_resolution = resolution;
+            CAPTURE(scale);
             CAPTURE(resolution);
+            configuration.visibility.map_resolution = resolution;
+            // No pixel differs by more than 1 %.
             CHECK(worst_error(picture(scene, configuration), lit, 1e-12) < 0.01);
         }
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests,
-                      "the shadow of a sheet is at the right place and begins at its lower edge") {
-        for (const float scale : scales) {
-            for (const std::uint32_t resolution : resolutions) {
-                check_sheet(indirect_only(VplVisibility::maps, resolution), scale, 2.0);
-            }
-            // Rays are exact except for the offsets of their ends: here a hundredth of a texel's diagonal.
-            check_sheet(indirect_only(VplVisibility::rays), scale, 0.01);
-        }
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests,
-                      "depth maps approach the result of rays as their resolution grows") {
-        const Scene scene = cornell_box();
-        Configuration configuration = indirect_only(VplVisibility::rays);
-        configuration.vpls.count = 96;
-        configuration.vpls.bounces = 3;
-        const Picture exact = picture(scene, configuration);
-        configuration.visibility.method = VplVisibility::none;
-        const double without = relative_error(picture(scene, configuration), exact);
-        configuration.visibility.method = VplVisibility::maps;
-        double coarser = without;
-        for (const std::uint32_t resolution : {16U, 64U, 256U}) {
-            CAPTURE(resolution);
-            configuration.visibility.map_resolution = resolution;
-            const double error = relative_error(picture(scene, configuration), exact);
-            CHECK(error < 0.7 * coarser);  // noise alone would reduce it less
-            coarser = error;
-        }
-        // 256 texels per side: 16 slots per layer, and so 6 layers. A texel is 1/100 rad, a blurred edge 2 cm
-        // wide.
-        CHECK(coarser < 0.02);
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests, "no light passes a closed door") {
-        Scene scene = closed_rooms();
-        const Entity dark = scene.camera;
-        const Entity lit = add(scene.world, looking({-0.3F, 1.7F, 1.7F}, {-2.5F, 0.85F, -0.4F}),
-                               Camera{.vertical_fov = 1.2F});
-        for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays}) {
-            CAPTURE(to_string(method));
-            Configuration configuration = indirect_only(method, 64);
-            configuration.vpls.bounces = 3;
-            scene.camera = lit;
-            const double bright = mean(picture(scene, configuration));
-            scene.camera = dark;
-            CHECK(mean(picture(scene, configuration)) < 1e-4 * bright);
-            CHECK(bright > 0.1);
-        }
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests, "a closed convex box has no shadows") {
-        const Scene scene = furnace_box(0.5F);
-        Configuration configuration = indirect_only(VplVisibility::none);
-        configuration.vpls.bounces = 16;
-        const Picture lit = picture(scene, configuration);
         configuration.visibility.method = VplVisibility::rays;
-        CHECK(relative_error(picture(scene, configuration), lit) < 1e-6);
-        // Along the box's edges, a texel that sees one wall darkens the other, in a strip as wide as the
-        // texel.
-        for (const auto& bound : {std::pair{32U, 0.03}, std::pair{128U, 0.01}}) {
-            const auto [resolution, most] = bound;
-            CAPTURE(bound.first);
-            configuration.visibility = {VplVisibility::maps, resolution};
-            const double share = mean(picture(scene, configuration)) / mean(lit);
-            CHECK(share <= 1.0);
-            CHECK(share > 1.0 - most);
-        }
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests,
-                      "switching the method leaks no objects and does not change later pictures") {
-        const Scene scene = cornell_box();
-        const auto round = [&] {
-            Picture last;
-            for (const VplVisibility method :
-                 {VplVisibility::maps, VplVisibility::rays, VplVisibility::none}) {
-                configure(indirect_only(method));
-                last = render(scene, size);
-            }
-            return last;
-        };
-        configure(indirect_only(VplVisibility::none));
-        const Picture before = render(scene, size);
-        CHECK(round() == before);
-        const gl::ObjectCounts once = device_of(renderer).live();
-        CHECK(round() == before);
-        CHECK(device_of(renderer).live() == once);
-    }
-
-    TEST_CASE_FIXTURE(VplVisibilityTests,
-                      "depth maps are drawn if the VPLs change, but not if the camera moves") {
-        Scene scene = cornell_box();
-        configure(indirect_only(VplVisibility::maps));
-        const Picture first = render(scene, size);
-        CHECK(ran("vpl-maps"));
-        Transform pose = scene.world.get<Transform>(scene.camera);
-        pose.translation.x += 0.1F;
-        scene.world.set(scene.camera, pose);
-        CHECK(render(scene, size) != first);
-        CHECK_FALSE(ran("vpl-maps"));
-        scene.world.set(scene.light, at({0.3F, 1.5F, 0.0F}));
-        const Picture moved = render(scene, size);
-        CHECK(ran("vpl-maps"));
-        renderer.invalidate();
-        CHECK(render(scene, size) == moved);
+        CHECK(picture(scene, configuration) == lit);
     }
 }
+
+TEST_CASE_FIXTURE(VplVisibilityTests, "smooth normals do not darken the inside of a sphere") {
+    Scene scene;
+    // Facets of 8°: shading normals differ by up to 5° from the normals of facets.
+    add(scene.world, Transform{}, MeshInstance{sphere_inwards(2.0F, 3, diffuse(glm::vec3(0.5F)))});
+    add(scene.world, at({0.5F, 0.3F, 0.2F}), PointLight{});
+    scene.camera = add(scene.world, looking({0.5F, 0.3F, 1.0F}, {0, 0, 0}), Camera{.vertical_fov = 1.4F});
+    Configuration configuration = indirect_only(VplVisibility::none);
+    configuration.vpls.count = 12;  // few, so that missing one of them makes a large difference
+    const Picture lit = picture(scene, configuration);
+    configuration.visibility.method = VplVisibility::maps;
+    for (const std::uint32_t resolution : resolutions) {
+        configuration.visibility.map_resolution = resolution;
+        CAPTURE(resolution);
+        CHECK(worst_error(picture(scene, configuration), lit, 1e-12) < 0.01);
+    }
+}
+
+TEST_CASE_FIXTURE(VplVisibilityTests,
+                  "the shadow of a sheet is at the right place and begins at its lower edge") {
+    for (const float scale : scales) {
+        for (const std::uint32_t resolution : resolutions) {
+            check_sheet(indirect_only(VplVisibility::maps, resolution), scale, 2.0);
+        }
+        // Rays are exact except for the offsets of their ends: here a hundredth of a texel's diagonal.
+        check_sheet(indirect_only(VplVisibility::rays), scale, 0.01);
+    }
+}
+
+TEST_CASE_FIXTURE(VplVisibilityTests, "depth maps approach the result of rays as their resolution grows") {
+    const Scene scene = cornell_box();
+    Configuration configuration = indirect_only(VplVisibility::rays);
+    configuration.vpls.count = 96;
+    configuration.vpls.bounces = 3;
+    const Picture exact = picture(scene, configuration);
+    configuration.visibility.method = VplVisibility::none;
+    const double without = relative_error(picture(scene, configuration), exact);
+    configuration.visibility.method = VplVisibility::maps;
+    double coarser = without;
+    for (const std::uint32_t resolution : {16U, 64U, 256U}) {
+        CAPTURE(resolution);
+        configuration.visibility.map_resolution = resolution;
+        const double error = relative_error(picture(scene, configuration), exact);
+        CHECK(error < 0.7 * coarser);  // noise alone would reduce it less
+        coarser = error;
+    }
+    // 256 texels per side: 16 slots per layer, and so 6 layers. A texel is 1/100 rad, a blurred edge 2 cm
+    // wide.
+    CHECK(coarser < 0.02);
+}
+
+TEST_CASE_FIXTURE(VplVisibilityTests, "no light passes a closed door") {
+    Scene scene = closed_rooms();
+    const Entity dark = scene.camera;
+    const Entity lit =
+        add(scene.world, looking({-0.3F, 1.7F, 1.7F}, {-2.5F, 0.85F, -0.4F}), Camera{.vertical_fov = 1.2F});
+    for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays}) {
+        CAPTURE(to_string(method));
+        Configuration configuration = indirect_only(method, 64);
+        configuration.vpls.bounces = 3;
+        scene.camera = lit;
+        const double bright = mean(picture(scene, configuration));
+        scene.camera = dark;
+        CHECK(mean(picture(scene, configuration)) < 1e-4 * bright);
+        CHECK(bright > 0.1);
+    }
+}
+
+TEST_CASE_FIXTURE(VplVisibilityTests, "a closed convex box has no shadows") {
+    const Scene scene = furnace_box(0.5F);
+    Configuration configuration = indirect_only(VplVisibility::none);
+    configuration.vpls.bounces = 16;
+    const Picture lit = picture(scene, configuration);
+    configuration.visibility.method = VplVisibility::rays;
+    CHECK(relative_error(picture(scene, configuration), lit) < 1e-6);
+    // Along the box's edges, a texel that sees one wall darkens the other, in a strip as wide as the
+    // texel.
+    for (const auto& bound : {std::pair{32U, 0.03}, std::pair{128U, 0.01}}) {
+        const auto [resolution, most] = bound;
+        CAPTURE(bound.first);
+        configuration.visibility = {VplVisibility::maps, resolution};
+        const double share = mean(picture(scene, configuration)) / mean(lit);
+        CHECK(share <= 1.0);
+        CHECK(share > 1.0 - most);
+    }
+}
+
+TEST_CASE_FIXTURE(VplVisibilityTests,
+                  "switching the method leaks no objects and does not change later pictures") {
+    const Scene scene = cornell_box();
+    const auto round = [&] {
+        Picture last;
+        for (const VplVisibility method : {VplVisibility::maps, VplVisibility::rays, VplVisibility::none}) {
+            configure(indirect_only(method));
+            last = render(scene, size);
+        }
+        return last;
+    };
+    configure(indirect_only(VplVisibility::none));
+    const Picture before = render(scene, size);
+    CHECK(round() == before);
+    const gl::ObjectCounts once = device_of(renderer).live();
+    CHECK(round() == before);
+    CHECK(device_of(renderer).live() == once);
+}
+
+TEST_CASE_FIXTURE(VplVisibilityTests,
+                  "depth maps are drawn if the VPLs change, but not if the camera moves") {
+    Scene scene = cornell_box();
+    configure(indirect_only(VplVisibility::maps));
+    const Picture first = render(scene, size);
+    CHECK(ran("vpl-maps"));
+    Transform pose = scene.world.get<Transform>(scene.camera);
+    pose.translation.x += 0.1F;
+    scene.world.set(scene.camera, pose);
+    CHECK(render(scene, size) != first);
+    CHECK_FALSE(ran("vpl-maps"));
+    scene.world.set(scene.light, at({0.3F, 1.5F, 0.0F}));
+    const Picture moved = render(scene, size);
+    CHECK(ran("vpl-maps"));
+    renderer.invalidate();
+    CHECK(render(scene, size) == moved);
+}
+
+}  // TEST_SUITE("VPL visibility")
 
 TEST_SUITE("VPL atlas") {
-    TEST_CASE("tiles fit into the limits of the driver") {
-        const gl::Limits limits{.texture_size = 16384, .texture_layers = 2048};
-        for (const std::uint32_t resolution : {8U, 33U, 64U, 200U, 1024U}) {
-            for (const std::uint32_t maps : {1U, 2U, 257U, 16384U}) {
-                CAPTURE(resolution);
-                CAPTURE(maps);
-                const VplAtlas atlas = plan_vpl_atlas(resolution, maps, limits);
-                const std::uint32_t room = atlas.tiles * atlas.tiles;
-                CHECK(atlas.tiles * resolution <= atlas.side);
-                CHECK(atlas.side <= limits.texture_size);
-                CHECK(atlas.layers <= limits.texture_layers);
-                CHECK(room * atlas.layers >= maps);
-                CHECK(room * (atlas.layers - 1) < maps);
-            }
+TEST_CASE("tiles fit into the limits of the driver") {
+    const gl::Limits limits{.texture_size = 16384, .texture_layers = 2048};
+    for (const std::uint32_t resolution : {8U, 33U, 64U, 200U, 1024U}) {
+        for (const std::uint32_t maps : {1U, 2U, 257U, 16384U}) {
+            CAPTURE(resolution);
+            CAPTURE(maps);
+            const VplAtlas atlas = plan_vpl_atlas(resolution, maps, limits);
+            const std::uint32_t room = atlas.tiles * atlas.tiles;
+            CHECK(atlas.tiles * resolution <= atlas.side);
+            CHECK(atlas.side <= limits.texture_size);
+            CHECK(atlas.layers <= limits.texture_layers);
+            CHECK(room * atlas.layers >= maps);
+            CHECK(room * (atlas.layers - 1) < maps);
         }
     }
-
-    TEST_CASE("maps that do not fit into the limits are refused") {
-        const gl::Limits limits{.texture_size = 1024, .texture_layers = 256};
-        CHECK_THROWS_WITH_AS(static_cast<void>(plan_vpl_atlas(2048, 1, limits)),
-                             "depth maps of VPLs of 2048 texels a side: the driver allows 1024", gl::GlError);
-        CHECK_THROWS_WITH_AS(
-            static_cast<void>(plan_vpl_atlas(256, 16384, limits)),
-            "depth maps of 16384 VPLs, 256 texels a side, fill 1024 layers; the driver allows 256",
-            gl::GlError);
-    }
 }
+
+TEST_CASE("maps that do not fit into the limits are refused") {
+    const gl::Limits limits{.texture_size = 1024, .texture_layers = 256};
+    CHECK_THROWS_WITH_AS(static_cast<void>(plan_vpl_atlas(2048, 1, limits)),
+                         "depth maps of VPLs of 2048 texels a side: the driver allows 1024", gl::GlError);
+    CHECK_THROWS_WITH_AS(
+        static_cast<void>(plan_vpl_atlas(256, 16384, limits)),
+        "depth maps of 16384 VPLs, 256 texels a side, fill 1024 layers; the driver allows 256", gl::GlError);
+}
+
+}  // TEST_SUITE("VPL atlas")

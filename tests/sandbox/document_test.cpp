@@ -1,6 +1,5 @@
 #include "sandbox/window/document.hpp"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <doctest/doctest.h>
@@ -9,6 +8,8 @@
 #include <candela/scene/hierarchy.hpp>
 
 namespace candela::sandbox {
+
+TEST_SUITE("document") {
 
 namespace {
 
@@ -62,51 +63,49 @@ constexpr float rounding = 1e-6F;  // of coordinates of a few metres
 
 }  // namespace
 
-TEST_SUITE("document") {
-    TEST_CASE("a script plays to its end, can be stepped, and is played again") {
-        Player player(moving("ceiling light", 20, {-0.4F, 1.6F, 0.0F}, {0.4F, 1.6F, 0.0F}));
-        const World& world = player.document.scene.world;
-        const auto check_light_at = [&](float x) {
-            REQUIRE(world.count<PointLight>() == 1);
-            const Entity light = std::get<0>(*world.view<PointLight>().begin());
-            CHECK(glm::distance(glm::vec3(world_matrix(world, light)[3]), {x, 1.6F, 0.0F}) < rounding);
-        };
-        CHECK(player.play() == 21);  // and one more, in which it is seen to have ended
-        check_light_at(0.4F);
-        player.step();
-        check_light_at(-0.4F);
-        for (int step = 0; step < 5; ++step) player.step();
-        check_light_at(-0.4F + 5.0F * 0.8F / 19.0F);
-        player.document.playback->toggle();
-        CHECK(player.play() == 15);
-        check_light_at(0.4F);
-    }
-
-    TEST_CASE("the view follows a camera that a script moves, and can be orbited after the end") {
-        Player player(moving("camera", 10, {0.0F, 1.0F, 3.9F}, {0.3F, 1.0F, 3.9F}));
-        const glm::mat4 start = player.view();
-        for (int frame = 0; frame < 10; ++frame) {
-            CHECK(player.document.animate() == (frame == 0));  // a jump to the first frame
-            CHECK(glm::distance(player.eye(), {0.3F * static_cast<float>(frame) / 9.0F, 1.0F, 3.9F}) <
-                  rounding);
-        }
-        CHECK(player.play() == 1);
-        const glm::mat4 end = player.view();
-        player.orbit();
-        CHECK(glm::distance(player.eye(), glm::vec3(end[3])) > 0.01F);
-        player.step();
-        CHECK(player.view() == start);
-    }
-
-    TEST_CASE("another thread gets the same copy of the world while nothing changes") {
-        Player player(moving("ceiling light", 2, glm::vec3(0.0F), glm::vec3(1.0F)));
-        player.play();
-        const std::shared_ptr<const World> copy = player.document.copy_of_world();
-        player.document.animate();
-        CHECK(player.document.copy_of_world() == copy);
-        player.step();
-        CHECK(player.document.copy_of_world() != copy);
-    }
+TEST_CASE("a script plays to its end, can be stepped, and is played again") {
+    Player player(moving("ceiling light", 20, {-0.4F, 1.6F, 0.0F}, {0.4F, 1.6F, 0.0F}));
+    const World& world = player.document.scene.world;
+    const auto check_light_at = [&](float x) {
+        REQUIRE(world.count<PointLight>() == 1);
+        const Entity light = std::get<0>(*world.view<PointLight>().begin());
+        CHECK(glm::distance(glm::vec3(world_matrix(world, light)[3]), {x, 1.6F, 0.0F}) < rounding);
+    };
+    CHECK(player.play() == 21);  // and one more, in which it is seen to have ended
+    check_light_at(0.4F);
+    player.step();
+    check_light_at(-0.4F);
+    for (int step = 0; step < 5; ++step) player.step();
+    check_light_at(-0.4F + 5.0F * 0.8F / 19.0F);
+    player.document.playback->toggle();
+    CHECK(player.play() == 15);
+    check_light_at(0.4F);
 }
+
+TEST_CASE("the view follows a camera that a script moves, and can be orbited after the end") {
+    Player player(moving("camera", 10, {0.0F, 1.0F, 3.9F}, {0.3F, 1.0F, 3.9F}));
+    const glm::mat4 start = player.view();
+    for (int frame = 0; frame < 10; ++frame) {
+        CHECK(player.document.animate() == (frame == 0));  // a jump to the first frame
+        CHECK(glm::distance(player.eye(), {0.3F * static_cast<float>(frame) / 9.0F, 1.0F, 3.9F}) < rounding);
+    }
+    CHECK(player.play() == 1);
+    const glm::mat4 end = player.view();
+    player.orbit();
+    CHECK(glm::distance(player.eye(), glm::vec3(end[3])) > 0.01F);
+    player.step();
+    CHECK(player.view() == start);
+}
+
+TEST_CASE("another thread gets the same copy of the world while nothing changes") {
+    Player player(moving("ceiling light", 2, glm::vec3(0.0F), glm::vec3(1.0F)));
+    player.play();
+    const std::shared_ptr<const World> copy = player.document.copy_of_world();
+    player.document.animate();
+    CHECK(player.document.copy_of_world() == copy);
+    player.step();
+    CHECK(player.document.copy_of_world() != copy);
+}
+}  // TEST_SUITE("document")
 
 }  // namespace candela::sandbox

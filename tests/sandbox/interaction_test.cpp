@@ -1,6 +1,5 @@
 #include "sandbox/editing/interaction.hpp"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <cmath>
@@ -12,6 +11,8 @@
 #include "tests/sandbox/editing_scene.hpp"
 
 namespace candela::sandbox {
+
+TEST_SUITE("interaction") {
 
 namespace {
 
@@ -69,247 +70,244 @@ struct User {
 
 }  // namespace
 
-TEST_SUITE("interaction") {
-    TEST_CASE("a click selects a light before a surface, a surface, or nothing; the scene stays as it is") {
-        User user;
-        const glm::mat4 view = user.viewport().clip_from_world;
-        user.click(user.seen({0.0F, 0.4F, 0.5F}));
-        CHECK(user.interaction.selected == user.box);
-        user.click(user.seen(user.light) + glm::vec2(10.0F, 0.0F));
-        CHECK(user.interaction.selected == user.light);
-        user.click(origin + glm::vec2(320.0F, 5.0F));  // above the horizon
-        CHECK_FALSE(user.interaction.selected);
-        CHECK(user.viewport().clip_from_world == view);
-        CHECK_FALSE(user.interaction.history().undo_name());
-    }
-
-    TEST_CASE("a press on a surface orbits if the pointer moves, and keeps the selection") {
-        User user;
-        user.click(user.seen({0.0F, 0.4F, 0.5F}));
-        const glm::mat4 view = user.viewport().clip_from_world;
-        user.press(user.seen({-3.0F, -0.5F, 0.0F}));
-        user.move(user.seen({-3.0F, -0.5F, 0.0F}) + glm::vec2(50.0F, 0.0F));
-        user.release();
-        CHECK(user.viewport().clip_from_world != view);
-        CHECK(user.interaction.selected == user.box);
-    }
-
-    TEST_CASE("a light follows the pointer, and the drag is one edit") {
-        User user;
-        const glm::vec3 start = position_of(user.world, user.light);
-        const glm::vec2 from = user.seen(user.light);
-        user.press(from + glm::vec2(4.0F, 3.0F));
-        for (int i = 1; i <= 10; ++i) user.move(from + glm::vec2(4.0F - 8.0F * static_cast<float>(i), 3.0F));
-        CHECK(user.interaction.dragged() == user.light);
-        CHECK(glm::distance(user.seen(user.light), from - glm::vec2(80.0F, 0.0F)) < tolerance_window);
-        user.release();
-        CHECK(user.interaction.history().undo_name() == "move lamp");
-        user.undo();
-        CHECK(position_of(user.world, user.light) == start);
-        CHECK_FALSE(user.interaction.history().undo_name());
-        user.key(GLFW_KEY_Y, GLFW_MOD_CONTROL);
-        CHECK(glm::distance(user.seen(user.light), from - glm::vec2(80.0F, 0.0F)) < tolerance_window);
-    }
-
-    TEST_CASE("escape first cancels a drag, then deselects, then is the app's") {
-        User user;
-        const glm::vec3 start = position_of(user.world, user.light);
-        user.press(user.seen(user.light));
-        user.move(user.seen(user.light) + glm::vec2(50.0F, 50.0F));
-        CHECK_FALSE(user.key(GLFW_KEY_ESCAPE));
-        CHECK(position_of(user.world, user.light) == start);
-        user.move({300.0F, 300.0F});  // the button is still held
-        user.release();
-        CHECK(position_of(user.world, user.light) == start);
-        CHECK(user.interaction.selected == user.light);
-        CHECK_FALSE(user.key(GLFW_KEY_ESCAPE));
-        CHECK_FALSE(user.interaction.selected);
-        CHECK(user.key(GLFW_KEY_ESCAPE) == Command{Action::cancel});
-    }
-
-    TEST_CASE("X, Y and Z keep a drag on an axis; the same key again frees it") {
-        User user;
-        const glm::vec3 start = position_of(user.world, user.light);
-        user.press(user.seen(start));
-        user.move(user.seen(start) + glm::vec2(30.0F, -40.0F));
-        user.key(GLFW_KEY_X);
-        const glm::vec3 moved = position_of(user.world, user.light) - start;
-        CHECK(moved.x > 0.1F);
-        CHECK(std::abs(moved.y) + std::abs(moved.z) < tolerance_world);
-        user.key(GLFW_KEY_X);
-        CHECK(glm::distance(user.seen(user.light), user.seen(start) + glm::vec2(30.0F, -40.0F)) <
-              tolerance_window);
-        user.release();
-        user.undo();
-        CHECK(position_of(user.world, user.light) == start);
-    }
-
-    TEST_CASE("an object moves by its gizmo, along an axis and over the floor") {
-        User user;
-        user.click(user.seen({0.0F, 0.4F, 0.5F}));
-        const glm::vec2 centre = user.seen(user.box);
-        user.press(centre + glm::vec2(50.0F, 0.0F));  // on the arrow along x
-        user.move(centre + glm::vec2(110.0F, 30.0F));
-        user.release();
-        const glm::vec3 at = position_of(user.world, user.box);
-        CHECK(at.x > 0.3F);
-        CHECK(std::abs(at.y) + std::abs(at.z) < tolerance_world);
-
-        user.key(GLFW_KEY_V);
-        user.press(user.seen(user.box));
-        user.move(user.seen({-2.0F, -0.5F, 1.0F}));
-        user.release();
-        CHECK(glm::distance(position_of(user.world, user.box), {-2.0F, 0.0F, 1.0F}) < tolerance_world);
-        user.undo();
-        user.undo();
-        CHECK(position_of(user.world, user.box) == glm::vec3(0.0F));
-    }
-
-    TEST_CASE("the overlay shows which handle or light is under the pointer, except over a panel") {
-        User user;
-        user.move(user.seen(user.light));
-        CHECK(user.interaction.overlay(user.viewport(), true).lights.at(0).hovered);
-        CHECK_FALSE(user.interaction.overlay(user.viewport(), false).lights.at(0).hovered);
-        CHECK_FALSE(user.interaction.overlay(user.viewport(), true).gizmo);
-        user.click(user.seen({0.0F, 0.4F, 0.5F}));
-        const glm::vec2 arrow = user.seen(user.box) + glm::vec2(50.0F, 0.0F);
-        user.move(arrow);
-        const Overlay overlay = user.interaction.overlay(user.viewport(), true);
-        REQUIRE(overlay.active);
-        CHECK(overlay.gizmo->handles[*overlay.active].mode == DragMode{DragKind::move_along_axis, 0});
-        user.press(arrow);
-        user.move(arrow + glm::vec2(90.0F, 90.0F));
-        CHECK(user.interaction.overlay(user.viewport(), true).active == overlay.active);
-    }
-
-    TEST_CASE("nudges are one edit until something else happens") {
-        User user;
-        const glm::vec3 start = position_of(user.world, user.light);
-        user.click(user.seen(user.light));
-        user.key(GLFW_KEY_UP);
-        user.key(GLFW_KEY_UP, 0, true);
-        user.key(GLFW_KEY_RIGHT, 0, true);
-        CHECK(glm::distance(position_of(user.world, user.light), start) > 0.1F);
-        user.undo();
-        CHECK(position_of(user.world, user.light) == start);
-        CHECK_FALSE(user.interaction.history().undo_name());
-    }
-
-    TEST_CASE("lights are added over the surface in the middle, copied and deleted, and all is undone") {
-        User user;
-        user.key(GLFW_KEY_L, GLFW_MOD_SHIFT);
-        const Entity spot = user.interaction.selected.value();
-        // The middle of the picture shows the top of the cube, or its front.
-        const auto hit =
-            user.interaction.surfaces().first_hit(ray_through(user.viewport(), origin + 0.5F * size));
-        const glm::vec3 over = position_of(user.world, spot) - hit.value().point;
-        CHECK(glm::dot(over, hit->normal) > 0.1F);
-        CHECK(glm::distance(direction_of(user.world, spot), -hit->normal) < tolerance_world);
-        user.key(GLFW_KEY_D, GLFW_MOD_CONTROL);
-        const Entity copy = user.interaction.selected.value();
-        CHECK(copy != spot);
-        CHECK(user.world.get<Name>(copy).value == "spot light 2");
-        user.key(GLFW_KEY_DELETE);
-        CHECK_FALSE(user.interaction.selected);
-        CHECK_FALSE(is_present(user.world, copy));
-        user.undo();
-        CHECK(user.interaction.selected == copy);
-        user.undo();
-        CHECK_FALSE(user.interaction.selected);
-        user.undo();
-        CHECK_FALSE(is_present(user.world, spot));
-        CHECK_FALSE(user.interaction.history().undo_name());
-    }
-
-    TEST_CASE("a directional light is aimed with rings around the pivot of the view") {
-        User user;
-        user.key(GLFW_KEY_L, GLFW_MOD_CONTROL);
-        const Entity sun = user.interaction.selected.value();
-        const Overlay overlay = user.interaction.overlay(user.viewport(), true);
-        REQUIRE(overlay.gizmo);
-        CHECK(glm::distance(overlay.gizmo->centre, origin + 0.5F * size) < tolerance_window);
-        const glm::vec3 before = direction_of(user.world, sun);
-        user.press(overlay.gizmo->centre);
-        user.move(user.seen({2.0F, -0.5F, 2.0F}));
-        user.release();
-        CHECK(glm::distance(direction_of(user.world, sun), before) > 0.1F);
-        CHECK(user.interaction.history().undo_name() == "aim directional light");
-    }
-
-    TEST_CASE(
-        "keys fly until they are released or the window loses the focus, but not with Ctrl or in a drag") {
-        User user;
-        user.key(GLFW_KEY_W);
-        CHECK(user.interaction.moving());
-        const glm::vec3 before = position_of(user.world, user.interaction.viewer());
-        user.interaction.step(0.1F, size, origin);
-        CHECK(position_of(user.world, user.interaction.viewer()) != before);
-        user.send({.kind = Kind::key_release, .code = GLFW_KEY_W});
-        CHECK_FALSE(user.interaction.moving());
-        user.key(GLFW_KEY_E);
-        user.send({.kind = Kind::focus_lost});
-        CHECK_FALSE(user.interaction.moving());
-        CHECK(user.key(GLFW_KEY_S, GLFW_MOD_CONTROL) == Command{Action::save_scene});
-        CHECK_FALSE(user.interaction.moving());
-        user.press(user.seen(user.light));
-        user.key(GLFW_KEY_W);
-        CHECK_FALSE(user.interaction.moving());
-    }
-
-    TEST_CASE("the right button looks around, and the wheel then changes the speed and not the distance") {
-        User user;
-        const glm::vec3 eye = position_of(user.world, user.interaction.viewer());
-        user.press({300.0F, 300.0F}, GLFW_MOUSE_BUTTON_RIGHT);
-        user.move({340.0F, 300.0F});
-        user.send({.kind = Kind::scroll, .scrolled = 3.0F});
-        user.release();  // another button
-        user.move({380.0F, 300.0F});
-        user.release(GLFW_MOUSE_BUTTON_RIGHT);
-        const glm::vec3 view = user.viewport().forward;
-        user.move({500.0F, 300.0F});
-        CHECK(user.viewport().forward == view);
-        CHECK(std::abs(std::atan2(view.x, -view.z) - 80.0F / size.y * glm::pi<float>()) < tolerance_world);
-        CHECK(position_of(user.world, user.interaction.viewer()) == eye);
-    }
-
-    TEST_CASE("F looks at the selection, or at the whole scene; Home goes back") {
-        User user;
-        const glm::mat4 view = user.viewport().clip_from_world;
-        user.click(user.seen(user.light));
-        user.key(GLFW_KEY_F);
-        CHECK(glm::distance(user.seen(user.light), origin + 0.5F * size) < tolerance_window);
-        user.key(GLFW_KEY_ESCAPE);
-        user.key(GLFW_KEY_F);
-        for (const float x : {-10.0F, 10.0F}) {
-            for (const float z : {-10.0F, 10.0F}) CHECK(user.viewport().contains(user.seen({x, -0.5F, z})));
-        }
-        user.key(GLFW_KEY_HOME);
-        CHECK(user.viewport().clip_from_world == view);
-    }
-
-    TEST_CASE(
-        "what is the app's is returned, presets with their number, repeats only where they are useful") {
-        User user;
-        CHECK(user.key(GLFW_KEY_Q, GLFW_MOD_CONTROL) == Command{Action::quit});
-        for (int number = 1; number <= 4; ++number) {
-            CHECK(user.key(GLFW_KEY_0 + number) == Command{Action::preset, number});
-        }
-        CHECK(user.key(GLFW_KEY_SPACE) == Command{Action::play_pause});
-        CHECK(user.key(GLFW_KEY_PERIOD) == Command{Action::step_frame});
-        CHECK(user.key(GLFW_KEY_P, 0, true) == Command{Action::next_path});
-        CHECK_FALSE(user.key(GLFW_KEY_F11, 0, true));
-        CHECK_FALSE(user.key(GLFW_KEY_G));
-        CHECK_FALSE(user.interaction.carry_out(Action::screenshot));
-    }
-
-    TEST_CASE("a selected entity that is gone is deselected") {
-        User user;
-        user.click(user.seen(user.light));
-        user.world.destroy(user.light);
-        CHECK_FALSE(user.interaction.overlay(user.viewport(), true).gizmo);
-        user.interaction.step(0.0F, size, origin);
-        CHECK_FALSE(user.interaction.selected);
-    }
+TEST_CASE("a click selects a light before a surface, a surface, or nothing; the scene stays as it is") {
+    User user;
+    const glm::mat4 view = user.viewport().clip_from_world;
+    user.click(user.seen({0.0F, 0.4F, 0.5F}));
+    CHECK(user.interaction.selected == user.box);
+    user.click(user.seen(user.light) + glm::vec2(10.0F, 0.0F));
+    CHECK(user.interaction.selected == user.light);
+    user.click(origin + glm::vec2(320.0F, 5.0F));  // above the horizon
+    CHECK_FALSE(user.interaction.selected);
+    CHECK(user.viewport().clip_from_world == view);
+    CHECK_FALSE(user.interaction.history().undo_name());
 }
+
+TEST_CASE("a press on a surface orbits if the pointer moves, and keeps the selection") {
+    User user;
+    user.click(user.seen({0.0F, 0.4F, 0.5F}));
+    const glm::mat4 view = user.viewport().clip_from_world;
+    user.press(user.seen({-3.0F, -0.5F, 0.0F}));
+    user.move(user.seen({-3.0F, -0.5F, 0.0F}) + glm::vec2(50.0F, 0.0F));
+    user.release();
+    CHECK(user.viewport().clip_from_world != view);
+    CHECK(user.interaction.selected == user.box);
+}
+
+TEST_CASE("a light follows the pointer, and the drag is one edit") {
+    User user;
+    const glm::vec3 start = position_of(user.world, user.light);
+    const glm::vec2 from = user.seen(user.light);
+    user.press(from + glm::vec2(4.0F, 3.0F));
+    for (int i = 1; i <= 10; ++i) user.move(from + glm::vec2(4.0F - 8.0F * static_cast<float>(i), 3.0F));
+    CHECK(user.interaction.dragged() == user.light);
+    CHECK(glm::distance(user.seen(user.light), from - glm::vec2(80.0F, 0.0F)) < tolerance_window);
+    user.release();
+    CHECK(user.interaction.history().undo_name() == "move lamp");
+    user.undo();
+    CHECK(position_of(user.world, user.light) == start);
+    CHECK_FALSE(user.interaction.history().undo_name());
+    user.key(GLFW_KEY_Y, GLFW_MOD_CONTROL);
+    CHECK(glm::distance(user.seen(user.light), from - glm::vec2(80.0F, 0.0F)) < tolerance_window);
+}
+
+TEST_CASE("escape first cancels a drag, then deselects, then is the app's") {
+    User user;
+    const glm::vec3 start = position_of(user.world, user.light);
+    user.press(user.seen(user.light));
+    user.move(user.seen(user.light) + glm::vec2(50.0F, 50.0F));
+    CHECK_FALSE(user.key(GLFW_KEY_ESCAPE));
+    CHECK(position_of(user.world, user.light) == start);
+    user.move({300.0F, 300.0F});  // the button is still held
+    user.release();
+    CHECK(position_of(user.world, user.light) == start);
+    CHECK(user.interaction.selected == user.light);
+    CHECK_FALSE(user.key(GLFW_KEY_ESCAPE));
+    CHECK_FALSE(user.interaction.selected);
+    CHECK(user.key(GLFW_KEY_ESCAPE) == Command{Action::cancel});
+}
+
+TEST_CASE("X, Y and Z keep a drag on an axis; the same key again frees it") {
+    User user;
+    const glm::vec3 start = position_of(user.world, user.light);
+    user.press(user.seen(start));
+    user.move(user.seen(start) + glm::vec2(30.0F, -40.0F));
+    user.key(GLFW_KEY_X);
+    const glm::vec3 moved = position_of(user.world, user.light) - start;
+    CHECK(moved.x > 0.1F);
+    CHECK(std::abs(moved.y) + std::abs(moved.z) < tolerance_world);
+    user.key(GLFW_KEY_X);
+    CHECK(glm::distance(user.seen(user.light), user.seen(start) + glm::vec2(30.0F, -40.0F)) <
+          tolerance_window);
+    user.release();
+    user.undo();
+    CHECK(position_of(user.world, user.light) == start);
+}
+
+TEST_CASE("an object moves by its gizmo, along an axis and over the floor") {
+    User user;
+    user.click(user.seen({0.0F, 0.4F, 0.5F}));
+    const glm::vec2 centre = user.seen(user.box);
+    user.press(centre + glm::vec2(50.0F, 0.0F));  // on the arrow along x
+    user.move(centre + glm::vec2(110.0F, 30.0F));
+    user.release();
+    const glm::vec3 at = position_of(user.world, user.box);
+    CHECK(at.x > 0.3F);
+    CHECK(std::abs(at.y) + std::abs(at.z) < tolerance_world);
+
+    user.key(GLFW_KEY_V);
+    user.press(user.seen(user.box));
+    user.move(user.seen({-2.0F, -0.5F, 1.0F}));
+    user.release();
+    CHECK(glm::distance(position_of(user.world, user.box), {-2.0F, 0.0F, 1.0F}) < tolerance_world);
+    user.undo();
+    user.undo();
+    CHECK(position_of(user.world, user.box) == glm::vec3(0.0F));
+}
+
+TEST_CASE("the overlay shows which handle or light is under the pointer, except over a panel") {
+    User user;
+    user.move(user.seen(user.light));
+    CHECK(user.interaction.overlay(user.viewport(), true).lights.at(0).hovered);
+    CHECK_FALSE(user.interaction.overlay(user.viewport(), false).lights.at(0).hovered);
+    CHECK_FALSE(user.interaction.overlay(user.viewport(), true).gizmo);
+    user.click(user.seen({0.0F, 0.4F, 0.5F}));
+    const glm::vec2 arrow = user.seen(user.box) + glm::vec2(50.0F, 0.0F);
+    user.move(arrow);
+    const Overlay overlay = user.interaction.overlay(user.viewport(), true);
+    REQUIRE(overlay.active);
+    CHECK(overlay.gizmo->handles[*overlay.active].mode == DragMode{DragKind::move_along_axis, 0});
+    user.press(arrow);
+    user.move(arrow + glm::vec2(90.0F, 90.0F));
+    CHECK(user.interaction.overlay(user.viewport(), true).active == overlay.active);
+}
+
+TEST_CASE("nudges are one edit until something else happens") {
+    User user;
+    const glm::vec3 start = position_of(user.world, user.light);
+    user.click(user.seen(user.light));
+    user.key(GLFW_KEY_UP);
+    user.key(GLFW_KEY_UP, 0, true);
+    user.key(GLFW_KEY_RIGHT, 0, true);
+    CHECK(glm::distance(position_of(user.world, user.light), start) > 0.1F);
+    user.undo();
+    CHECK(position_of(user.world, user.light) == start);
+    CHECK_FALSE(user.interaction.history().undo_name());
+}
+
+TEST_CASE("lights are added over the surface in the middle, copied and deleted, and all is undone") {
+    User user;
+    user.key(GLFW_KEY_L, GLFW_MOD_SHIFT);
+    const Entity spot = user.interaction.selected.value();
+    // The middle of the picture shows the top of the cube, or its front.
+    const auto hit =
+        user.interaction.surfaces().first_hit(ray_through(user.viewport(), origin + 0.5F * size));
+    const glm::vec3 over = position_of(user.world, spot) - hit.value().point;
+    CHECK(glm::dot(over, hit->normal) > 0.1F);
+    CHECK(glm::distance(direction_of(user.world, spot), -hit->normal) < tolerance_world);
+    user.key(GLFW_KEY_D, GLFW_MOD_CONTROL);
+    const Entity copy = user.interaction.selected.value();
+    CHECK(copy != spot);
+    CHECK(user.world.get<Name>(copy).value == "spot light 2");
+    user.key(GLFW_KEY_DELETE);
+    CHECK_FALSE(user.interaction.selected);
+    CHECK_FALSE(is_present(user.world, copy));
+    user.undo();
+    CHECK(user.interaction.selected == copy);
+    user.undo();
+    CHECK_FALSE(user.interaction.selected);
+    user.undo();
+    CHECK_FALSE(is_present(user.world, spot));
+    CHECK_FALSE(user.interaction.history().undo_name());
+}
+
+TEST_CASE("a directional light is aimed with rings around the pivot of the view") {
+    User user;
+    user.key(GLFW_KEY_L, GLFW_MOD_CONTROL);
+    const Entity sun = user.interaction.selected.value();
+    const Overlay overlay = user.interaction.overlay(user.viewport(), true);
+    REQUIRE(overlay.gizmo);
+    CHECK(glm::distance(overlay.gizmo->centre, origin + 0.5F * size) < tolerance_window);
+    const glm::vec3 before = direction_of(user.world, sun);
+    user.press(overlay.gizmo->centre);
+    user.move(user.seen({2.0F, -0.5F, 2.0F}));
+    user.release();
+    CHECK(glm::distance(direction_of(user.world, sun), before) > 0.1F);
+    CHECK(user.interaction.history().undo_name() == "aim directional light");
+}
+
+TEST_CASE("keys fly until they are released or the window loses the focus, but not with Ctrl or in a drag") {
+    User user;
+    user.key(GLFW_KEY_W);
+    CHECK(user.interaction.moving());
+    const glm::vec3 before = position_of(user.world, user.interaction.viewer());
+    user.interaction.step(0.1F, size, origin);
+    CHECK(position_of(user.world, user.interaction.viewer()) != before);
+    user.send({.kind = Kind::key_release, .code = GLFW_KEY_W});
+    CHECK_FALSE(user.interaction.moving());
+    user.key(GLFW_KEY_E);
+    user.send({.kind = Kind::focus_lost});
+    CHECK_FALSE(user.interaction.moving());
+    CHECK(user.key(GLFW_KEY_S, GLFW_MOD_CONTROL) == Command{Action::save_scene});
+    CHECK_FALSE(user.interaction.moving());
+    user.press(user.seen(user.light));
+    user.key(GLFW_KEY_W);
+    CHECK_FALSE(user.interaction.moving());
+}
+
+TEST_CASE("the right button looks around, and the wheel then changes the speed and not the distance") {
+    User user;
+    const glm::vec3 eye = position_of(user.world, user.interaction.viewer());
+    user.press({300.0F, 300.0F}, GLFW_MOUSE_BUTTON_RIGHT);
+    user.move({340.0F, 300.0F});
+    user.send({.kind = Kind::scroll, .scrolled = 3.0F});
+    user.release();  // another button
+    user.move({380.0F, 300.0F});
+    user.release(GLFW_MOUSE_BUTTON_RIGHT);
+    const glm::vec3 view = user.viewport().forward;
+    user.move({500.0F, 300.0F});
+    CHECK(user.viewport().forward == view);
+    CHECK(std::abs(std::atan2(view.x, -view.z) - 80.0F / size.y * glm::pi<float>()) < tolerance_world);
+    CHECK(position_of(user.world, user.interaction.viewer()) == eye);
+}
+
+TEST_CASE("F looks at the selection, or at the whole scene; Home goes back") {
+    User user;
+    const glm::mat4 view = user.viewport().clip_from_world;
+    user.click(user.seen(user.light));
+    user.key(GLFW_KEY_F);
+    CHECK(glm::distance(user.seen(user.light), origin + 0.5F * size) < tolerance_window);
+    user.key(GLFW_KEY_ESCAPE);
+    user.key(GLFW_KEY_F);
+    for (const float x : {-10.0F, 10.0F}) {
+        for (const float z : {-10.0F, 10.0F}) CHECK(user.viewport().contains(user.seen({x, -0.5F, z})));
+    }
+    user.key(GLFW_KEY_HOME);
+    CHECK(user.viewport().clip_from_world == view);
+}
+
+TEST_CASE("what is the app's is returned, presets with their number, repeats only where they are useful") {
+    User user;
+    CHECK(user.key(GLFW_KEY_Q, GLFW_MOD_CONTROL) == Command{Action::quit});
+    for (int number = 1; number <= 4; ++number) {
+        CHECK(user.key(GLFW_KEY_0 + number) == Command{Action::preset, number});
+    }
+    CHECK(user.key(GLFW_KEY_SPACE) == Command{Action::play_pause});
+    CHECK(user.key(GLFW_KEY_PERIOD) == Command{Action::step_frame});
+    CHECK(user.key(GLFW_KEY_P, 0, true) == Command{Action::next_path});
+    CHECK_FALSE(user.key(GLFW_KEY_F11, 0, true));
+    CHECK_FALSE(user.key(GLFW_KEY_G));
+    CHECK_FALSE(user.interaction.carry_out(Action::screenshot));
+}
+
+TEST_CASE("a selected entity that is gone is deselected") {
+    User user;
+    user.click(user.seen(user.light));
+    user.world.destroy(user.light);
+    CHECK_FALSE(user.interaction.overlay(user.viewport(), true).gizmo);
+    user.interaction.step(0.0F, size, origin);
+    CHECK_FALSE(user.interaction.selected);
+}
+}  // TEST_SUITE("interaction")
 
 }  // namespace candela::sandbox

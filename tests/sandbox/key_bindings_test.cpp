@@ -1,6 +1,5 @@
 #include "sandbox/editing/key_bindings.hpp"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include <set>
@@ -11,37 +10,38 @@
 namespace candela::sandbox {
 
 TEST_SUITE("key bindings") {
-    TEST_CASE("no key does two things") {
-        std::set<std::pair<int, int>> seen;
-        for (const KeyBinding& binding : key_bindings()) {
-            CHECK_MESSAGE(seen.insert({binding.key, binding.modifiers}).second, binding.keys);
-        }
-        for (const KeyBinding& binding : key_bindings()) {
-            if (binding.action != Action::fly) continue;
-            CHECK_FALSE(seen.contains({binding.key, GLFW_MOD_SHIFT}));  // which makes flying faster
-        }
-    }
 
-    TEST_CASE("every action has a key and a help text") {
-        std::set<Action> seen{Action::along_y, Action::along_z};  // in the row of along_x
-        for (const KeyBinding& binding : key_bindings()) {
-            const bool first = seen.insert(binding.action).second;
-            if (first) CHECK_FALSE(binding.help.empty());
-            CHECK(binding.help.empty() == binding.keys.empty());
-        }
-        for (int action = 0; action <= static_cast<int>(Action::quit); ++action) {
-            CHECK_MESSAGE(seen.contains(static_cast<Action>(action)), action);
-        }
+TEST_CASE("no key does two things") {
+    std::set<std::pair<int, int>> seen;
+    for (const KeyBinding& binding : key_bindings()) {
+        CHECK_MESSAGE(seen.insert({binding.key, binding.modifiers}).second, binding.keys);
     }
-
-    TEST_CASE("modifiers must match, locks do not matter") {
-        CHECK(find_binding(GLFW_KEY_Z, GLFW_MOD_CONTROL)->action == Action::undo);
-        CHECK(find_binding(GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT)->action == Action::redo);
-        CHECK(find_binding(GLFW_KEY_Z, GLFW_MOD_NUM_LOCK)->action == Action::along_z);
-        CHECK(find_binding(GLFW_KEY_W, GLFW_MOD_SHIFT)->action == Action::fly);
-        CHECK(find_binding(GLFW_KEY_W, GLFW_MOD_CONTROL) == nullptr);
-        CHECK(find_binding(GLFW_KEY_Q, GLFW_MOD_CONTROL)->action == Action::quit);
+    for (const KeyBinding& binding : key_bindings()) {
+        if (binding.action != Action::fly) continue;
+        CHECK_FALSE(seen.contains({binding.key, GLFW_MOD_SHIFT}));  // which makes flying faster
     }
 }
+
+TEST_CASE("every action has a key and a help text") {
+    std::set<Action> seen{Action::along_y, Action::along_z};  // in the row of along_x
+    for (const KeyBinding& binding : key_bindings()) {
+        const bool first = seen.insert(binding.action).second;
+        if (first) CHECK_FALSE(binding.help.empty());
+        CHECK(binding.help.empty() == binding.keys.empty());
+    }
+    for (int action = 0; action <= static_cast<int>(Action::quit); ++action) {
+        CHECK_MESSAGE(seen.contains(static_cast<Action>(action)), action);
+    }
+}
+
+TEST_CASE("modifiers must match, locks do not matter") {
+    CHECK(find_binding(GLFW_KEY_Z, GLFW_MOD_CONTROL)->action == Action::undo);
+    CHECK(find_binding(GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT)->action == Action::redo);
+    CHECK(find_binding(GLFW_KEY_Z, GLFW_MOD_NUM_LOCK)->action == Action::along_z);
+    CHECK(find_binding(GLFW_KEY_W, GLFW_MOD_SHIFT)->action == Action::fly);
+    CHECK(find_binding(GLFW_KEY_W, GLFW_MOD_CONTROL) == nullptr);
+    CHECK(find_binding(GLFW_KEY_Q, GLFW_MOD_CONTROL)->action == Action::quit);
+}
+}  // TEST_SUITE("key bindings")
 
 }  // namespace candela::sandbox

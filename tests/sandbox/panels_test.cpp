@@ -16,6 +16,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("panels") {
+
 namespace {
 
 /// Dear ImGui with a pointer and without a screen.
@@ -85,142 +87,141 @@ std::function<void()> in_panel(std::function<void()> draw) {
 
 }  // namespace
 
-TEST_SUITE("panels") {
-    TEST_CASE("what the picture shows is chosen by a click") {
-        AppState state;
-        const ReferenceView none(nullptr);
-        Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
-        for (const Show show : {Show::direct, Show::albedo, Show::indirect, Show::irradiance, Show::normals,
-                                Show::roughness, Show::metalness, Show::total}) {
-            CHECK(state.configuration.show != show);
-            screen.click(to_string(show));
-            CHECK(state.configuration.show == show);
-        }
-    }
-
-    TEST_CASE("a click on a slider changes the material of the selected object, and undo takes it back") {
-        Document document(load_scene(shipped_file("scenes", "cornell.gltf")), std::nullopt, 1.0F);
-        const World& world = document.scene.world;
-        const AppState state;
-        Screen screen(in_panel([&] { (void)draw_scene_panel(document, state, nullptr); }));
-        CHECK_FALSE(screen.has("metalness"));
-        const auto first = world.view<MeshInstance>().begin();
-        const Entity entity = std::get<0>(*first);
-        const auto mesh = world.get<MeshInstance>(entity).mesh;
-        REQUIRE(materials_of(*mesh).size() == 1);
-        document.interaction.selected = entity;
-        const auto material = [&] { return *world.get<MeshInstance>(entity).mesh->primitives[0].material; };
-        screen.click("metalness");
-        CHECK(material().metalness > 0.1F);
-        CHECK(material().roughness == 1.0F);
-        screen.click("roughness");
-        CHECK(material().roughness < 0.9F);
-        screen.click("specular");
-        CHECK(material().specular > 0.1F);
-        const History& history = document.interaction.history();
-        CHECK(history.undo_count() == 3);
-        for (int step = 0; step < 3; ++step) screen.click("undo");
-        CHECK(history.undo_count() == 0);
-        CHECK(world.get<MeshInstance>(entity).mesh == mesh);
-    }
-
-    TEST_CASE("the error of VPLs is estimated after a click") {
-        AppState state;
-        const ReferenceView none(nullptr);
-        Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
-        screen.click("estimate their error");
-        CHECK(state.estimate_error);
-    }
-
-    TEST_CASE("a comparison begins with two equal configurations, is shown in two ways, and ends") {
-        AppState state;
-        state.configuration.vpls.count = 77;
-        const ReferenceView none(nullptr);
-        Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
-        CHECK_FALSE(screen.has("swap A and B"));
-        screen.click("divider");
-        CHECK(state.comparison.mode == CompareMode::divider);
-        CHECK(state.comparison.other == state.configuration);
-        state.configuration.vpls.count = 78;
-        screen.click("difference");
-        CHECK(state.comparison.mode == CompareMode::difference);
-        CHECK(state.comparison.other.vpls.count == 77);
-        screen.click("swap A and B");
-        CHECK(state.comparison.other.vpls.count == 78);
-        CHECK(state.configuration.vpls.count == 77);
-        screen.click("B = A");
-        CHECK(state.comparison.other.vpls.count == 77);
-        screen.click("no comparison");
-        CHECK(state.comparison.mode == CompareMode::off);
-        CHECK_FALSE(screen.has("swap A and B"));
-    }
-
-    TEST_CASE("presets and paths are chosen by a click") {
-        Configuration configuration;
-        Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }));
-        for (const char* const preset : {"draft", "best", "report", "balanced"}) {
-            screen.click(preset);
-            CHECK(name_of(configuration) == preset);
-        }
-        for (const ShadingPath path : all_shading_paths) {
-            screen.click(to_string(path));
-            CHECK(configuration.path == path);
-        }
-    }
-
-    TEST_CASE("the names of settings are not cut by the edge of the panel") {
-        Configuration configuration;
-        for (const float width : {340.0F, 170.0F}) {  // of the widest and the narrowest panel
-            const Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }), width);
-            CHECK(screen.has("shadows.cube_resolution"));
-            CHECK(screen.right_edge() <= width);
-        }
-    }
-
-    TEST_CASE("a click on a pass lists its resources, and a click on one of these shows it, or no more") {
-        GraphDescription graph;
-        graph.resources = {{.name = "albedo", .kind = ResourceKind::texture},
-                           {.name = "plan", .kind = ResourceKind::value},
-                           {.name = "lights", .kind = ResourceKind::buffer}};
-        graph.passes = {
-            {.name = "gbuffer", .gpu = true, .accesses = {{.resource = 1}, {.resource = 0, .write = true}}},
-            {.name = "deferred", .gpu = true, .accesses = {{.resource = 0}, {.resource = 2}}},
-            {.name = "inspect", .gpu = true}};
-        graph.edges = {{0, 1, false, {0}}, {1, 2, false, {0}}};
-        GraphSelection selection;
-        const PassCosts costs;
-        Screen screen(in_panel([&] { draw_graph_panel(selection, graph, costs); }));
-        CHECK_FALSE(screen.has("albedo"));
-        CHECK_FALSE(screen.has("inspect"));
-        screen.click("gbuffer");
-        CHECK(selection.pass == "gbuffer");
-        CHECK_FALSE(screen.has("lights"));
-        screen.click("plan");  // a value has no picture
-        CHECK_FALSE(selection.resource.has_value());
-        screen.click("albedo");
-        CHECK(selection.resource == "albedo");
-        screen.click("deferred");
-        screen.click("lights");
-        CHECK(selection.resource == "lights");
-        screen.click("lights");
-        CHECK_FALSE(selection.resource.has_value());
-        screen.click("deferred");
-        CHECK_FALSE(selection.pass.has_value());
-        CHECK_FALSE(screen.has("lights"));
-    }
-
-    TEST_CASE("a scene is picked from a list, and the window of the list goes") {
-        OpenPanel panel;
-        std::optional<std::filesystem::path> chosen;
-        Screen screen([&] {
-            if (const auto file = panel.draw()) chosen = file;
-        });
-        CHECK_FALSE(screen.has("file name"));
-        panel.show({{"recent", {}}, {"shipped", {"scenes/a.gltf", "scenes/b.gltf"}}});
-        screen.click("b.gltf");
-        CHECK(chosen == "scenes/b.gltf");
-        CHECK_FALSE(panel.is_shown());
+TEST_CASE("what the picture shows is chosen by a click") {
+    AppState state;
+    const ReferenceView none(nullptr);
+    Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
+    for (const Show show : {Show::direct, Show::albedo, Show::indirect, Show::irradiance, Show::normals,
+                            Show::roughness, Show::metalness, Show::total}) {
+        CHECK(state.configuration.show != show);
+        screen.click(to_string(show));
+        CHECK(state.configuration.show == show);
     }
 }
+
+TEST_CASE("a click on a slider changes the material of the selected object, and undo takes it back") {
+    Document document(load_scene(shipped_file("scenes", "cornell.gltf")), std::nullopt, 1.0F);
+    const World& world = document.scene.world;
+    const AppState state;
+    Screen screen(in_panel([&] { (void)draw_scene_panel(document, state, nullptr); }));
+    CHECK_FALSE(screen.has("metalness"));
+    const auto first = world.view<MeshInstance>().begin();
+    const Entity entity = std::get<0>(*first);
+    const auto mesh = world.get<MeshInstance>(entity).mesh;
+    REQUIRE(materials_of(*mesh).size() == 1);
+    document.interaction.selected = entity;
+    const auto material = [&] { return *world.get<MeshInstance>(entity).mesh->primitives[0].material; };
+    screen.click("metalness");
+    CHECK(material().metalness > 0.1F);
+    CHECK(material().roughness == 1.0F);
+    screen.click("roughness");
+    CHECK(material().roughness < 0.9F);
+    screen.click("specular");
+    CHECK(material().specular > 0.1F);
+    const History& history = document.interaction.history();
+    CHECK(history.undo_count() == 3);
+    for (int step = 0; step < 3; ++step) screen.click("undo");
+    CHECK(history.undo_count() == 0);
+    CHECK(world.get<MeshInstance>(entity).mesh == mesh);
+}
+
+TEST_CASE("the error of VPLs is estimated after a click") {
+    AppState state;
+    const ReferenceView none(nullptr);
+    Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
+    screen.click("estimate their error");
+    CHECK(state.estimate_error);
+}
+
+TEST_CASE("a comparison begins with two equal configurations, is shown in two ways, and ends") {
+    AppState state;
+    state.configuration.vpls.count = 77;
+    const ReferenceView none(nullptr);
+    Screen screen(in_panel([&] { draw_view_panel(state, nullptr, none, 0.0); }));
+    CHECK_FALSE(screen.has("swap A and B"));
+    screen.click("divider");
+    CHECK(state.comparison.mode == CompareMode::divider);
+    CHECK(state.comparison.other == state.configuration);
+    state.configuration.vpls.count = 78;
+    screen.click("difference");
+    CHECK(state.comparison.mode == CompareMode::difference);
+    CHECK(state.comparison.other.vpls.count == 77);
+    screen.click("swap A and B");
+    CHECK(state.comparison.other.vpls.count == 78);
+    CHECK(state.configuration.vpls.count == 77);
+    screen.click("B = A");
+    CHECK(state.comparison.other.vpls.count == 77);
+    screen.click("no comparison");
+    CHECK(state.comparison.mode == CompareMode::off);
+    CHECK_FALSE(screen.has("swap A and B"));
+}
+
+TEST_CASE("presets and paths are chosen by a click") {
+    Configuration configuration;
+    Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }));
+    for (const char* const preset : {"draft", "best", "report", "balanced"}) {
+        screen.click(preset);
+        CHECK(name_of(configuration) == preset);
+    }
+    for (const ShadingPath path : all_shading_paths) {
+        screen.click(to_string(path));
+        CHECK(configuration.path == path);
+    }
+}
+
+TEST_CASE("the names of settings are not cut by the edge of the panel") {
+    Configuration configuration;
+    for (const float width : {340.0F, 170.0F}) {  // of the widest and the narrowest panel
+        const Screen screen(in_panel([&] { draw_quality_panel(configuration, {}); }), width);
+        CHECK(screen.has("shadows.cube_resolution"));
+        CHECK(screen.right_edge() <= width);
+    }
+}
+
+TEST_CASE("a click on a pass lists its resources, and a click on one of these shows it, or no more") {
+    GraphDescription graph;
+    graph.resources = {{.name = "albedo", .kind = ResourceKind::texture},
+                       {.name = "plan", .kind = ResourceKind::value},
+                       {.name = "lights", .kind = ResourceKind::buffer}};
+    graph.passes = {
+        {.name = "gbuffer", .gpu = true, .accesses = {{.resource = 1}, {.resource = 0, .write = true}}},
+        {.name = "deferred", .gpu = true, .accesses = {{.resource = 0}, {.resource = 2}}},
+        {.name = "inspect", .gpu = true}};
+    graph.edges = {{0, 1, false, {0}}, {1, 2, false, {0}}};
+    GraphSelection selection;
+    const PassCosts costs;
+    Screen screen(in_panel([&] { draw_graph_panel(selection, graph, costs); }));
+    CHECK_FALSE(screen.has("albedo"));
+    CHECK_FALSE(screen.has("inspect"));
+    screen.click("gbuffer");
+    CHECK(selection.pass == "gbuffer");
+    CHECK_FALSE(screen.has("lights"));
+    screen.click("plan");  // a value has no picture
+    CHECK_FALSE(selection.resource.has_value());
+    screen.click("albedo");
+    CHECK(selection.resource == "albedo");
+    screen.click("deferred");
+    screen.click("lights");
+    CHECK(selection.resource == "lights");
+    screen.click("lights");
+    CHECK_FALSE(selection.resource.has_value());
+    screen.click("deferred");
+    CHECK_FALSE(selection.pass.has_value());
+    CHECK_FALSE(screen.has("lights"));
+}
+
+TEST_CASE("a scene is picked from a list, and the window of the list goes") {
+    OpenPanel panel;
+    std::optional<std::filesystem::path> chosen;
+    Screen screen([&] {
+        if (const auto file = panel.draw()) chosen = file;
+    });
+    CHECK_FALSE(screen.has("file name"));
+    panel.show({{"recent", {}}, {"shipped", {"scenes/a.gltf", "scenes/b.gltf"}}});
+    screen.click("b.gltf");
+    CHECK(chosen == "scenes/b.gltf");
+    CHECK_FALSE(panel.is_shown());
+}
+}  // TEST_SUITE("panels")
 
 }  // namespace candela::sandbox

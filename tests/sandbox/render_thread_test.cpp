@@ -12,6 +12,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("render thread") {
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -60,92 +62,91 @@ float brightest(const Texels& texels) {
 
 }  // namespace
 
-TEST_SUITE("render thread") {
-    TEST_CASE("two equal configurations differ nowhere, VPLs on paths differ from surfels") {
-        Rendering rendering;
-        FrameRequest request = rendering.request();
-        request.configuration.vpls.placement = VplPlacement::surfels;
-        request.other = request.configuration;
-        request.difference = 8.0F;
-        const RenderedFrame equal = rendering.render(request);
-        CHECK(equal.errors.empty());
-        CHECK(brightest(rendering.read(equal.picture)) > 0.1F);
-        CHECK(brightest(rendering.read(equal.difference.value())) == 0.0F);
-        request.other->vpls.placement = VplPlacement::paths;
-        const RenderedFrame unequal = rendering.render(request);
-        CHECK(brightest(rendering.read(unequal.difference.value())) > 0.0F);
-    }
-
-    TEST_CASE("a faulty configuration is told and changes nothing") {
-        Rendering rendering;
-        FrameRequest request = rendering.request();
-        const RenderedFrame sound = rendering.render(request);
-        CHECK(sound.settled);
-        const Texels before = rendering.read(sound.picture);
-        request.configuration.tone_map.exposure_ev = 3.0F;
-        request.configuration.lists.tile_size = 17;
-        const RenderedFrame faulty = rendering.render(request);
-        REQUIRE(faulty.errors.size() == 1);
-        CHECK(faulty.errors[0].find("lists.tile_size") != std::string::npos);
-        CHECK(faulty.configuration == sound.configuration);
-        CHECK(rendering.read(faulty.picture) == before);
-        request.configuration.lists.tile_size = 32;
-        const RenderedFrame brighter = rendering.render(request);
-        CHECK(brighter.errors.empty());
-        CHECK(rendering.read(brighter.picture) != before);
-    }
-
-    TEST_CASE("what the renderer throws is told, and the next request is rendered") {
-        Rendering rendering;
-        FrameRequest request = rendering.request();
-        request.camera = Entity{};
-        const RenderedFrame blind = rendering.render(request);
-        REQUIRE(blind.errors.size() == 1);
-        CHECK(blind.settled);  // trying again would not help
-        CHECK(rendering.render(rendering.request()).errors.empty());
-    }
-
-    TEST_CASE("a picture is refined until it is settled, but not while the thread is paused or held") {
-        Rendering rendering;
-        FrameRequest request = rendering.request();
-        request.configuration.refinement = {.enabled = true, .frames = 1U << 20U};
-        SUBCASE("paused") {
-            static_cast<void>(rendering.render(request));
-            rendering.thread.pause(true);
-        }
-        SUBCASE("held") {
-            static_cast<void>(rendering.render(request));
-            rendering.thread.hold_refinement(true);
-        }
-        // A job runs between two frames: the frame that was on its way is done.
-        rendering.thread.run([](Renderer&) {});
-        static_cast<void>(rendering.thread.take());
-        std::this_thread::sleep_for(100ms);
-        CHECK_FALSE(rendering.thread.take());
-        rendering.thread.pause(false);
-        rendering.thread.hold_refinement(false);
-        CHECK_FALSE(rendering.thread.wait_for(1).settled);
-        request.configuration.refinement.frames = 2;
-        RenderedFrame frame = rendering.render(request);
-        while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
-        CHECK(frame.report->refined == 2);
-    }
-
-    TEST_CASE("within a budget, surfels are traced frame by frame until the picture is settled") {
-        Rendering rendering;
-        FrameRequest request = rendering.request();
-        request.configuration.vpls.count = 64;
-        const RenderedFrame at_once = rendering.render(request);
-        CHECK(at_once.settled);
-        const Texels whole = rendering.read(at_once.picture);
-        request.update_budget_ms = 1e-3;
-        RenderedFrame frame = rendering.render(request);
-        CHECK_FALSE(frame.settled);
-        CHECK(frame.configuration == request.configuration);
-        while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
-        CHECK(frame.report->vpls->waiting == 0);
-        CHECK(rendering.read(frame.picture) == whole);
-    }
+TEST_CASE("two equal configurations differ nowhere, VPLs on paths differ from surfels") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.configuration.vpls.placement = VplPlacement::surfels;
+    request.other = request.configuration;
+    request.difference = 8.0F;
+    const RenderedFrame equal = rendering.render(request);
+    CHECK(equal.errors.empty());
+    CHECK(brightest(rendering.read(equal.picture)) > 0.1F);
+    CHECK(brightest(rendering.read(equal.difference.value())) == 0.0F);
+    request.other->vpls.placement = VplPlacement::paths;
+    const RenderedFrame unequal = rendering.render(request);
+    CHECK(brightest(rendering.read(unequal.difference.value())) > 0.0F);
 }
+
+TEST_CASE("a faulty configuration is told and changes nothing") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    const RenderedFrame sound = rendering.render(request);
+    CHECK(sound.settled);
+    const Texels before = rendering.read(sound.picture);
+    request.configuration.tone_map.exposure_ev = 3.0F;
+    request.configuration.lists.tile_size = 17;
+    const RenderedFrame faulty = rendering.render(request);
+    REQUIRE(faulty.errors.size() == 1);
+    CHECK(faulty.errors[0].find("lists.tile_size") != std::string::npos);
+    CHECK(faulty.configuration == sound.configuration);
+    CHECK(rendering.read(faulty.picture) == before);
+    request.configuration.lists.tile_size = 32;
+    const RenderedFrame brighter = rendering.render(request);
+    CHECK(brighter.errors.empty());
+    CHECK(rendering.read(brighter.picture) != before);
+}
+
+TEST_CASE("what the renderer throws is told, and the next request is rendered") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.camera = Entity{};
+    const RenderedFrame blind = rendering.render(request);
+    REQUIRE(blind.errors.size() == 1);
+    CHECK(blind.settled);  // trying again would not help
+    CHECK(rendering.render(rendering.request()).errors.empty());
+}
+
+TEST_CASE("a picture is refined until it is settled, but not while the thread is paused or held") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.configuration.refinement = {.enabled = true, .frames = 1U << 20U};
+    SUBCASE("paused") {
+        static_cast<void>(rendering.render(request));
+        rendering.thread.pause(true);
+    }
+    SUBCASE("held") {
+        static_cast<void>(rendering.render(request));
+        rendering.thread.hold_refinement(true);
+    }
+    // A job runs between two frames: the frame that was on its way is done.
+    rendering.thread.run([](Renderer&) {});
+    static_cast<void>(rendering.thread.take());
+    std::this_thread::sleep_for(100ms);
+    CHECK_FALSE(rendering.thread.take());
+    rendering.thread.pause(false);
+    rendering.thread.hold_refinement(false);
+    CHECK_FALSE(rendering.thread.wait_for(1).settled);
+    request.configuration.refinement.frames = 2;
+    RenderedFrame frame = rendering.render(request);
+    while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
+    CHECK(frame.report->refined == 2);
+}
+
+TEST_CASE("within a budget, surfels are traced frame by frame until the picture is settled") {
+    Rendering rendering;
+    FrameRequest request = rendering.request();
+    request.configuration.vpls.count = 64;
+    const RenderedFrame at_once = rendering.render(request);
+    CHECK(at_once.settled);
+    const Texels whole = rendering.read(at_once.picture);
+    request.update_budget_ms = 1e-3;
+    RenderedFrame frame = rendering.render(request);
+    CHECK_FALSE(frame.settled);
+    CHECK(frame.configuration == request.configuration);
+    while (!frame.settled) frame = rendering.thread.wait_for(frame.request);
+    CHECK(frame.report->vpls->waiting == 0);
+    CHECK(rendering.read(frame.picture) == whole);
+}
+}  // TEST_SUITE("render thread")
 
 }  // namespace candela::sandbox

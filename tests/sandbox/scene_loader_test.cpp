@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <thread>
 
+TEST_SUITE("scene loader") {
+
 using namespace candela;
 using namespace candela::sandbox;
 
@@ -27,42 +29,42 @@ Scene endless(const TellProgress& tell) {
 
 }  // namespace
 
-TEST_SUITE("scene loader") {
-    TEST_CASE("a scene is loaded, and the window is woken") {
-        std::atomic<int> woken = 0;
-        SceneLoader loader([&] { ++woken; });
-        CHECK(!loader.is_loading());
-        CHECK(loader.words().empty());
-        loader.start(
-            [](const TellProgress& tell) {
-                return load_scene(shipped_file("scenes", "cornell.gltf"),
-                                  {.limits = {}, .root = {}, .progress = tell});
-            },
-            "cornell.gltf");
-        REQUIRE(holds_soon([&] { return loader.is_ready(); }));
-        CHECK(woken == 1);
-        CHECK(loader.take().world.count<MeshInstance>() > 0);
-        CHECK(!loader.is_loading());
-        CHECK(loader.is_idle());
-    }
-
-    TEST_CASE("words tell what is done, and a cancelled scene ends") {
-        SceneLoader loader([] {});
-        loader.start(endless, "hall.glb");
-        CHECK(holds_soon([&] { return loader.words() == "loading hall.glb: reading meshes, 25 %"; }));
-        CHECK(!loader.is_idle());
-        loader.cancel();
-        CHECK(!loader.is_loading());
-        CHECK(holds_soon([&] { return loader.is_idle(); }));
-    }
-
-    TEST_CASE("another scene replaces the one that is being loaded") {
-        SceneLoader loader([] {});
-        loader.start(endless, "first");
-        loader.start([](const TellProgress&) -> Scene { throw std::runtime_error("second: no such file"); },
-                     "second");
-        REQUIRE(holds_soon([&] { return loader.is_ready(); }));
-        CHECK_THROWS_WITH((void)loader.take(), "second: no such file");
-        CHECK(holds_soon([&] { return loader.is_idle(); }));
-    }
+TEST_CASE("a scene is loaded, and the window is woken") {
+    std::atomic<int> woken = 0;
+    SceneLoader loader([&] { ++woken; });
+    CHECK(!loader.is_loading());
+    CHECK(loader.words().empty());
+    loader.start(
+        [](const TellProgress& tell) {
+            return load_scene(shipped_file("scenes", "cornell.gltf"),
+                              {.limits = {}, .root = {}, .progress = tell});
+        },
+        "cornell.gltf");
+    REQUIRE(holds_soon([&] { return loader.is_ready(); }));
+    CHECK(woken == 1);
+    CHECK(loader.take().world.count<MeshInstance>() > 0);
+    CHECK(!loader.is_loading());
+    CHECK(loader.is_idle());
 }
+
+TEST_CASE("words tell what is done, and a cancelled scene ends") {
+    SceneLoader loader([] {});
+    loader.start(endless, "hall.glb");
+    CHECK(holds_soon([&] { return loader.words() == "loading hall.glb: reading meshes, 25 %"; }));
+    CHECK(!loader.is_idle());
+    loader.cancel();
+    CHECK(!loader.is_loading());
+    CHECK(holds_soon([&] { return loader.is_idle(); }));
+}
+
+TEST_CASE("another scene replaces the one that is being loaded") {
+    SceneLoader loader([] {});
+    loader.start(endless, "first");
+    loader.start([](const TellProgress&) -> Scene { throw std::runtime_error("second: no such file"); },
+                 "second");
+    REQUIRE(holds_soon([&] { return loader.is_ready(); }));
+    CHECK_THROWS_WITH((void)loader.take(), "second: no such file");
+    CHECK(holds_soon([&] { return loader.is_idle(); }));
+}
+
+}  // TEST_SUITE("scene loader")

@@ -13,6 +13,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("scene rays") {
+
 namespace {
 
 // A few roundings of floats of magnitude 10.
@@ -46,148 +48,145 @@ std::optional<float> nearest_of_all(const World& world, const Ray& ray) {
 
 }  // namespace
 
-TEST_SUITE("scene rays") {
-    TEST_CASE("a ray meets the nearest surface, with its point, normal and distance") {
-        World world;
-        add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, -2.0F}});
-        const Entity near = add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, 1.0F}});
-        SceneRays rays;
-        rays.update_and_wait(world);
-        const auto hit = rays.first_hit(along_view);
-        REQUIRE(hit);
-        CHECK(hit->entity == near);
-        CHECK(glm::distance(hit->point, {0.2F, 0.3F, 1.0F}) < rounding);
-        CHECK(glm::distance(hit->normal, {0.0F, 0.0F, 1.0F}) < rounding);
-        CHECK(std::abs(hit->distance - 4.0F) < rounding);
-        CHECK_FALSE(rays.first_hit(along_view, {}, 3.9F));
-        CHECK_FALSE(rays.first_hit({{0.2F, 1.3F, 5.0F}, {0.0F, 0.0F, -1.0F}}));
-    }
-
-    TEST_CASE("what moved is found where it is now, without another hierarchy") {
-        World world;
-        const Entity wall = add_mesh(world, square(1.0F));
-        const Entity other = add_mesh(world, world.get<MeshInstance>(wall).mesh, {.translation = {9, 9, 9}});
-        SceneRays rays;
-        rays.update_and_wait(world);
-        world.edit<Transform>(wall, [](Transform& transform) { transform.translation.x = 5.0F; });
-        world.edit<Transform>(other, [](Transform& transform) { transform.translation = {0, 0, 2}; });
-        rays.update(world);
-        CHECK_FALSE(rays.building());
-        CHECK(rays.first_hit(along_view).value().entity == other);
-        world.remove<MeshInstance>(other);
-        rays.update(world);
-        CHECK_FALSE(rays.first_hit(along_view));
-    }
-
-    TEST_CASE("ignored entities and the backs of single-sided surfaces are passed") {
-        World world;
-        const Entity first = add_mesh(world, square(1.0F), {.translation = {0, 0, 1}});
-        const Entity back =
-            add_mesh(world, square(1.0F), {.rotation = glm::angleAxis(glm::pi<float>(), glm::vec3(0, 1, 0))});
-        const Entity last = add_mesh(
-            world, square(1.0F, true),
-            {.translation = {0, 0, -1}, .rotation = glm::angleAxis(glm::pi<float>(), glm::vec3(0, 1, 0))});
-        SceneRays rays;
-        rays.update_and_wait(world);
-        CHECK(rays.first_hit(along_view).value().entity == first);
-        const auto hit = rays.first_hit(along_view, std::array{first});
-        REQUIRE(hit);
-        CHECK(hit->entity == last);
-        CHECK(hit->normal.z > 0.99F);  // towards the ray
-        CHECK(rays.first_hit({{0, 0, -5}, {0, 0, 1}}, std::array{last}).value().entity == back);
-    }
-
-    TEST_CASE("mirrored instances show their fronts") {
-        World world;
-        add_mesh(world, cube(1.0F), {.scale = {-1.0F, 2.0F, 1.0F}});
-        SceneRays rays;
-        rays.update_and_wait(world);
-        const auto hit = rays.first_hit(along_view);
-        REQUIRE(hit);
-        CHECK(std::abs(hit->distance - 4.0F) < rounding);
-        CHECK(hit->normal.z > 0.99F);
-    }
-
-    TEST_CASE("a segment is blocked by what is between its ends, and not by what blends") {
-        World world;
-        add_mesh(world, square(1.0F));
-        const Entity glass =
-            add_mesh(world, square(1.0F, false, AlphaMode::blend), {.translation = {0, 0, 2}});
-        SceneRays rays;
-        rays.update_and_wait(world);
-        CHECK(rays.blocked({0, 0, 5}, {0, 0, -1}));
-        CHECK_FALSE(rays.blocked({0, 0, 5}, {0, 0, 1}));   // behind the glass
-        CHECK_FALSE(rays.blocked({0, 0, 5}, {0, 0, 0}));   // on the wall
-        CHECK_FALSE(rays.blocked({0, 0, -1}, {0, 0, 5}));  // through the back of the wall
-        CHECK(rays.first_hit({{0, 0, 5}, {0, 0, -1}}).value().entity == glass);
-    }
-
-    TEST_CASE("random rays meet what testing every triangle meets, under parents that scale and rotate") {
-        World world;
-        std::mt19937 random(1);
-        const Entity parent = add_skewing_parent(world);
-        const auto mesh = [&] {
-            Primitive primitive;
-            for (int i = 0; i < 40; ++i) {
-                add_side(primitive, random_direction(random), random_direction(random),
-                         random_direction(random));
-            }
-            return mesh_of(std::move(primitive), true);
-        }();
-        for (int i = 0; i < 20; ++i) {
-            add_mesh(world, mesh, {.translation = 3.0F * random_direction(random), .parent = parent});
-        }
-        add_mesh(world, mesh, {.scale = {1.0F, 0.0F, 1.0F}, .parent = parent});  // flat: not found
-        SceneRays rays;
-        rays.update_and_wait(world);
-        world.remove<MeshInstance>(std::get<0>(*std::next(world.view<MeshInstance>().begin(), 20)));
-        rays.update(world);
-        int hits = 0;
-        for (int i = 0; i < 500; ++i) {
-            const Ray ray{{1.0F, 2.0F, 3.0F}, random_direction(random)};
-            const auto expected = nearest_of_all(world, ray);
-            const auto found = rays.first_hit(ray);
-            REQUIRE(found.has_value() == expected.has_value());
-            if (!found) continue;
-            ++hits;
-            CHECK(std::abs(found->distance - *expected) < 1e-4F * *expected + rounding);
-        }
-        CHECK(hits > 100);
-    }
-
-    TEST_CASE("nothing is found, and nothing waits, while hierarchies are being built") {
-        World world;
-        Primitive primitive;
-        std::mt19937 random(1);
-        for (int i = 0; i < 200'000; ++i) {
-            add_side(primitive, 10.0F * random_direction(random), 0.1F * random_direction(random),
-                     0.1F * random_direction(random));
-        }
-        add_mesh(world, mesh_of(std::move(primitive)));
-        const auto hits = [&](const SceneRays& rays) {
-            int found = 0;
-            for (int i = 0; i < 100; ++i) found += rays.first_hit({{}, random_direction(random)}) ? 1 : 0;
-            return found;
-        };
-        const auto seconds_to = [](const auto& work) {
-            const auto start = std::chrono::steady_clock::now();
-            work();
-            return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        };
-        const double whole = seconds_to([&] {
-            SceneRays rays;
-            rays.update_and_wait(world);
-            CHECK(hits(rays) > 0);
-        });
-        const double interrupted = seconds_to([&] {
-            SceneRays rays;
-            rays.update(world);
-            CHECK(rays.building());
-            CHECK(hits(rays) == 0);
-        });
-        // Only the part that was begun is completed, a seventh.
-        CHECK(interrupted < 0.5 * whole);
-    }
+TEST_CASE("a ray meets the nearest surface, with its point, normal and distance") {
+    World world;
+    add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, -2.0F}});
+    const Entity near = add_mesh(world, square(1.0F), {.translation = {0.0F, 0.0F, 1.0F}});
+    SceneRays rays;
+    rays.update_and_wait(world);
+    const auto hit = rays.first_hit(along_view);
+    REQUIRE(hit);
+    CHECK(hit->entity == near);
+    CHECK(glm::distance(hit->point, {0.2F, 0.3F, 1.0F}) < rounding);
+    CHECK(glm::distance(hit->normal, {0.0F, 0.0F, 1.0F}) < rounding);
+    CHECK(std::abs(hit->distance - 4.0F) < rounding);
+    CHECK_FALSE(rays.first_hit(along_view, {}, 3.9F));
+    CHECK_FALSE(rays.first_hit({{0.2F, 1.3F, 5.0F}, {0.0F, 0.0F, -1.0F}}));
 }
+
+TEST_CASE("what moved is found where it is now, without another hierarchy") {
+    World world;
+    const Entity wall = add_mesh(world, square(1.0F));
+    const Entity other = add_mesh(world, world.get<MeshInstance>(wall).mesh, {.translation = {9, 9, 9}});
+    SceneRays rays;
+    rays.update_and_wait(world);
+    world.edit<Transform>(wall, [](Transform& transform) { transform.translation.x = 5.0F; });
+    world.edit<Transform>(other, [](Transform& transform) { transform.translation = {0, 0, 2}; });
+    rays.update(world);
+    CHECK_FALSE(rays.building());
+    CHECK(rays.first_hit(along_view).value().entity == other);
+    world.remove<MeshInstance>(other);
+    rays.update(world);
+    CHECK_FALSE(rays.first_hit(along_view));
+}
+
+TEST_CASE("ignored entities and the backs of single-sided surfaces are passed") {
+    World world;
+    const Entity first = add_mesh(world, square(1.0F), {.translation = {0, 0, 1}});
+    const Entity back =
+        add_mesh(world, square(1.0F), {.rotation = glm::angleAxis(glm::pi<float>(), glm::vec3(0, 1, 0))});
+    const Entity last = add_mesh(
+        world, square(1.0F, true),
+        {.translation = {0, 0, -1}, .rotation = glm::angleAxis(glm::pi<float>(), glm::vec3(0, 1, 0))});
+    SceneRays rays;
+    rays.update_and_wait(world);
+    CHECK(rays.first_hit(along_view).value().entity == first);
+    const auto hit = rays.first_hit(along_view, std::array{first});
+    REQUIRE(hit);
+    CHECK(hit->entity == last);
+    CHECK(hit->normal.z > 0.99F);  // towards the ray
+    CHECK(rays.first_hit({{0, 0, -5}, {0, 0, 1}}, std::array{last}).value().entity == back);
+}
+
+TEST_CASE("mirrored instances show their fronts") {
+    World world;
+    add_mesh(world, cube(1.0F), {.scale = {-1.0F, 2.0F, 1.0F}});
+    SceneRays rays;
+    rays.update_and_wait(world);
+    const auto hit = rays.first_hit(along_view);
+    REQUIRE(hit);
+    CHECK(std::abs(hit->distance - 4.0F) < rounding);
+    CHECK(hit->normal.z > 0.99F);
+}
+
+TEST_CASE("a segment is blocked by what is between its ends, and not by what blends") {
+    World world;
+    add_mesh(world, square(1.0F));
+    const Entity glass = add_mesh(world, square(1.0F, false, AlphaMode::blend), {.translation = {0, 0, 2}});
+    SceneRays rays;
+    rays.update_and_wait(world);
+    CHECK(rays.blocked({0, 0, 5}, {0, 0, -1}));
+    CHECK_FALSE(rays.blocked({0, 0, 5}, {0, 0, 1}));   // behind the glass
+    CHECK_FALSE(rays.blocked({0, 0, 5}, {0, 0, 0}));   // on the wall
+    CHECK_FALSE(rays.blocked({0, 0, -1}, {0, 0, 5}));  // through the back of the wall
+    CHECK(rays.first_hit({{0, 0, 5}, {0, 0, -1}}).value().entity == glass);
+}
+
+TEST_CASE("random rays meet what testing every triangle meets, under parents that scale and rotate") {
+    World world;
+    std::mt19937 random(1);
+    const Entity parent = add_skewing_parent(world);
+    const auto mesh = [&] {
+        Primitive primitive;
+        for (int i = 0; i < 40; ++i) {
+            add_side(primitive, random_direction(random), random_direction(random), random_direction(random));
+        }
+        return mesh_of(std::move(primitive), true);
+    }();
+    for (int i = 0; i < 20; ++i) {
+        add_mesh(world, mesh, {.translation = 3.0F * random_direction(random), .parent = parent});
+    }
+    add_mesh(world, mesh, {.scale = {1.0F, 0.0F, 1.0F}, .parent = parent});  // flat: not found
+    SceneRays rays;
+    rays.update_and_wait(world);
+    world.remove<MeshInstance>(std::get<0>(*std::next(world.view<MeshInstance>().begin(), 20)));
+    rays.update(world);
+    int hits = 0;
+    for (int i = 0; i < 500; ++i) {
+        const Ray ray{{1.0F, 2.0F, 3.0F}, random_direction(random)};
+        const auto expected = nearest_of_all(world, ray);
+        const auto found = rays.first_hit(ray);
+        REQUIRE(found.has_value() == expected.has_value());
+        if (!found) continue;
+        ++hits;
+        CHECK(std::abs(found->distance - *expected) < 1e-4F * *expected + rounding);
+    }
+    CHECK(hits > 100);
+}
+
+TEST_CASE("nothing is found, and nothing waits, while hierarchies are being built") {
+    World world;
+    Primitive primitive;
+    std::mt19937 random(1);
+    for (int i = 0; i < 200'000; ++i) {
+        add_side(primitive, 10.0F * random_direction(random), 0.1F * random_direction(random),
+                 0.1F * random_direction(random));
+    }
+    add_mesh(world, mesh_of(std::move(primitive)));
+    const auto hits = [&](const SceneRays& rays) {
+        int found = 0;
+        for (int i = 0; i < 100; ++i) found += rays.first_hit({{}, random_direction(random)}) ? 1 : 0;
+        return found;
+    };
+    const auto seconds_to = [](const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const double whole = seconds_to([&] {
+        SceneRays rays;
+        rays.update_and_wait(world);
+        CHECK(hits(rays) > 0);
+    });
+    const double interrupted = seconds_to([&] {
+        SceneRays rays;
+        rays.update(world);
+        CHECK(rays.building());
+        CHECK(hits(rays) == 0);
+    });
+    // Only the part that was begun is completed, a seventh.
+    CHECK(interrupted < 0.5 * whole);
+}
+}  // TEST_SUITE("scene rays")
 
 }  // namespace candela::sandbox

@@ -18,6 +18,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("scene") {
+
 namespace {
 
 Entity add_camera(World& world, const char* name) {
@@ -51,76 +53,75 @@ std::string error_of(World world, const std::string& camera) {
 
 }  // namespace
 
-TEST_SUITE("scene") {
-    TEST_CASE("the shipped scene is found, and has a camera and a light") {
-        const Scene scene = load_scene(shipped_file("scenes", "cornell.gltf"));
-        CHECK(scene.warnings.empty());
-        CHECK(cameras(scene.world).size() == 1);
-        CHECK(scene.world.count<PointLight>() == 1);
-    }
+TEST_CASE("the shipped scene is found, and has a camera and a light") {
+    const Scene scene = load_scene(shipped_file("scenes", "cornell.gltf"));
+    CHECK(scene.warnings.empty());
+    CHECK(cameras(scene.world).size() == 1);
+    CHECK(scene.world.count<PointLight>() == 1);
+}
 
-    TEST_CASE("a saved scene opens as it was, without what the app has added for itself") {
-        const TemporaryFolder folder;
-        Scene scene = load_scene(shipped_file("scenes", "glass.gltf"));
-        const Entity lamp = scene.world.create();
-        scene.world.set(lamp, Name{"my lamp"});
-        scene.world.set(lamp, Transform{.translation = {0.1F, 0.2F, 0.3F}});
-        scene.world.set(lamp, SpotLight{.intensity = 3.0F});
-        const World before = scene.world;
-        const Entity viewer = add_camera(scene.world, "viewer");
-        for (const char* name : {"a.gltf", "a.glb"}) {
-            CHECK(save_scene(scene.world, folder / name, std::span(&viewer, 1)).empty());
-            CHECK(test::difference(load_scene(folder / name).world, before) == "");
-        }
+TEST_CASE("a saved scene opens as it was, without what the app has added for itself") {
+    const TemporaryFolder folder;
+    Scene scene = load_scene(shipped_file("scenes", "glass.gltf"));
+    const Entity lamp = scene.world.create();
+    scene.world.set(lamp, Name{"my lamp"});
+    scene.world.set(lamp, Transform{.translation = {0.1F, 0.2F, 0.3F}});
+    scene.world.set(lamp, SpotLight{.intensity = 3.0F});
+    const World before = scene.world;
+    const Entity viewer = add_camera(scene.world, "viewer");
+    for (const char* name : {"a.gltf", "a.glb"}) {
+        CHECK(save_scene(scene.world, folder / name, std::span(&viewer, 1)).empty());
+        CHECK(test::difference(load_scene(folder / name).world, before) == "");
     }
+}
 
-    TEST_CASE("cameras are chosen by name, else by index, else the first") {
+TEST_CASE("cameras are chosen by name, else by index, else the first") {
+    World world;
+    const Entity first = add_camera(world, "front");
+    const Entity second = add_camera(world, "0");
+    CHECK(choose_camera(world, std::nullopt, 1.0F) == first);
+    CHECK(choose_camera(world, "front", 1.0F) == first);
+    CHECK(choose_camera(world, "1", 1.0F) == second);
+    CHECK(choose_camera(world, "0", 1.0F) == second);  // its name
+    CHECK(world.count<Camera>() == 2);
+}
+
+TEST_CASE("a missing camera is an error that lists the existing ones") {
+    World world;
+    add_camera(world, "front");
+    for (const char* wanted : {"back", "1", "-1", "0x", ""}) {
+        const std::string error = error_of(world, wanted);
+        CHECK(error.find(std::string("'") + wanted + "'") != std::string::npos);
+        CHECK(error.find("'front'") != std::string::npos);
+    }
+    CHECK(error_of(World(), "0").find("none") != std::string::npos);
+}
+
+TEST_CASE("the bounds are those of the meshes in world space") {
+    World world;
+    CHECK(bounds(world).radius == 0.0F);
+    add_triangle(world, 1.0F);
+    const Bounds scene = bounds(world);
+    CHECK(scene.centre == glm::vec3(1.5F, 1.0F, 0.0F));
+    CHECK(scene.radius == doctest::Approx(0.5 * std::sqrt(9.0 + 4.0)));
+}
+
+TEST_CASE("a scene without cameras gets one that shows all of its bounds") {
+    for (const float aspect : {0.4F, 1.0F, 2.5F}) {
         World world;
-        const Entity first = add_camera(world, "front");
-        const Entity second = add_camera(world, "0");
-        CHECK(choose_camera(world, std::nullopt, 1.0F) == first);
-        CHECK(choose_camera(world, "front", 1.0F) == first);
-        CHECK(choose_camera(world, "1", 1.0F) == second);
-        CHECK(choose_camera(world, "0", 1.0F) == second);  // its name
-        CHECK(world.count<Camera>() == 2);
-    }
-
-    TEST_CASE("a missing camera is an error that lists the existing ones") {
-        World world;
-        add_camera(world, "front");
-        for (const char* wanted : {"back", "1", "-1", "0x", ""}) {
-            const std::string error = error_of(world, wanted);
-            CHECK(error.find(std::string("'") + wanted + "'") != std::string::npos);
-            CHECK(error.find("'front'") != std::string::npos);
-        }
-        CHECK(error_of(World(), "0").find("none") != std::string::npos);
-    }
-
-    TEST_CASE("the bounds are those of the meshes in world space") {
-        World world;
-        CHECK(bounds(world).radius == 0.0F);
-        add_triangle(world, 1.0F);
-        const Bounds scene = bounds(world);
-        CHECK(scene.centre == glm::vec3(1.5F, 1.0F, 0.0F));
-        CHECK(scene.radius == doctest::Approx(0.5 * std::sqrt(9.0 + 4.0)));
-    }
-
-    TEST_CASE("a scene without cameras gets one that shows all of its bounds") {
-        for (const float aspect : {0.4F, 1.0F, 2.5F}) {
-            World world;
-            add_triangle(world, 100.0F);
-            const Entity camera = choose_camera(world, std::nullopt, aspect);
-            const glm::vec2 size(1000.0F * aspect, 1000.0F);
-            const Viewport viewport = make_viewport(world, camera, size);
-            for (const glm::vec3 corner :
-                 {glm::vec3(0.0F), glm::vec3(300.0F, 0.0F, 0.0F), glm::vec3(0.0F, 200.0F, 0.0F)}) {
-                const auto seen_at = project(viewport, corner);
-                REQUIRE(seen_at);
-                CHECK(glm::all(glm::greaterThanEqual(*seen_at, glm::vec2(0.0F))));
-                CHECK(glm::all(glm::lessThanEqual(*seen_at, size)));
-            }
+        add_triangle(world, 100.0F);
+        const Entity camera = choose_camera(world, std::nullopt, aspect);
+        const glm::vec2 size(1000.0F * aspect, 1000.0F);
+        const Viewport viewport = make_viewport(world, camera, size);
+        for (const glm::vec3 corner :
+             {glm::vec3(0.0F), glm::vec3(300.0F, 0.0F, 0.0F), glm::vec3(0.0F, 200.0F, 0.0F)}) {
+            const auto seen_at = project(viewport, corner);
+            REQUIRE(seen_at);
+            CHECK(glm::all(glm::greaterThanEqual(*seen_at, glm::vec2(0.0F))));
+            CHECK(glm::all(glm::lessThanEqual(*seen_at, size)));
         }
     }
 }
+}  // TEST_SUITE("scene")
 
 }  // namespace candela::sandbox

@@ -18,6 +18,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("script writer") {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,69 +94,68 @@ std::string error_of_writing(const Script& script) {
 
 }  // namespace
 
-TEST_SUITE("script writer") {
-    TEST_CASE("any script is the same after it was written and read" * doctest::test_suite("random")) {
-        CHECK(rc::check("scripts are equal", [] {
-            const Script script = any_script();
-            RC_ASSERT(read_script(write_script(script)) == script);
-        }));
-    }
+TEST_CASE("any script is the same after it was written and read" * doctest::test_suite("random")) {
+    CHECK(rc::check("scripts are equal", [] {
+        const Script script = any_script();
+        RC_ASSERT(read_script(write_script(script)) == script);
+    }));
+}
 
-    TEST_CASE("the shipped scripts are the same after they were written and read") {
-        int count = 0;
-        for (const fs::directory_entry& file : fs::directory_iterator(shipped_file("animations", ""))) {
-            CAPTURE(file.path().string());
-            Script script = load_script(file.path());
-            script.path.clear();
-            CHECK(read_script(write_script(script)) == script);
-            ++count;
-        }
-        CHECK(count >= 6);
+TEST_CASE("the shipped scripts are the same after they were written and read") {
+    int count = 0;
+    for (const fs::directory_entry& file : fs::directory_iterator(shipped_file("animations", ""))) {
+        CAPTURE(file.path().string());
+        Script script = load_script(file.path());
+        script.path.clear();
+        CHECK(read_script(write_script(script)) == script);
+        ++count;
     }
+    CHECK(count >= 6);
+}
 
-    TEST_CASE("a script is written for people, too") {
-        Script script;
-        script.frames = 2;
-        script.tracks.push_back({"lamp", Interpolation::linear, {{0, {0.1F, 2, -3}}, {2, {1, 2, 3}}}});
-        CHECK(write_script(script) == R"({ "frames": 2, "loop": false,
+TEST_CASE("a script is written for people, too") {
+    Script script;
+    script.frames = 2;
+    script.tracks.push_back({"lamp", Interpolation::linear, {{0, {0.1F, 2, -3}}, {2, {1, 2, 3}}}});
+    CHECK(write_script(script) == R"({ "frames": 2, "loop": false,
   "tracks": [
     { "node": "lamp",
       "interpolation": "linear",
       "translation": [[0,[0.1,2.0,-3.0]],[2,[1.0,2.0,3.0]]] } ] }
 )");
-    }
-
-    TEST_CASE("what JSON cannot hold is an error") {
-        Script script;
-        script.tracks.push_back({"\xFF"});
-        CHECK(error_of_writing(script) == "a name is not UTF-8");
-        script.tracks.front() = {"lamp"};
-        script.tracks.front().intensity = {{0, std::numeric_limits<float>::infinity()}};
-        CHECK(error_of_writing(script) == "a number is not finite");
-    }
-
-    TEST_CASE("a saved script finds its scene: a shipped one by name, others relative to the script") {
-        const TemporaryFolder folder;
-        fs::create_directories(folder / "rooms");
-        fs::create_directories(folder / "scripts");
-        const fs::path file = folder / "scripts/a.json";
-        const fs::path cornell = shipped_file("scenes", "cornell.gltf");
-        save_script({}, cornell, file);
-        CHECK(load_script(file).scene == "cornell");
-        CHECK(scene_of(load_script(file)) == cornell);
-
-        const fs::path own = folder / "rooms/cornell.gltf";
-        fs::copy_file(cornell, own);
-        save_script({}, own, file);
-        CHECK(load_script(file).scene == "../rooms/cornell.gltf");
-        CHECK(fs::equivalent(scene_of(load_script(file)).value(), own));
-
-        Script faulty;
-        faulty.tracks.push_back({"\xFF"});
-        CHECK_THROWS_WITH_AS(save_script(faulty, own, file),
-                             (file.string() + ": a name is not UTF-8").c_str(), std::runtime_error);
-        CHECK(load_script(file).scene == "../rooms/cornell.gltf");
-    }
 }
+
+TEST_CASE("what JSON cannot hold is an error") {
+    Script script;
+    script.tracks.push_back({"\xFF"});
+    CHECK(error_of_writing(script) == "a name is not UTF-8");
+    script.tracks.front() = {"lamp"};
+    script.tracks.front().intensity = {{0, std::numeric_limits<float>::infinity()}};
+    CHECK(error_of_writing(script) == "a number is not finite");
+}
+
+TEST_CASE("a saved script finds its scene: a shipped one by name, others relative to the script") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "rooms");
+    fs::create_directories(folder / "scripts");
+    const fs::path file = folder / "scripts/a.json";
+    const fs::path cornell = shipped_file("scenes", "cornell.gltf");
+    save_script({}, cornell, file);
+    CHECK(load_script(file).scene == "cornell");
+    CHECK(scene_of(load_script(file)) == cornell);
+
+    const fs::path own = folder / "rooms/cornell.gltf";
+    fs::copy_file(cornell, own);
+    save_script({}, own, file);
+    CHECK(load_script(file).scene == "../rooms/cornell.gltf");
+    CHECK(fs::equivalent(scene_of(load_script(file)).value(), own));
+
+    Script faulty;
+    faulty.tracks.push_back({"\xFF"});
+    CHECK_THROWS_WITH_AS(save_script(faulty, own, file), (file.string() + ": a name is not UTF-8").c_str(),
+                         std::runtime_error);
+    CHECK(load_script(file).scene == "../rooms/cornell.gltf");
+}
+}  // TEST_SUITE("script writer")
 
 }  // namespace candela::sandbox

@@ -7,6 +7,8 @@
 
 #include "sandbox/headless/update_budget.hpp"
 
+TEST_SUITE("update budget") {
+
 using namespace candela;
 using namespace candela::sandbox;
 
@@ -35,53 +37,52 @@ std::uint32_t limit_after(UpdateBudget budget, double surfel_ms, double others_m
 
 }  // namespace
 
-TEST_SUITE("update budget") {
-    TEST_CASE("as many surfels are traced as fit") {
-        for (const double surfel_ms : {0.01, 0.3, 1.0}) {
-            CAPTURE(surfel_ms);
-            const std::uint32_t limit = limit_after(UpdateBudget(budget_ms), surfel_ms, 20.0);
-            CHECK(limit * surfel_ms + 20.0 <= budget_ms);
-            // All but one, as the limit is a whole number.
-            CHECK((limit + 1) * surfel_ms + 20.0 >= budget_ms);
-        }
-    }
-
-    TEST_CASE("light also follows where other passes take all the time, or surfels too much") {
-        const std::uint32_t limit = limit_after(UpdateBudget(budget_ms), 1.0, 100.0);
-        CHECK(limit >= 19);
-        CHECK(limit <= 20);  // a third of the budget
-        CHECK(limit_after(UpdateBudget(budget_ms), 1000.0, 0.0) >= 1);
-    }
-
-    TEST_CASE(
-        "at rest, tracing takes as long as the other passes, and the picture is complete in few frames") {
-        UpdateBudget budget(budget_ms);
-        for (int i = 0; i < 100; ++i) budget.learn(frame_of(budget.limit(), 1.0, 500.0, 1000));
-        const std::uint32_t moving = budget.limit();
-        std::uint32_t waiting = 1000;
-        int frames = 0;
-        for (; waiting > 0 && frames < 10; ++frames) {
-            waiting -= std::min(waiting, budget.limit());
-            budget.learn(frame_of(budget.limit(), 1.0, 500.0, waiting, false));
-        }
-        CHECK(frames <= 5);  // of 20 surfels, 80, 320, and 500
-        CHECK(budget.limit() == moving);
-    }
-
-    TEST_CASE("a frame that had less to trace changes nothing") {
-        UpdateBudget budget(budget_ms);
-        const std::uint32_t before = budget.limit();
-        budget.learn(frame_of(1, 1.0, 0.0, 0));
-        CHECK(budget.limit() == before);
-        budget.learn({});
-        CHECK(budget.limit() == before);
-    }
-
-    TEST_CASE("a configuration's own limit stays, and without a budget there is none") {
-        Configuration configuration;
-        CHECK(UpdateBudget(budget_ms).limited(configuration).vpls.updates > 0);
-        CHECK(UpdateBudget().limited(configuration) == configuration);
-        configuration.vpls.updates = 3;
-        CHECK(UpdateBudget(budget_ms).limited(configuration) == configuration);
+TEST_CASE("as many surfels are traced as fit") {
+    for (const double surfel_ms : {0.01, 0.3, 1.0}) {
+        CAPTURE(surfel_ms);
+        const std::uint32_t limit = limit_after(UpdateBudget(budget_ms), surfel_ms, 20.0);
+        CHECK(limit * surfel_ms + 20.0 <= budget_ms);
+        // All but one, as the limit is a whole number.
+        CHECK((limit + 1) * surfel_ms + 20.0 >= budget_ms);
     }
 }
+
+TEST_CASE("light also follows where other passes take all the time, or surfels too much") {
+    const std::uint32_t limit = limit_after(UpdateBudget(budget_ms), 1.0, 100.0);
+    CHECK(limit >= 19);
+    CHECK(limit <= 20);  // a third of the budget
+    CHECK(limit_after(UpdateBudget(budget_ms), 1000.0, 0.0) >= 1);
+}
+
+TEST_CASE("at rest, tracing takes as long as the other passes, and the picture is complete in few frames") {
+    UpdateBudget budget(budget_ms);
+    for (int i = 0; i < 100; ++i) budget.learn(frame_of(budget.limit(), 1.0, 500.0, 1000));
+    const std::uint32_t moving = budget.limit();
+    std::uint32_t waiting = 1000;
+    int frames = 0;
+    for (; waiting > 0 && frames < 10; ++frames) {
+        waiting -= std::min(waiting, budget.limit());
+        budget.learn(frame_of(budget.limit(), 1.0, 500.0, waiting, false));
+    }
+    CHECK(frames <= 5);  // of 20 surfels, 80, 320, and 500
+    CHECK(budget.limit() == moving);
+}
+
+TEST_CASE("a frame that had less to trace changes nothing") {
+    UpdateBudget budget(budget_ms);
+    const std::uint32_t before = budget.limit();
+    budget.learn(frame_of(1, 1.0, 0.0, 0));
+    CHECK(budget.limit() == before);
+    budget.learn({});
+    CHECK(budget.limit() == before);
+}
+
+TEST_CASE("a configuration's own limit stays, and without a budget there is none") {
+    Configuration configuration;
+    CHECK(UpdateBudget(budget_ms).limited(configuration).vpls.updates > 0);
+    CHECK(UpdateBudget().limited(configuration) == configuration);
+    configuration.vpls.updates = 3;
+    CHECK(UpdateBudget(budget_ms).limited(configuration) == configuration);
+}
+
+}  // TEST_SUITE("update budget")

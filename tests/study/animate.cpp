@@ -37,7 +37,7 @@ Play load_play(const AnimateStudy& study) {
 }
 
 /// The references of all frames, as separate lists for `flicker`.
-struct Truth {
+struct TrueFrames {
     std::vector<Picture> direct;
     std::vector<Picture> indirect;
     std::vector<Picture> total;
@@ -61,7 +61,7 @@ Reference reference_of(const Play& play, const std::string& hash, const AnimateS
     return traced;
 }
 
-void add(Truth& truth, const reference::Estimate& estimate) {
+void add(TrueFrames& truth, const reference::Estimate& estimate) {
     truth.direct.push_back(estimate.direct);
     truth.indirect.push_back(estimate.indirect);
     truth.total.push_back(reference::total(estimate));
@@ -70,10 +70,10 @@ void add(Truth& truth, const reference::Estimate& estimate) {
     truth.hits.push_back(estimate.hit);
 }
 
-Truth trace_frames(Play& play, const AnimateStudy& study) {
+TrueFrames trace_frames(Play& play, const AnimateStudy& study) {
     const std::string hash_of_scene = scene_hash(play.scene);
     std::map<std::string, Reference> known;
-    Truth truth;
+    TrueFrames truth;
     for (int frame = 0; frame < play.frames; ++frame) {
         const std::string hash = frame_hash(hash_of_scene, play.script, frame);
         if (!known.contains(hash)) {
@@ -114,7 +114,7 @@ double play_frame(Stage& stage, Take& take) {
 }
 
 Json frame_line(const Point& point, int frame, double ms, const Report& report, const Take& take,
-                const Truth& truth) {
+                const TrueFrames& truth) {
     const auto at = static_cast<std::size_t>(frame);
     const Mask& hit = truth.hits[at];
     return {{"id", point.id},
@@ -128,14 +128,14 @@ Json frame_line(const Point& point, int frame, double ms, const Report& report, 
 }
 
 /// The flicker of a picture that does not change: the size of the reference's own changes.
-double own_flicker(const Truth& truth) {
+double own_flicker(const TrueFrames& truth) {
     const std::vector<Picture> still(truth.indirect.size(), truth.indirect.front());
     return flicker(still, truth.indirect, truth.hits);
 }
 
 /// `noise` is the part of the indirect light's flicker that is due to noise of the reference: halves of
 /// variance v have a mean squared difference of 2v, and their mean has a variance of v/2.
-Json flicker_line(const Point& point, const Take& take, const Truth& truth) {
+Json flicker_line(const Point& point, const Take& take, const TrueFrames& truth) {
     return {{"id", point.id},
             {"kind", "flicker"},
             {"indirect", flicker(take.indirect, truth.indirect, truth.hits)},
@@ -145,7 +145,7 @@ Json flicker_line(const Point& point, const Take& take, const Truth& truth) {
             {"noise", flicker(truth.halves[0], truth.halves[1], truth.hits) / 4.0}};
 }
 
-Json play_point(const gl::GetProc& get_proc, Play& play, const Truth& truth, const AnimateStudy& study,
+Json play_point(const gl::GetProc& get_proc, Play& play, const TrueFrames& truth, const AnimateStudy& study,
                 const Point& point) {
     Configuration configuration = configuration_of(point);
     Stage stage{Bench(get_proc, play.world, study.size), Bench(get_proc, play.world, study.size)};
@@ -170,7 +170,7 @@ Json play_point(const gl::GetProc& get_proc, Play& play, const Truth& truth, con
 int animate(const AnimateStudy& study) {
     const std::vector<Point> points = read_points(read_json(study.points), study.points.string());
     Play play = load_play(study);
-    const Truth truth = trace_frames(play, study);
+    const TrueFrames truth = trace_frames(play, study);
     const auto context = HeadlessContext::create(study.context);
     context->make_current();
     for (const Point& point : points) {

@@ -9,7 +9,7 @@
 namespace candela::study {
 namespace {
 
-struct Sample {
+struct TracedSample {
     sandbox::Picture indirect;
     sandbox::Picture total;
     double ms = 0.0;
@@ -17,7 +17,7 @@ struct Sample {
 
 /// The tracer requires an even number of samples. For an odd number, traces twice as many, and uses one of
 /// the halves and half of the time.
-Sample sample(const reference::Scene& scene, Entity camera, reference::Settings settings) {
+TracedSample sample(const reference::Scene& scene, Entity camera, reference::Settings settings) {
     const bool odd = settings.samples % 2 != 0;
     settings.samples *= odd ? 2 : 1;
     reference::Estimate estimate = reference::trace(scene, camera, settings);
@@ -38,11 +38,11 @@ Baseline run_rounds(const reference::Scene& scene, Entity camera, const Referenc
     Baseline baseline;
     for (std::uint32_t round = 0; round < rounds; ++round) {
         // Seeds differ from the reference's, so that errors are independent of those of the reference.
-        const Sample now = sample(scene, camera,
-                                  {.size = reference.request.size,
-                                   .samples = samples,
-                                   .bounces = reference.request.bounces,
-                                   .seed = reference.request.seed + 1 + round});
+        const TracedSample now = sample(scene, camera,
+                                        {.size = reference.request.size,
+                                         .samples = samples,
+                                         .bounces = reference.request.bounces,
+                                         .seed = reference.request.seed + 1 + round});
         baseline.ms.push_back(now.ms);
         baseline.indirect.push_back(measure(now.indirect, truth.indirect, truth.hit));
         baseline.total.push_back(measure(now.total, reference::total(truth), truth.hit));

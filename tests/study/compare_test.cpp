@@ -15,6 +15,8 @@
 
 namespace candela::study {
 
+TEST_SUITE("compare") {
+
 using sandbox::Picture;
 using sandbox::TemporaryFolder;
 using sandbox::write_exr;
@@ -32,74 +34,72 @@ std::string error_of(const Comparison& comparison) {
 
 }  // namespace
 
-TEST_SUITE("compare") {
-    TEST_CASE("all measures are printed, for PFM and EXR files") {
-        const TemporaryFolder folder;
-        write_pfm(folder / "a.pfm", constant({5, 3}, glm::vec3(0.75F)));
-        write_exr(folder / "b.exr", constant({5, 3}, glm::vec3(0.5F)));
-        // 0.25² / (0.5² · 1.01), √(3 · 0.25²), 0.25 / 0.5, 0.75 / 0.5; FLIP has its own tests.
-        const std::string text = compare({folder / "a.pfm", folder / "b.exr", {}, {}, {}});
-        CHECK(text.starts_with(
-            "relMSE   0.247525\nRMSE     0.433013\nbias     0.5\nspikes   1.5\nFLIP     0."));
-    }
-
-    TEST_CASE("a mask excludes pixels, and the heat map shows them grey") {
-        const TemporaryFolder folder;
-        Picture picture = constant({2, 2}, glm::vec3(1.0F));
-        write_pfm(folder / "b.pfm", picture);
-        picture.pixels[1] = glm::vec3(1.5F);
-        picture.pixels[3] = glm::vec3(9.0F);
-        write_pfm(folder / "a.pfm", picture);
-        Picture mask = constant({2, 2}, glm::vec3(1.0F));
-        mask.pixels[3] = glm::vec3(0.0F);
-        write_pfm(folder / "mask.pfm", mask);
-        const std::string text =
-            compare({folder / "a.pfm", folder / "b.pfm", folder / "mask.pfm", folder / "heat.png", {}});
-        // 0.25 / 1.01 / 3, and the square root of the pixel's own 0.25 / 1.01.
-        CHECK(text.starts_with("relMSE   0.0825083\n"));
-        CHECK(text.ends_with("heat     0.497519\n"));
-
-        glm::ivec2 size(0);
-        int channels = 0;
-        unsigned char* png = stbi_load((folder / "heat.png").c_str(), &size.x, &size.y, &channels, 3);
-        REQUIRE(png != nullptr);
-        const std::vector<int> bytes(png, png + 12);
-        stbi_image_free(png);
-        CHECK(size == glm::ivec2(2, 2));
-        CHECK(bytes[0] < 10);   // no error: black
-        CHECK(bytes[3] > 240);  // the largest: pale yellow
-        CHECK(std::vector<int>(bytes.begin() + 9, bytes.end()) == std::vector<int>{128, 128, 128});
-    }
-
-    TEST_CASE("errors name the file, and nothing is written") {
-        const TemporaryFolder folder;
-        const auto a = folder / "a.pfm";
-        write_pfm(a, constant({4, 3}, glm::vec3(1.0F)));
-        write_pfm(folder / "wide.pfm", constant({5, 3}, glm::vec3(1.0F)));
-        write_pfm(folder / "black.pfm", constant({4, 3}, glm::vec3(0.0F)));
-        Picture bad = constant({4, 3}, glm::vec3(1.0F));
-        bad.pixels[6].b = std::nanf("");
-        write_exr(folder / "nan.exr", bad);
-        std::ofstream(folder / "text.exr") << "no picture";
-        std::ofstream(folder / "a.txt") << "no picture";
-        const auto heat = folder / "heat.png";
-        const auto error = [&](const char* name) { return error_of({a, folder / name, {}, heat, {}}); };
-        const auto at = [&](const char* name) { return (folder / name).string(); };
-
-        CHECK(error("gone.pfm") == at("gone.pfm") + ": cannot be read: No such file or directory");
-        CHECK(error("wide.pfm") == at("wide.pfm") + ": is 5x3, not 4x3 as the picture to compare");
-        CHECK(error("nan.exr") == at("nan.exr") + ": pixel (2, 1) is not finite");
-        CHECK(error("text.exr").starts_with(at("text.exr") + ": cannot be read as OpenEXR"));
-        CHECK(error("a.txt") == at("a.txt") + ": is named neither .pfm nor .exr");
-        CHECK(error_of({folder / "nan.exr", a, {}, heat, {}}).starts_with(at("nan.exr") + ": "));
-        CHECK(error_of({a, a, folder / "black.pfm", heat, {}}) == at("black.pfm") + ": masks every pixel");
-        CHECK(error_of({a, a, folder / "wide.pfm", heat, {}}).starts_with(at("wide.pfm") + ": is 5x3"));
-        CHECK(error_of({a, a, {}, folder / "heat.jpg", {}}).starts_with(at("heat.jpg") + ": "));
-        CHECK(error_of({a, a, {}, folder / "no-folder/heat.png", {}}) ==
-              at("no-folder/heat.png") + ": cannot be written: No such file or directory");
-        CHECK(error_of({a, a, {}, heat, -1.0}) == "--scale: -1 is no relative error above 0");
-        CHECK(folder.file_count() == 6);
-    }
+TEST_CASE("all measures are printed, for PFM and EXR files") {
+    const TemporaryFolder folder;
+    write_pfm(folder / "a.pfm", constant({5, 3}, glm::vec3(0.75F)));
+    write_exr(folder / "b.exr", constant({5, 3}, glm::vec3(0.5F)));
+    // 0.25² / (0.5² · 1.01), √(3 · 0.25²), 0.25 / 0.5, 0.75 / 0.5; FLIP has its own tests.
+    const std::string text = compare({folder / "a.pfm", folder / "b.exr", {}, {}, {}});
+    CHECK(text.starts_with("relMSE   0.247525\nRMSE     0.433013\nbias     0.5\nspikes   1.5\nFLIP     0."));
 }
+
+TEST_CASE("a mask excludes pixels, and the heat map shows them grey") {
+    const TemporaryFolder folder;
+    Picture picture = constant({2, 2}, glm::vec3(1.0F));
+    write_pfm(folder / "b.pfm", picture);
+    picture.pixels[1] = glm::vec3(1.5F);
+    picture.pixels[3] = glm::vec3(9.0F);
+    write_pfm(folder / "a.pfm", picture);
+    Picture mask = constant({2, 2}, glm::vec3(1.0F));
+    mask.pixels[3] = glm::vec3(0.0F);
+    write_pfm(folder / "mask.pfm", mask);
+    const std::string text =
+        compare({folder / "a.pfm", folder / "b.pfm", folder / "mask.pfm", folder / "heat.png", {}});
+    // 0.25 / 1.01 / 3, and the square root of the pixel's own 0.25 / 1.01.
+    CHECK(text.starts_with("relMSE   0.0825083\n"));
+    CHECK(text.ends_with("heat     0.497519\n"));
+
+    glm::ivec2 size(0);
+    int channels = 0;
+    unsigned char* png = stbi_load((folder / "heat.png").c_str(), &size.x, &size.y, &channels, 3);
+    REQUIRE(png != nullptr);
+    const std::vector<int> bytes(png, png + 12);
+    stbi_image_free(png);
+    CHECK(size == glm::ivec2(2, 2));
+    CHECK(bytes[0] < 10);   // no error: black
+    CHECK(bytes[3] > 240);  // the largest: pale yellow
+    CHECK(std::vector<int>(bytes.begin() + 9, bytes.end()) == std::vector<int>{128, 128, 128});
+}
+
+TEST_CASE("errors name the file, and nothing is written") {
+    const TemporaryFolder folder;
+    const auto a = folder / "a.pfm";
+    write_pfm(a, constant({4, 3}, glm::vec3(1.0F)));
+    write_pfm(folder / "wide.pfm", constant({5, 3}, glm::vec3(1.0F)));
+    write_pfm(folder / "black.pfm", constant({4, 3}, glm::vec3(0.0F)));
+    Picture bad = constant({4, 3}, glm::vec3(1.0F));
+    bad.pixels[6].b = std::nanf("");
+    write_exr(folder / "nan.exr", bad);
+    std::ofstream(folder / "text.exr") << "no picture";
+    std::ofstream(folder / "a.txt") << "no picture";
+    const auto heat = folder / "heat.png";
+    const auto error = [&](const char* name) { return error_of({a, folder / name, {}, heat, {}}); };
+    const auto at = [&](const char* name) { return (folder / name).string(); };
+
+    CHECK(error("gone.pfm") == at("gone.pfm") + ": cannot be read: No such file or directory");
+    CHECK(error("wide.pfm") == at("wide.pfm") + ": is 5x3, not 4x3 as the picture to compare");
+    CHECK(error("nan.exr") == at("nan.exr") + ": pixel (2, 1) is not finite");
+    CHECK(error("text.exr").starts_with(at("text.exr") + ": cannot be read as OpenEXR"));
+    CHECK(error("a.txt") == at("a.txt") + ": is named neither .pfm nor .exr");
+    CHECK(error_of({folder / "nan.exr", a, {}, heat, {}}).starts_with(at("nan.exr") + ": "));
+    CHECK(error_of({a, a, folder / "black.pfm", heat, {}}) == at("black.pfm") + ": masks every pixel");
+    CHECK(error_of({a, a, folder / "wide.pfm", heat, {}}).starts_with(at("wide.pfm") + ": is 5x3"));
+    CHECK(error_of({a, a, {}, folder / "heat.jpg", {}}).starts_with(at("heat.jpg") + ": "));
+    CHECK(error_of({a, a, {}, folder / "no-folder/heat.png", {}}) ==
+          at("no-folder/heat.png") + ": cannot be written: No such file or directory");
+    CHECK(error_of({a, a, {}, heat, -1.0}) == "--scale: -1 is no relative error above 0");
+    CHECK(folder.file_count() == 6);
+}
+}  // TEST_SUITE("compare")
 
 }  // namespace candela::study

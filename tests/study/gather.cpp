@@ -13,7 +13,7 @@
 namespace candela::study {
 namespace {
 
-struct Candidate {
+struct TimedGather {
     Interleave interleave;
     Bench bench;
     std::vector<double> frames;    // ms, everything that depends on the view
@@ -32,14 +32,14 @@ double indirect_ms(const FrameReport& frame, Interleave interleave) {
     return sum;
 }
 
-void add_round(Candidate& candidate, glm::vec2 jitter) {
+void add_round(TimedGather& candidate, glm::vec2 jitter) {
     (void)candidate.bench.renderer().take_frames(true);
     candidate.frames.push_back(candidate.bench.frame(jitter));
     candidate.indirect.push_back(
         indirect_ms(candidate.bench.renderer().take_frames(true).back(), candidate.interleave));
 }
 
-void print_row(std::uint32_t vpls, Candidate& candidate, const Candidate& all, std::size_t pixels) {
+void print_row(std::uint32_t vpls, TimedGather& candidate, const TimedGather& all, std::size_t pixels) {
     const VplReport report = candidate.bench.renderer().report().vpls.value();
     const Errors errors = measure(candidate.bench.picture(), all.bench.picture());
     fmt::print("{:>6} {:>3} {:>12.1f} {:>12.1f} {:>10.3f} {:>9.2f} % {:>12.2e}\n", vpls,
@@ -56,16 +56,16 @@ int gather(const GatherStudy& study) {
     World world;
     import_gltf(study.scene, world);
     const auto bench = [&] { return Bench(context->get_proc(), world, study.size); };
-    std::array<Candidate, 4> candidates{
-        Candidate{Interleave::one, bench(), {}, {}}, Candidate{Interleave::two, bench(), {}, {}},
-        Candidate{Interleave::four, bench(), {}, {}}, Candidate{Interleave::eight, bench(), {}, {}}};
+    std::array<TimedGather, 4> candidates{
+        TimedGather{Interleave::one, bench(), {}, {}}, TimedGather{Interleave::two, bench(), {}, {}},
+        TimedGather{Interleave::four, bench(), {}, {}}, TimedGather{Interleave::eight, bench(), {}, {}}};
     fmt::print("{}, indirect light with depth maps, {} x {}, medians of {} interleaved rounds, {}\n",
                study.scene.filename().string(), study.size.x, study.size.y, study.rounds,
                device_of(candidates[0].bench.renderer()).renderer());
     fmt::print("{:>6} {:>3} {:>12} {:>12} {:>10} {:>11} {:>12}\n", "VPLs", "n", "frame ms", "gather ms",
                "of n = 1", "asked more", "relMSE to 1");
     for (const std::uint32_t vpls : study.vpls) {
-        for (Candidate& candidate : candidates) {
+        for (TimedGather& candidate : candidates) {
             Configuration configuration;
             configuration.show = Show::indirect;
             configuration.vpls.count = vpls;
@@ -77,10 +77,10 @@ int gather(const GatherStudy& study) {
         }
         for (int round = 0; round < study.rounds; ++round) {
             const float shift = static_cast<float>(round + 1) / static_cast<float>(2 * study.rounds);
-            for (Candidate& candidate : candidates) add_round(candidate, {shift, 0.0F});
+            for (TimedGather& candidate : candidates) add_round(candidate, {shift, 0.0F});
         }
         const std::size_t pixels = candidates[0].bench.covered_pixels();
-        for (Candidate& candidate : candidates) print_row(vpls, candidate, candidates[0], pixels);
+        for (TimedGather& candidate : candidates) print_row(vpls, candidate, candidates[0], pixels);
     }
     return 0;
 }

@@ -10,6 +10,8 @@
 
 namespace candela::study {
 
+TEST_SUITE("heat map") {
+
 using sandbox::Picture;
 
 namespace {
@@ -47,70 +49,69 @@ const Picture reference = constant({2, 2}, glm::vec3(1.0F));
 
 }  // namespace
 
-TEST_SUITE("heat map") {
-    TEST_CASE("the ramp goes from near black to pale yellow, lighter with every step") {
-        CHECK(luminance(heat_colour(0.0)) < 0.001);
-        CHECK(luminance(heat_colour(1.0)) > 0.9);
-        double last = luminance(heat_colour(0.0));
-        for (int step = 1; step <= 255; ++step) {
-            const double next = luminance(heat_colour(step / 255.0));
-            CAPTURE(step);
-            CHECK(next > last);
-            last = next;
-        }
-    }
-
-    TEST_CASE("values outside the ramp have the colours of its ends") {
-        CHECK(heat_colour(-1.0) == heat_colour(0.0));
-        CHECK(heat_colour(2.0) == heat_colour(1.0));
-        CHECK(heat_colour(std::numeric_limits<double>::infinity()) == heat_colour(1.0));
-    }
-
-    TEST_CASE("without a scale the largest error has the brightest colour") {
-        const HeatMap map = heat_map(errors_on(reference, 0.25F), reference);
-        CHECK(map.size == glm::ivec2(2, 2));
-        // √(3 · 1² / (3 · 1.01)).
-        CHECK(map.scale == doctest::Approx(1.0 / std::sqrt(1.01)));
-        CHECK(colour_at(map, 0) == bytes_of(0.0));
-        CHECK(colour_at(map, 1) == bytes_of(0.25));
-        CHECK(colour_at(map, 2) == bytes_of(0.5));
-        CHECK(colour_at(map, 3) == bytes_of(1.0));
-    }
-
-    TEST_CASE("with a scale, errors above it have the brightest colour") {
-        const double scale = 0.5 / std::sqrt(1.01);
-        const HeatMap map = heat_map(errors_on(reference, 0.25F), reference, {}, scale);
-        CHECK(map.scale == scale);
-        CHECK(colour_at(map, 1) == bytes_of(0.5));
-        CHECK(colour_at(map, 2) == bytes_of(1.0));
-        CHECK(colour_at(map, 3) == bytes_of(1.0));
-    }
-
-    TEST_CASE("pixels outside the mask are grey and do not affect the scale") {
-        const Mask hit{1, 1, 1, 0};
-        const HeatMap map = heat_map(errors_on(reference, 0.25F), reference, hit);
-        CHECK(map.scale == doctest::Approx(0.5 / std::sqrt(1.01)));
-        CHECK(colour_at(map, 2) == bytes_of(1.0));
-        CHECK(colour_at(map, 3) == Colour{128, 128, 128});
-    }
-
-    TEST_CASE("no error has the darkest colour, an infinite error the brightest") {
-        const HeatMap cold = heat_map(reference, reference);
-        CHECK(cold.scale == 0.0);
-        for (std::size_t pixel = 0; pixel < 4; ++pixel) CHECK(colour_at(cold, pixel) == bytes_of(0.0));
-        const Picture black = constant({2, 2}, glm::vec3(0.0F));
-        Picture lit = black;
-        lit.pixels[2] = glm::vec3(1.0F);
-        const HeatMap hot = heat_map(lit, black);
-        CHECK(colour_at(hot, 0) == bytes_of(0.0));
-        CHECK(colour_at(hot, 2) == bytes_of(1.0));
-    }
-
-    TEST_CASE("invalid scales are refused") {
-        for (const double scale : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-            CHECK_THROWS_AS((void)heat_map(reference, reference, {}, scale), std::invalid_argument);
-        }
+TEST_CASE("the ramp goes from near black to pale yellow, lighter with every step") {
+    CHECK(luminance(heat_colour(0.0)) < 0.001);
+    CHECK(luminance(heat_colour(1.0)) > 0.9);
+    double last = luminance(heat_colour(0.0));
+    for (int step = 1; step <= 255; ++step) {
+        const double next = luminance(heat_colour(step / 255.0));
+        CAPTURE(step);
+        CHECK(next > last);
+        last = next;
     }
 }
+
+TEST_CASE("values outside the ramp have the colours of its ends") {
+    CHECK(heat_colour(-1.0) == heat_colour(0.0));
+    CHECK(heat_colour(2.0) == heat_colour(1.0));
+    CHECK(heat_colour(std::numeric_limits<double>::infinity()) == heat_colour(1.0));
+}
+
+TEST_CASE("without a scale the largest error has the brightest colour") {
+    const HeatMap map = heat_map(errors_on(reference, 0.25F), reference);
+    CHECK(map.size == glm::ivec2(2, 2));
+    // √(3 · 1² / (3 · 1.01)).
+    CHECK(map.scale == doctest::Approx(1.0 / std::sqrt(1.01)));
+    CHECK(colour_at(map, 0) == bytes_of(0.0));
+    CHECK(colour_at(map, 1) == bytes_of(0.25));
+    CHECK(colour_at(map, 2) == bytes_of(0.5));
+    CHECK(colour_at(map, 3) == bytes_of(1.0));
+}
+
+TEST_CASE("with a scale, errors above it have the brightest colour") {
+    const double scale = 0.5 / std::sqrt(1.01);
+    const HeatMap map = heat_map(errors_on(reference, 0.25F), reference, {}, scale);
+    CHECK(map.scale == scale);
+    CHECK(colour_at(map, 1) == bytes_of(0.5));
+    CHECK(colour_at(map, 2) == bytes_of(1.0));
+    CHECK(colour_at(map, 3) == bytes_of(1.0));
+}
+
+TEST_CASE("pixels outside the mask are grey and do not affect the scale") {
+    const Mask hit{1, 1, 1, 0};
+    const HeatMap map = heat_map(errors_on(reference, 0.25F), reference, hit);
+    CHECK(map.scale == doctest::Approx(0.5 / std::sqrt(1.01)));
+    CHECK(colour_at(map, 2) == bytes_of(1.0));
+    CHECK(colour_at(map, 3) == Colour{128, 128, 128});
+}
+
+TEST_CASE("no error has the darkest colour, an infinite error the brightest") {
+    const HeatMap cold = heat_map(reference, reference);
+    CHECK(cold.scale == 0.0);
+    for (std::size_t pixel = 0; pixel < 4; ++pixel) CHECK(colour_at(cold, pixel) == bytes_of(0.0));
+    const Picture black = constant({2, 2}, glm::vec3(0.0F));
+    Picture lit = black;
+    lit.pixels[2] = glm::vec3(1.0F);
+    const HeatMap hot = heat_map(lit, black);
+    CHECK(colour_at(hot, 0) == bytes_of(0.0));
+    CHECK(colour_at(hot, 2) == bytes_of(1.0));
+}
+
+TEST_CASE("invalid scales are refused") {
+    for (const double scale : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        CHECK_THROWS_AS((void)heat_map(reference, reference, {}, scale), std::invalid_argument);
+    }
+}
+}  // TEST_SUITE("heat map")
 
 }  // namespace candela::study

@@ -19,14 +19,14 @@ bool builds_lists(std::string_view pass) {
            pass.find("light-clusters") != pass.npos;
 }
 
-struct Sample {
+struct TimedFrame {
     double frame = 0.0;  // ms
     double lists = 0.0;  // ms of it for building lists
 };
 
 /// Renders one frame whose view differs from that of the last one.
-Sample sample(Bench& bench, int round) {
-    Sample sample;
+TimedFrame sample(Bench& bench, int round) {
+    TimedFrame sample;
     sample.frame = bench.frame({0.01F * static_cast<float>(round + 1), 0.0F});
     for (const FrameReport& frame : bench.renderer().take_frames(true)) {
         sample.lists = 0.0;
@@ -46,7 +46,7 @@ Configuration configuration_of(ShadingPath path, std::uint32_t vpls) {
     return configuration;
 }
 
-struct Candidate {
+struct TimedPath {
     ShadingPath path;
     std::unique_ptr<Bench> bench;
     std::vector<double> frame;  // ms
@@ -54,14 +54,14 @@ struct Candidate {
     std::vector<double> lists;  // share of the frame
 };
 
-void print(const PathStudy& study, std::vector<Candidate>& candidates) {
+void print(const PathStudy& study, std::vector<TimedPath>& candidates) {
     Renderer& first = candidates.front().bench->renderer();
     fmt::print("{}, {} lights, {} VPLs, {} x {}, medians of {} interleaved rounds, {}\n",
                study.scene.filename().string(), first.report().lights.count, study.vpls, study.size.x,
                study.size.y, study.rounds, device_of(first).renderer());
     fmt::print("{:<20} {:>10} {:>8} {:>12} {:>10} {:>10}\n", "path", "frame ms", "ratio", "lists/frame",
                "list mean", "list max");
-    for (Candidate& candidate : candidates) {
+    for (TimedPath& candidate : candidates) {
         const LightReport lights = candidate.bench->renderer().report().lights;
         fmt::print("{:<20} {:>10.2f} {:>8.3f} {:>12.3f} {:>10.1f} {:>10}\n", to_string(candidate.path),
                    median(candidate.frame), median(candidate.ratio), median(candidate.lists),
@@ -70,11 +70,11 @@ void print(const PathStudy& study, std::vector<Candidate>& candidates) {
 }
 
 /// Appends a line for each path; a new file starts with the names of the columns.
-void append_csv(const PathStudy& study, std::vector<Candidate>& candidates) {
+void append_csv(const PathStudy& study, std::vector<TimedPath>& candidates) {
     const bool is_new = !std::filesystem::exists(study.csv);
     std::ofstream file(study.csv, std::ios::app);
     if (is_new) file << "scene,lights,path,frame_ms,ratio,lists_share,list_mean\n";
-    for (Candidate& candidate : candidates) {
+    for (TimedPath& candidate : candidates) {
         const LightReport lights = candidate.bench->renderer().report().lights;
         file << fmt::format("{},{},{},{:.3f},{:.4f},{:.4f},{:.2f}\n", study.scene.stem().string(),
                             lights.count, to_string(candidate.path), median(candidate.frame),
@@ -90,7 +90,7 @@ int paths(const PathStudy& study) {
     context->make_current();
     World world;
     import_gltf(study.scene, world);
-    std::vector<Candidate> candidates;
+    std::vector<TimedPath> candidates;
     for (const ShadingPath path : study.paths) {
         candidates.push_back(
             {path, std::make_unique<Bench>(context->get_proc(), world, study.size), {}, {}, {}});
@@ -99,8 +99,8 @@ int paths(const PathStudy& study) {
     // The first round compiles shaders and uploads the scene, and does not count.
     for (int round = 0; round <= study.rounds; ++round) {
         double first = 0.0;
-        for (Candidate& candidate : candidates) {
-            const Sample now = sample(*candidate.bench, round);
+        for (TimedPath& candidate : candidates) {
+            const TimedFrame now = sample(*candidate.bench, round);
             first = first > 0.0 ? first : now.frame;
             if (round == 0) continue;
             candidate.frame.push_back(now.frame);

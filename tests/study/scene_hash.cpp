@@ -23,7 +23,7 @@ std::uint64_t hash_contents(const std::filesystem::path& scene) {
     for (const gltf::Buffer& buffer : document.buffers) {
         state = add(state, buffer.bytes);
     }
-    for (const Json& image : document.all("images").items()) {
+    for (const candela::Json& image : document.all("images").items()) {
         if (const std::string uri = gltf::text_in(image, "uri"); !uri.empty()) {
             state = add(state, *files.read(uri));
         }

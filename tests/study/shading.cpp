@@ -14,7 +14,7 @@ namespace {
 constexpr glm::uvec2 size(640, 480);
 constexpr int rounds = 15;
 
-struct Candidate {
+struct TimedShading {
     ShadingPath path;
     Bench bench;
     std::vector<double> full;   // ms, everything that depends on the view
@@ -36,10 +36,10 @@ int shading(const std::filesystem::path& scene) {
     context->make_current();
     World world;
     import_gltf(scene, world);
-    std::array<Candidate, 2> candidates{
-        Candidate{ShadingPath::forward, Bench(context->get_proc(), world, size), {}, {}},
-        Candidate{ShadingPath::deferred, Bench(context->get_proc(), world, size), {}, {}}};
-    for (Candidate& candidate : candidates) {
+    std::array<TimedShading, 2> candidates{
+        TimedShading{ShadingPath::forward, Bench(context->get_proc(), world, size), {}, {}},
+        TimedShading{ShadingPath::deferred, Bench(context->get_proc(), world, size), {}, {}}};
+    for (TimedShading& candidate : candidates) {
         Configuration configuration;
         configuration.path = candidate.path;
         configuration.interleave = Interleave::one;
@@ -52,7 +52,7 @@ int shading(const std::filesystem::path& scene) {
     std::vector<double> ratios;
     for (int round = 0; round < rounds; ++round) {
         const glm::vec2 jitter(static_cast<float>(round + 1) / static_cast<float>(2 * rounds), 0.0F);
-        for (Candidate& candidate : candidates) {
+        for (TimedShading& candidate : candidates) {
             candidate.full.push_back(candidate.bench.frame(jitter));
             candidate.still.push_back(candidate.bench.frame(jitter));
         }
@@ -66,7 +66,7 @@ int shading(const std::filesystem::path& scene) {
     fmt::print("{} x {}, {} of {} VPLs alive, {} pixels covered, medians of {} interleaved rounds\n", size.x,
                size.y, vpls.alive, vpls.requested, pixels, rounds);
     fmt::print("{:<10} {:>12} {:>18} {:>16}\n", "path", "frame ms", "ns / VPL·pixel", "still / frame");
-    for (const Candidate& candidate : candidates) {
+    for (const TimedShading& candidate : candidates) {
         const double full = median(candidate.full);
         fmt::print("{:<10} {:>12.2f} {:>17.3f} {:>16.4f}\n", to_string(candidate.path), full,
                    full * 1e6 / evaluations, median(candidate.still) / full);

@@ -10,6 +10,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("desktop") {
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -168,39 +170,38 @@ void check_latency(App& app) {
 
 }  // namespace
 
-TEST_SUITE("desktop") {
-    TEST_CASE("controls and text have the display's scale, and a window at rest uses next to nothing") {
-        const Label once = label_at_scale(1.0F);
-        const Label twice = label_at_scale(2.0F);
-        // Sizes are rounded to whole pixels, before or after the scaling.
-        CHECK(std::abs(twice.at.height - 2 * once.at.height) <= 2);
-        // The same letters with strokes of twice the length and twice the width. Strokes of one to two pixels
-        // are rounded to whole ones by much.
-        const double more_ink = static_cast<double>(ink(twice.shot)) / ink(once.shot);
-        CHECK(more_ink > 2.5);
-        CHECK(more_ink < 6.0);
-        // A copy without interpolation consists of doubled pixels, and linear interpolation halves each step.
-        CHECK_FALSE(is_doubled(twice.shot));
-        CHECK(sharpest_step(twice.shot) > 0.75 * range_of(twice.shot));
-    }
-
-    TEST_CASE("the picture follows a dragged light; minimised it rests, restored it goes on refining") {
-        // More frames than a test has time for.
-        const TextFile refining("refining.json", R"({"refinement": {"enabled": true, "frames": 65536}})");
-        App app({.flags = {"--config", refining.path()}, .width = 1280, .height = 720});
-        app.wait_for("refinement", [](const Json& record) { return record["refined"] > 1; });
-        check_latency(app);
-
-        minimise(app.display(), app.window());
-        REQUIRE(comes_to_rest(app.process()));
-        // The window looks for saved files five times per second; a busy loop would use all of a core.
-        CHECK(load_of(app.process()) < 0.02);
-        const int refined = app.log()["refined"];
-        restore(app.display(), app.window());
-        app.wait_for("more refinement", [&](const Json& record) { return record["refined"] > refined + 3; });
-        CHECK(app.errors().empty());
-        CHECK(seconds_to_quit(app) < most_to_quit);
-    }
+TEST_CASE("controls and text have the display's scale, and a window at rest uses next to nothing") {
+    const Label once = label_at_scale(1.0F);
+    const Label twice = label_at_scale(2.0F);
+    // Sizes are rounded to whole pixels, before or after the scaling.
+    CHECK(std::abs(twice.at.height - 2 * once.at.height) <= 2);
+    // The same letters with strokes of twice the length and twice the width. Strokes of one to two pixels
+    // are rounded to whole ones by much.
+    const double more_ink = static_cast<double>(ink(twice.shot)) / ink(once.shot);
+    CHECK(more_ink > 2.5);
+    CHECK(more_ink < 6.0);
+    // A copy without interpolation consists of doubled pixels, and linear interpolation halves each step.
+    CHECK_FALSE(is_doubled(twice.shot));
+    CHECK(sharpest_step(twice.shot) > 0.75 * range_of(twice.shot));
 }
+
+TEST_CASE("the picture follows a dragged light; minimised it rests, restored it goes on refining") {
+    // More frames than a test has time for.
+    const TextFile refining("refining.json", R"({"refinement": {"enabled": true, "frames": 65536}})");
+    App app({.flags = {"--config", refining.path()}, .width = 1280, .height = 720});
+    app.wait_for("refinement", [](const Json& record) { return record["refined"] > 1; });
+    check_latency(app);
+
+    minimise(app.display(), app.window());
+    REQUIRE(comes_to_rest(app.process()));
+    // The window looks for saved files five times per second; a busy loop would use all of a core.
+    CHECK(load_of(app.process()) < 0.02);
+    const int refined = app.log()["refined"];
+    restore(app.display(), app.window());
+    app.wait_for("more refinement", [&](const Json& record) { return record["refined"] > refined + 3; });
+    CHECK(app.errors().empty());
+    CHECK(seconds_to_quit(app) < most_to_quit);
+}
+}  // TEST_SUITE("desktop")
 
 }  // namespace candela::sandbox

@@ -11,6 +11,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("files") {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,22 +154,19 @@ void check_results(const Files& files) {
 
 }  // namespace
 
-TEST_SUITE("files") {
-    TEST_CASE("dropped, opened and saved files take effect, and faulty ones change nothing") {
-        const Files files;
-        App app({.flags = files.flags(),
-                 .width = width,
-                 .height = height,
-                 .folder = (files.folder / "").string()});
-        drop_scenes(app);
-        save_configurations(app, files);
-        save_shaders(app, files);
-        save_and_open(app, files);
-        const std::string said = app.errors();
-        CHECK_MESSAGE(said.find("fastest") == said.rfind("fastest"), said);
-        CHECK(app.quit() == 0);
-        check_results(files);
-    }
+TEST_CASE("dropped, opened and saved files take effect, and faulty ones change nothing") {
+    const Files files;
+    App app(
+        {.flags = files.flags(), .width = width, .height = height, .folder = (files.folder / "").string()});
+    drop_scenes(app);
+    save_configurations(app, files);
+    save_shaders(app, files);
+    save_and_open(app, files);
+    const std::string said = app.errors();
+    CHECK_MESSAGE(said.find("fastest") == said.rfind("fastest"), said);
+    CHECK(app.quit() == 0);
+    check_results(files);
 }
+}  // TEST_SUITE("files")
 
 }  // namespace candela::sandbox

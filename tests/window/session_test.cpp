@@ -10,6 +10,8 @@
 
 namespace candela::sandbox {
 
+TEST_SUITE("session") {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -188,52 +190,51 @@ void inspect(App& app) {
 
 }  // namespace
 
-TEST_SUITE("session") {
-    TEST_CASE("pointer and keys fly, orbit, drag a light, undo, play a script, delete and add lights") {
-        // Dark enough that nothing is clipped to white, where differences vanish. Without refinement, so that
-        // the picture stops changing as soon as nothing moves.
-        const TextFile dark("dark.json",
-                            R"({"tone_map": {"exposure_ev": -3}, "refinement": {"enabled": false}})");
-        const TextFile script("script.json", R"({"frames": 2, "tracks": [{"node": "ceiling light",
+TEST_CASE("pointer and keys fly, orbit, drag a light, undo, play a script, delete and add lights") {
+    // Dark enough that nothing is clipped to white, where differences vanish. Without refinement, so that
+    // the picture stops changing as soon as nothing moves.
+    const TextFile dark("dark.json",
+                        R"({"tone_map": {"exposure_ev": -3}, "refinement": {"enabled": false}})");
+    const TextFile script("script.json", R"({"frames": 2, "tracks": [{"node": "ceiling light",
             "interpolation": "step", "translation": [[0, [-0.4, 1.6, 0]], [1, [0, 1.6, 0]]]}]})");
-        App app({.flags = {"--indirect", "off", "--config", dark.path(), "--animate", script.path()},
-                 .width = width,
-                 .height = height});
-        const Shot before = app.settled();
-        check_light_at(0.0, before);  // where the script ends
-        fly_and_return(app, before);
-        orbit_and_return(app, before);
-        drag_light(app, before);
-        undo_and_redo(app, before);
+    App app({.flags = {"--indirect", "off", "--config", dark.path(), "--animate", script.path()},
+             .width = width,
+             .height = height});
+    const Shot before = app.settled();
+    check_light_at(0.0, before);  // where the script ends
+    fly_and_return(app, before);
+    orbit_and_return(app, before);
+    drag_light(app, before);
+    undo_and_redo(app, before);
 
-        app.press_key(XK_period);
-        check_light_at(-0.4, app.settled());  // where the script begins
-        app.press_key(XK_space);
-        check_light_at(0.0, app.settled());
+    app.press_key(XK_period);
+    check_light_at(-0.4, app.settled());  // where the script begins
+    app.press_key(XK_space);
+    check_light_at(0.0, app.settled());
 
-        app.press_key(XK_Delete);
-        app.wait_for("the deleted light", [](const Json& record) { return record["undo"] == 2; });
-        const Shot unlit = app.settled();
-        CHECK(mean(unlit) < 0.05 * mean(before));
-        app.press_key(XK_l);
-        app.wait_for("another light", [](const Json& record) { return record["undo"] == 3; });
-        CHECK(mean(app.settled()) > 10.0 * mean(unlit));
-        CHECK(app.errors().empty());
-        CHECK(app.quit() == 0);
-    }
-
-    TEST_CASE("resources are seen instead of the picture, and presets, views and comparisons are chosen") {
-        const TextFile still("still.json",
-                             R"({"refinement": {"enabled": false}, "tone_map": {"exposure_ev": -2}})");
-        App app({.flags = {"--config", still.path(), "--vpls", "16", "--path", "tiled-deferred"},
-                 .width = 560,
-                 .height = 640,  // the graph panel lists all passes
-                 .panel = true});
-        static_cast<void>(app.settled());
-        inspect(app);
-        compare(app);
-        CHECK(app.quit() == 0);
-    }
+    app.press_key(XK_Delete);
+    app.wait_for("the deleted light", [](const Json& record) { return record["undo"] == 2; });
+    const Shot unlit = app.settled();
+    CHECK(mean(unlit) < 0.05 * mean(before));
+    app.press_key(XK_l);
+    app.wait_for("another light", [](const Json& record) { return record["undo"] == 3; });
+    CHECK(mean(app.settled()) > 10.0 * mean(unlit));
+    CHECK(app.errors().empty());
+    CHECK(app.quit() == 0);
 }
+
+TEST_CASE("resources are seen instead of the picture, and presets, views and comparisons are chosen") {
+    const TextFile still("still.json",
+                         R"({"refinement": {"enabled": false}, "tone_map": {"exposure_ev": -2}})");
+    App app({.flags = {"--config", still.path(), "--vpls", "16", "--path", "tiled-deferred"},
+             .width = 560,
+             .height = 640,  // the graph panel lists all passes
+             .panel = true});
+    static_cast<void>(app.settled());
+    inspect(app);
+    compare(app);
+    CHECK(app.quit() == 0);
+}
+}  // TEST_SUITE("session")
 
 }  // namespace candela::sandbox

@@ -10,7 +10,6 @@
 namespace candela {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr glm::uvec2 most_cells{1024, 512};
 constexpr std::uint32_t least_columns = 256;
 
@@ -27,16 +26,16 @@ struct Row {
 std::vector<Column> columns_of(std::uint32_t count) {
     std::vector<Column> columns;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const double from = 2.0 * pi * (static_cast<double>(i) / count - 0.5);
-        const double to = 2.0 * pi * (static_cast<double>(i + 1) / count - 0.5);
+        const double from = 2.0 * std::numbers::pi * (static_cast<double>(i) / count - 0.5);
+        const double to = 2.0 * std::numbers::pi * (static_cast<double>(i + 1) / count - 0.5);
         columns.push_back({to - from, std::cos(from) - std::cos(to), std::sin(from) - std::sin(to)});
     }
     return columns;
 }
 
 Row row_of(std::uint32_t row, std::uint32_t count) {
-    const double from = pi * row / count;
-    const double to = pi * (row + 1) / count;
+    const double from = std::numbers::pi * row / count;
+    const double to = std::numbers::pi * (row + 1) / count;
     return {std::cos(from) - std::cos(to),
             0.5 * (std::sin(to) * std::sin(to) - std::sin(from) * std::sin(from)),
             0.5 * (to - from) - 0.25 * (std::sin(2.0 * to) - std::sin(2.0 * from))};
