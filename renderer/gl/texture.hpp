@@ -48,8 +48,8 @@ class Texture : public Object {
     /// Computes mip levels 1 and up from level 0.
     void generate_mips();
 
-    /// Reads back one layer of one level, in the stored type or as floats; waits for the GPU. For tests and
-    /// captures.
+    /// Reads back one layer of one level, in the stored type (sRGB colours encoded) or as floats; waits for
+    /// the GPU.
     [[nodiscard]] std::vector<std::byte> read(std::uint32_t level = 0, std::uint32_t layer = 0) const;
     [[nodiscard]] std::vector<float> read_floats(std::uint32_t level = 0, std::uint32_t layer = 0) const;
 

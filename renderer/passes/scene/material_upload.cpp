@@ -4,13 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/common.hpp>
 #include <glm/packing.hpp>
 #include <iterator>
-
-#define STB_IMAGE_RESIZE_IMPLEMENTATION
-#define STB_IMAGE_RESIZE_STATIC
-#include <stb/stb_image_resize.h>
+#include <span>
 
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/mirror_shares.hpp"
@@ -19,7 +17,8 @@
 namespace candela {
 namespace {
 
-// Most texels along the longer side of an image for traced rays: a diffuse bounce blurs finer detail.
+// Most texels along the longer side of an image for traced rays, unless it has alpha: a diffuse bounce blurs
+// finer detail.
 constexpr std::uint32_t traced_image_size = 256;
 
 GLint wrap_mode(Wrap wrap) {
@@ -69,24 +68,36 @@ bool is_opaque(const Image& image) {
     return std::ranges::all_of(image.texels, [](const glm::u8vec4& texel) { return texel.a == 255; });
 }
 
-/// Scales an image down to `traced_image_size` if it is larger. One with alpha stays as it is: the shadows of
-/// masked surfaces are found by rays.
-Image reduce(const Image& image) {
-    const std::uint32_t longer = std::max(image.width, image.height);
-    if (longer <= traced_image_size || !is_opaque(image)) return image;
-    Image reduced = image;
-    reduced.width = std::max(1U, image.width * traced_image_size / longer);
-    reduced.height = std::max(1U, image.height * traced_image_size / longer);
-    reduced.texels.resize(static_cast<std::size_t>(reduced.width) * reduced.height);
-    stbir_resize_uint8_srgb(&image.texels[0].x, static_cast<int>(image.width), static_cast<int>(image.height),
-                            0, &reduced.texels[0].x, static_cast<int>(reduced.width),
-                            static_cast<int>(reduced.height), 0, 4, STBIR_ALPHA_CHANNEL_NONE, 0);
-    return reduced;
-}
-
 std::uint32_t pack(const glm::u8vec4& texel) {
     return texel.r | static_cast<std::uint32_t>(texel.g) << 8U | static_cast<std::uint32_t>(texel.b) << 16U |
            static_cast<std::uint32_t>(texel.a) << 24U;
+}
+
+/// The largest mip level that is small enough for traced rays.
+std::uint32_t traced_level(const Image& image) {
+    std::uint32_t level = 0;
+    while (std::max(image.width, image.height) >> level > traced_image_size) ++level;
+    return level;
+}
+
+/// Sets what traced rays see of an image to its texels at a mip level.
+void set_traced(UploadedImage& uploaded, std::uint32_t level, std::span<const glm::u8vec4> texels) {
+    uploaded.width = std::max(uploaded.image->width >> level, 1U);
+    uploaded.height = std::max(uploaded.image->height >> level, 1U);
+    uploaded.texels.reserve(texels.size());
+    std::ranges::transform(texels, std::back_inserter(uploaded.texels), pack);
+    uploaded.range.count = static_cast<std::uint32_t>(texels.size());
+}
+
+/// One with alpha stays as it is: the shadows of masked surfaces are found by rays.
+void set_traced_colours(UploadedImage& uploaded) {
+    const Image& image = *uploaded.image;
+    const std::uint32_t level = traced_level(image);
+    if (level == 0 || !is_opaque(image)) return set_traced(uploaded, 0, image.texels);
+    const std::vector<std::byte> read = uploaded.texture->texture.read(level);
+    std::vector<glm::u8vec4> texels(read.size() / sizeof(glm::u8vec4));
+    std::memcpy(texels.data(), read.data(), read.size());
+    set_traced(uploaded, level, texels);
 }
 
 std::uint32_t wrap_bits(const Image* image) {
@@ -137,32 +148,23 @@ glm::vec3 mean_of(const Image& image) {
     return glm::vec3(sum / static_cast<double>(image.texels.size()));
 }
 
-/// For tracing, normals have the largest level that is small enough.
 UploadedImage upload_normal_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
     const std::vector<NormalLevel> levels = normal_levels(*image);
-    std::size_t reduced = 0;
-    while (std::max(image->width, image->height) >> reduced > traced_image_size) ++reduced;
     UploadedImage uploaded;
     uploaded.image = image;
     uploaded.texture = upload_normals(gpu, *image, levels);
-    uploaded.width = std::max(image->width >> reduced, 1U);
-    uploaded.height = std::max(image->height >> reduced, 1U);
-    std::ranges::transform(levels[reduced], std::back_inserter(uploaded.texels), pack);
-    uploaded.range.count = static_cast<std::uint32_t>(uploaded.texels.size());
+    const std::uint32_t level = traced_level(*image);
+    set_traced(uploaded, level, levels[level]);
     return uploaded;
 }
 
 /// Only colours are for tracing.
 UploadedImage upload_image(Gpu& gpu, const std::shared_ptr<const Image>& image) {
-    const Image reduced = image->encoding == Encoding::srgb ? reduce(*image) : Image{};
-    UploadedImage uploaded{.image = image,
-                           .texture = upload_texture(gpu, *image),
-                           .width = reduced.width,
-                           .height = reduced.height,
-                           .texels = {},
-                           .range = {.count = static_cast<std::uint32_t>(reduced.texels.size())},
-                           .mean = mean_of(*image)};
-    std::ranges::transform(reduced.texels, std::back_inserter(uploaded.texels), pack);
+    UploadedImage uploaded;
+    uploaded.image = image;
+    uploaded.texture = upload_texture(gpu, *image);
+    uploaded.mean = mean_of(*image);
+    if (image->encoding == Encoding::srgb) set_traced_colours(uploaded);
     return uploaded;
 }
 

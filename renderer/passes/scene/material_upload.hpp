@@ -17,7 +17,8 @@ namespace candela {
 /// use, normals counted for themselves; 0: no image.
 using MaterialImages = std::array<std::uint32_t, material_image_slots.size()>;
 
-/// An image on the GPU: as a texture for rasterisation, and reduced in the buffer of texels for tracing.
+/// An image on the GPU: as a texture for rasterisation, and in the buffer of texels for tracing, where large
+/// ones are reduced to a mip level.
 struct UploadedImage {
     std::shared_ptr<const Image> image;
     std::shared_ptr<const MaterialTexture> texture;
