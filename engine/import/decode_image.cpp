@@ -109,8 +109,9 @@ Image decode_jpeg(Bytes encoded, ImportBudget& budget) {
         stbi_load_from_memory(encoded.data(), size, &width, &height, nullptr, STBI_rgb_alpha),
         stbi_image_free);
     if (!pixels) throw PieceError("it cannot be decoded");
-    image.texels.resize(std::size_t{image.width} * image.height);
-    std::memcpy(image.texels.data(), pixels.get(), image.texels.size() * sizeof(glm::u8vec4));
+    // Not resized first: that would fill it with zeros.
+    const auto* const texels = reinterpret_cast<const glm::u8vec4*>(pixels.get());
+    image.texels.assign(texels, texels + std::size_t{image.width} * image.height);
     return image;
 }
 
