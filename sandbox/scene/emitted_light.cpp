@@ -1,14 +1,15 @@
 #include "sandbox/scene/emitted_light.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/color_space.hpp>
 
 #include <candela/scene/hierarchy.hpp>
+#include "engine/scene/decoded.hpp"
 
 namespace candela::sandbox {
 
@@ -16,13 +17,13 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
+/// Mean of the strongest channel of each texel, decoded.
 float mean_of(const Image& image) {
+    if (image.texels.empty()) return 0.0F;
+    const std::array<double, 256> decoded = decoded_values(image.encoding);
     double sum = 0.0;
-    for (const glm::u8vec4 texel : image.texels) {
-        const glm::vec3 linear = glm::convertSRGBToLinear(glm::vec3(texel) / 255.0F);
-        sum += static_cast<double>(std::max({linear.r, linear.g, linear.b}));
-    }
-    return image.texels.empty() ? 0.0F : static_cast<float>(sum / static_cast<double>(image.texels.size()));
+    for (const glm::u8vec4& texel : image.texels) sum += decoded[std::max({texel.r, texel.g, texel.b})];
+    return static_cast<float>(sum / static_cast<double>(image.texels.size()));
 }
 
 /// Of the strongest channel.

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/packing.hpp>
 #include <iterator>
 #include <span>
 
+#include "engine/scene/decoded.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
 #include "renderer/gpu/mirror_shares.hpp"
 #include "renderer/passes/scene/normal_levels.hpp"
@@ -127,20 +127,10 @@ bool is_masked(const Material& material) {
     return material.alpha_mode == AlphaMode::mask;
 }
 
-/// sRGB decoding: IEC 61966-2-1.
-float srgb_decode(std::uint8_t encoded) {
-    const float c = static_cast<float>(encoded) / 255.0F;
-    return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F);
-}
-
 /// Mean of the channels of an image, decoded; 1 if it is empty.
 glm::vec3 mean_of(const Image& image) {
     if (image.texels.empty()) return glm::vec3(1.0F);
-    std::array<double, 256> decoded{};
-    for (std::size_t i = 0; i < decoded.size(); ++i) {
-        const auto encoded = static_cast<std::uint8_t>(i);
-        decoded[i] = image.encoding == Encoding::srgb ? srgb_decode(encoded) : encoded / 255.0;
-    }
+    const std::array<double, 256> decoded = decoded_values(image.encoding);
     glm::dvec3 sum(0.0);
     for (const glm::u8vec4& texel : image.texels) {
         sum += glm::dvec3(decoded[texel.r], decoded[texel.g], decoded[texel.b]);
