@@ -197,6 +197,16 @@ void add_scale(CLI::App& app, int& status) {
     });
 }
 
+void add_figures(CLI::App& app, int& status) {
+    CLI::App& part = *app.add_subcommand("figures", "CPU time a frame of animated figures with skeletons");
+    const auto study = std::make_shared<FigureStudy>();
+    part.add_option("--figures", study->figures)->check(CLI::Range(1, 100000));
+    part.add_flag("--own-clips", study->own_clips, "a clip for each figure");
+    part.add_option("--rounds", study->rounds, "after a first one that does not count")
+        ->check(CLI::Range(1, 100000));
+    part.callback([=, &status] { status = figures(*study); });
+}
+
 void add_compare(CLI::App& app) {
     CLI::App& part =
         *app.add_subcommand("compare", "error of a picture against its reference, by every measure");
@@ -227,6 +237,7 @@ int run(int count, char** arguments) {
     add_moves(app, status);
     add_edits(app, status);
     add_scale(app, status);
+    add_figures(app, status);
     add_compare(app);
     try {
         app.parse(count, arguments);
