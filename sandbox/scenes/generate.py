@@ -14,6 +14,7 @@ import sys
 sys.dont_write_bytecode = True  # otherwise importing the modules would leave files in the source folder
 
 from atrium import atrium
+from ball import ball
 from court import court
 from fields import boxes, plane
 from glass import glass
@@ -44,7 +45,13 @@ SHIPPED = {
     "boxes": boxes,
 }
 # Not shipped: large, or one of many sizes.
-ON_DEMAND = {"atrium": atrium, "hall-4096": lambda: hall(4096), "rooms-6": lambda: rooms(6), "street": street}
+ON_DEMAND = {
+    "atrium": atrium,
+    "ball": ball,
+    "hall-4096": lambda: hall(4096),
+    "rooms-6": lambda: rooms(6),
+    "street": street,
+}
 
 
 def arguments():
