@@ -186,6 +186,11 @@ void Execution::reserve_buffer(ResourceHandle buffer, std::uint64_t count) {
 
 void Execution::reserve(TextureHandle texture, const TextureDesc& desc) {
     detail::Storage wanted = reservable(texture).storage;
+    if (const std::string why = why_impossible(desc); !why.empty()) {
+        throw GraphError(fmt::format("pass '{}' cannot reserve {}: {}",
+                                     runtime_.state_->steps[position_].name,
+                                     runtime_.resource(texture).title(), why));
+    }
     wanted.texture = desc;
     replace(texture, wanted);
 }

@@ -32,11 +32,20 @@ void check_passes(Declaration& declared) {
     }
 }
 
-/// Checks that the names of persistent and imported resources are unique within a kind, and that every
-/// resource with a history is written.
+void check_texture(Declaration& declared, const Resource& resource) {
+    // Parts and histories have the description of a texture that is checked.
+    if (resource.part_of != none || resource.history_of != none) return;
+    if (const std::string why = why_impossible(resource.storage->texture); !why.empty()) {
+        declared.error(ErrorCode::impossible_texture, "{} is not possible: {}", resource.title(), why);
+    }
+}
+
+/// Checks that textures are possible, that the names of persistent and imported resources are unique within a
+/// kind, and that every resource with a history is written.
 void check_resources(Declaration& declared) {
     std::array<std::unordered_set<std::string_view>, 3> names;  // by kind
     for (const Resource& resource : declared.resources) {
+        if (resource.storage->kind == ResourceKind::texture) check_texture(declared, resource);
         if (resource.history != none && resource.versions == 0) {
             declared.error(ErrorCode::unwritten_read, "{} has a history, but no pass writes it",
                            resource.title());

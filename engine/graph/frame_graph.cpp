@@ -68,7 +68,7 @@ std::string_view why_no_part(const Declaration& declared, const Resource& whole,
 
 ResourceHandle add_part(Declaration& declared, TextureHandle of, TexturePart part) {
     if (!declared.owns(of, ResourceKind::texture)) {
-        declared.error(ErrorCode::foreign_handle, "part of a texture of another graph");
+        declared.error(ErrorCode::foreign_handle, "part of a texture {}", declared.fault_of(of));
         return {};
     }
     const Resource whole = declared.resources[of.resource];
@@ -145,6 +145,11 @@ bool detail::Declaration::owns(ResourceHandle handle, ResourceKind kind) const {
            handle.version <= resources[handle.resource].versions;
 }
 
+std::string_view detail::Declaration::fault_of(ResourceHandle handle) const {
+    if (handle.graph == 0) return "by a null handle";
+    return handle.graph == id ? "by a handle that is not of one" : "of another graph";
+}
+
 std::string_view detail::Declaration::store_name(std::string_view name) {
     if (ending.empty()) return arena.store_text(name);
     return arena.store_text(fmt::format("{}{}", name, ending));
@@ -183,7 +188,7 @@ TextureHandle FrameGraph::layer(TextureHandle texture, std::uint32_t layer, std:
 
 TextureHandle FrameGraph::history(TextureHandle texture) {
     if (!declared_->owns(texture, ResourceKind::texture)) {
-        declared_->error(ErrorCode::foreign_handle, "history of a texture of another graph");
+        declared_->error(ErrorCode::foreign_handle, "history of a texture {}", declared_->fault_of(texture));
         return {};
     }
     const Resource base = declared_->resources[texture.resource];
@@ -216,7 +221,7 @@ std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const 
 
 void FrameGraph::note(ResourceHandle on, std::any what) {
     if (on.graph != declared_->id || on.resource >= declared_->resources.size()) {
-        return declared_->error(ErrorCode::foreign_handle, "note on a resource of another graph");
+        return declared_->error(ErrorCode::foreign_handle, "note on a resource {}", declared_->fault_of(on));
     }
     declared_->resources[on.resource].note = detail::size_of(declared_->notes);
     declared_->notes.push_back(std::move(what));

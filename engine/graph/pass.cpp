@@ -89,6 +89,30 @@ void check_attachments(Declaration& declared) {
     }
 }
 
+/// What counts the binding points of a resource: each of these counts its own.
+std::string_view points_of(ResourceKind kind, Usage usage) {
+    if (usage == Usage::sampled) return "texture unit";
+    if (usage == Usage::uniform) return "uniform block";
+    return kind == ResourceKind::texture ? "image unit" : "storage block";
+}
+
+void check_points(Declaration& declared) {
+    const auto accesses = declared.accesses_of(declared.pass_count() - 1);
+    const auto clash = [&](const Access& a, const Access& b) {
+        if (a.resource == b.resource || a.point != b.point) return;
+        const Resource& one = declared.resources[a.resource];
+        const Resource& other = declared.resources[b.resource];
+        const std::string_view points = points_of(one.storage->kind, a.usage);
+        if (points != points_of(other.storage->kind, b.usage)) return;
+        declared.error(ErrorCode::shared_point, "pass '{}' has {} and {} at {} {}",
+                       declared.passes.back().name, one.title(), other.title(), points, a.point);
+    };
+    for (std::size_t i = 0; i < accesses.size(); ++i) {
+        if (accesses[i].point == Binding::unbound) continue;
+        for (std::size_t j = 0; j < i; ++j) clash(accesses[j], accesses[i]);
+    }
+}
+
 /// The name of the pass that writes this version.
 std::string_view writer_of(const Declaration& declared, std::uint32_t resource, std::uint32_t version) {
     const auto made = [=](const Access& access) {
@@ -124,13 +148,14 @@ Pass::Pass(Declaration& declared, std::string_view name) : declared_(declared), 
 Pass::~Pass() {
     declared_.declaring = false;
     check_attachments(declared_);
+    check_points(declared_);
 }
 
 void Pass::declare_read(ResourceHandle handle, ResourceKind kind, Binding binding) {
     const std::string_view name = declared_.passes.back().name;
     if (!declared_.owns(handle, kind)) {
-        return declared_.error(ErrorCode::foreign_handle, "pass '{}' reads a {} of another graph", name,
-                               to_string(kind));
+        return declared_.error(ErrorCode::foreign_handle, "pass '{}' reads a {} {}", name, to_string(kind),
+                               declared_.fault_of(handle));
     }
     const std::uint32_t pass = declared_.pass_count() - 1;
     Resource& resource = declared_.resources[handle.resource];
@@ -162,8 +187,8 @@ void Pass::declare_read(std::string_view component, Tick (*revision)(const World
 ResourceHandle Pass::declare_write(ResourceHandle handle, ResourceKind kind, Binding binding) {
     const std::string_view name = declared_.passes.back().name;
     if (!declared_.owns(handle, kind)) {
-        declared_.error(ErrorCode::foreign_handle, "pass '{}' writes a {} of another graph", name,
-                        to_string(kind));
+        declared_.error(ErrorCode::foreign_handle, "pass '{}' writes a {} {}", name, to_string(kind),
+                        declared_.fault_of(handle));
         return handle;
     }
     Resource& resource = declared_.resources[handle.resource];

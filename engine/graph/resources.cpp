@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
@@ -50,6 +51,24 @@ std::string_view to_string(Format format) {
 std::string_view to_string(TextureShape shape) {
     static constexpr std::array<std::string_view, 3> names{"flat", "array", "cube array"};
     return names.at(static_cast<std::size_t>(shape));
+}
+
+std::string why_impossible(const TextureDesc& desc) {
+    const std::uint32_t longer = std::max(desc.size.x, desc.size.y);
+    if (std::min(desc.size.x, desc.size.y) == 0) {
+        return fmt::format("its size is {}x{}", desc.size.x, desc.size.y);
+    }
+    if (desc.mips == 0 || desc.mips > static_cast<std::uint32_t>(std::bit_width(longer))) {
+        return fmt::format("{}x{} texels have 1 to {} mip levels, not {}", desc.size.x, desc.size.y,
+                           std::bit_width(longer), desc.mips);
+    }
+    if (desc.layers == 0) return "it has no layers";
+    if (desc.shape == TextureShape::flat && desc.layers != 1) {
+        return fmt::format("it is flat, but has {} layers", desc.layers);
+    }
+    if (desc.shape != TextureShape::cube_array) return "";
+    if (desc.layers % 6 != 0) return fmt::format("cubes have six layers each, and it has {}", desc.layers);
+    return desc.size.x == desc.size.y ? "" : "the sides of cubes are square";
 }
 
 std::uint64_t byte_size(const TextureDesc& desc) {

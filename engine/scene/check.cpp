@@ -235,6 +235,8 @@ Fault fault_of_lens(const Camera& camera) {
                 !(perspective || orthographic)) {
                 return "the matrix is not a projection without skew";
             }
+            // The fronts of triangles would be taken for their backs.
+            if ((m[0][0] < 0.0F) != (m[1][1] < 0.0F)) return "the matrix mirrors the picture";
             break;
         }
         case Camera::Projection::perspective:

@@ -9,6 +9,7 @@ namespace candela {
 void draw_difference(Renderer& renderer, std::uint32_t a, std::uint32_t b, float factor,
                      const Target& target) {
     Gpu& gpu = gpu_of(renderer);
+    gpu.require_context();
     require_possible(gpu.device(), target);
     require_texture(gpu.device(), a, target.size, "the first picture");
     require_texture(gpu.device(), b, target.size, "the second picture");

@@ -122,6 +122,9 @@ std::vector<std::string> Renderer::State::try_to(const Configuration& configurat
 }
 
 std::vector<std::string> Renderer::State::extend(Extension extension) {
+    if (!extension.declare) {
+        return {fmt::format("the extension '{}' has no function `declare`", extension.name)};
+    }
     std::vector<Extension> extensions = extensions_;
     const auto same = std::ranges::find(extensions, extension.name, &Extension::name);
     if (same != extensions.end()) {
@@ -182,6 +185,7 @@ void Renderer::State::set_view(const ViewHandles& handles, const RenderView& vie
 }
 
 void Renderer::State::render(const World& world, std::span<const RenderView> views) {
+    gpu_.require_context();
     require_views(views);
     const gl::HostState host_state(gpu_.gl());
     FrameShape shape{
@@ -287,6 +291,7 @@ ResultBuffer Renderer::State::received_light_buffer() const {
 
 std::vector<glm::vec3> Renderer::State::received_light() const {
     if (!frame_.received) return std::vector<glm::vec3>(received_);
+    gpu_.require_context();
     const auto elements = backend_.buffer(runtime_.object(*frame_.received)).download<glm::vec4>();
     return {elements.begin(), elements.begin() + received_};
 }
@@ -380,6 +385,7 @@ std::vector<FrameReport> Renderer::State::take_frames(bool wait) {
 }
 
 void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Target& target) {
+    gpu_.require_context();
     require_possible(gpu_.device(), target);
     const gl::HostState host_state(gpu_.gl());
     gl::Texture texture(gpu_.device(), "averaged radiance", {target.size, Format::rgba32f});
@@ -394,6 +400,7 @@ void Renderer::State::tone_map(const std::vector<glm::vec3>& radiance, const Tar
 }
 
 void Renderer::State::tone_map(GLuint texture, const Target& target) {
+    gpu_.require_context();
     require_possible(gpu_.device(), target);
     require_texture(gpu_.device(), texture, "the radiance");
     const gl::HostState host_state(gpu_.gl());

@@ -10,8 +10,8 @@
 
 namespace candela {
 
-// These throw gl::GlError, with the reason: if a target cannot be drawn into, or if there is no such texture.
-// `what` names the texture in the message.
+// These throw gl::GlError, with the reason: if a target cannot be drawn into, is larger than its framebuffer
+// or holds integers, or if there is no such texture. `what` names the texture in the message.
 void require_possible(const gl::Device& device, const Target& target);
 void require_texture(const gl::Device& device, std::uint32_t texture, std::string_view what);
 /// Also if the texture has another size.

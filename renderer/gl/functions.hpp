@@ -101,6 +101,8 @@
     X(NamedFramebufferTextureLayer, NAMEDFRAMEBUFFERTEXTURELAYER) \
     X(NamedFramebufferDrawBuffers, NAMEDFRAMEBUFFERDRAWBUFFERS) \
     X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS) \
+    X(GetNamedFramebufferAttachmentParameteriv, GETNAMEDFRAMEBUFFERATTACHMENTPARAMETERIV) \
+    X(GetNamedRenderbufferParameteriv, GETNAMEDRENDERBUFFERPARAMETERIV) \
     X(IsFramebuffer, ISFRAMEBUFFER) \
     X(BindFramebuffer, BINDFRAMEBUFFER) \
     X(ClearNamedFramebufferfv, CLEARNAMEDFRAMEBUFFERFV) \
@@ -110,6 +112,7 @@
     /* vertex arrays */ \
     X(CreateVertexArrays, CREATEVERTEXARRAYS) \
     X(DeleteVertexArrays, DELETEVERTEXARRAYS) \
+    X(IsVertexArray, ISVERTEXARRAY) \
     X(BindVertexArray, BINDVERTEXARRAY) \
     X(VertexArrayVertexBuffer, VERTEXARRAYVERTEXBUFFER) \
     X(VertexArrayElementBuffer, VERTEXARRAYELEMENTBUFFER) \

@@ -228,6 +228,45 @@ void require_complete(const Functions& gl, GLuint framebuffer, std::string_view 
     }
 }
 
+namespace {
+
+/// The first draw buffer of a framebuffer. GL tells that only of the bound one.
+GLenum first_draw_buffer(const Functions& gl, GLuint framebuffer) {
+    GLint bound = 0;
+    GLint buffer = 0;
+    gl.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+    gl.GetIntegerv(GL_DRAW_BUFFER0, &buffer);
+    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(bound));
+    return static_cast<GLenum>(buffer);
+}
+
+}  // namespace
+
+std::optional<DrawnAttachment> drawn_attachment(const Functions& gl, GLuint framebuffer) {
+    const GLenum buffer = first_draw_buffer(gl, framebuffer);
+    if (buffer == GL_NONE) return std::nullopt;
+    const auto parameter = [&](GLenum what) {
+        GLint value = 0;
+        gl.GetNamedFramebufferAttachmentParameteriv(framebuffer, buffer, what, &value);
+        return value;
+    };
+    const GLint kind = parameter(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE);
+    if (kind == GL_NONE) return std::nullopt;
+    const auto object = static_cast<GLuint>(parameter(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME));
+    glm::ivec2 size(0);
+    if (kind == GL_RENDERBUFFER) {
+        gl.GetNamedRenderbufferParameteriv(object, GL_RENDERBUFFER_WIDTH, &size.x);
+        gl.GetNamedRenderbufferParameteriv(object, GL_RENDERBUFFER_HEIGHT, &size.y);
+    } else {
+        const GLint level = parameter(GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL);
+        gl.GetTextureLevelParameteriv(object, level, GL_TEXTURE_WIDTH, &size.x);
+        gl.GetTextureLevelParameteriv(object, level, GL_TEXTURE_HEIGHT, &size.y);
+    }
+    const GLint type = parameter(GL_FRAMEBUFFER_ATTACHMENT_COMPONENT_TYPE);
+    return DrawnAttachment{type == GL_INT || type == GL_UNSIGNED_INT, glm::uvec2(size)};
+}
+
 void Framebuffer::bind() const {
     gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, name());
 }

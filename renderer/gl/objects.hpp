@@ -2,11 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
+
+#include <glm/vec2.hpp>
 
 #include "renderer/gl/device.hpp"
 
@@ -140,6 +143,14 @@ class Framebuffer : public Object {
 /// Throws GlError if there is no such framebuffer or if it is incomplete, with the reason. `called` names it
 /// in the message. 0 is the default framebuffer.
 void require_complete(const Functions& gl, GLuint framebuffer, std::string_view called);
+
+/// What a framebuffer of the host's draws its first colour into.
+struct DrawnAttachment {
+    bool holds_integers = false;
+    glm::uvec2 size{0};  ///< pixels
+};
+/// None if colour goes nowhere. Not for the default framebuffer, of which GL does not tell the size.
+[[nodiscard]] std::optional<DrawnAttachment> drawn_attachment(const Functions& gl, GLuint framebuffer);
 
 /// A vertex array. It does not own its buffers: they must stay alive while it is used.
 class VertexArray : public Object {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <candela/scene/components.hpp>
@@ -47,6 +48,11 @@ gl::Texture make_mirror_shares(gl::Device& device) {
     return texture;
 }
 
+/// By this label the context of a Gpu is known again: contexts do not share vertex arrays.
+std::string label_of_vertices(const Gpu& gpu) {
+    return fmt::format("no vertices of {}", static_cast<const void*>(&gpu));
+}
+
 }  // namespace
 
 void require_limits(const gl::Limits& limits) {
@@ -77,12 +83,24 @@ Gpu::Gpu(const gl::GetProc& get_proc, gl::ShaderLibrary shaders, const RendererO
       shaders_(std::move(shaders)),
       mesh_vertices_(make_mesh_vertices(device_)),
       mesh_vertices_with_second_uvs_(make_mesh_vertices_with_second_uvs(device_)),
-      no_vertices_(device_, "no vertices"),
+      no_vertices_(device_, label_of_vertices(*this)),
       white_(make_white(device_)),
       nearest_(device_, "nearest", {.min_filter = GL_NEAREST, .mag_filter = GL_NEAREST}),
       layer_target_(device_, "layer target") {
     require_limits(device_.limits());
     layer_target_.draw_buffers(0);
+}
+
+void Gpu::require_context() const {
+    const std::string expected = label_of_vertices(*this);
+    std::array<char, 64> label{};
+    if (gl().IsVertexArray(no_vertices_.name()) == GL_TRUE) {
+        gl().GetObjectLabel(GL_VERTEX_ARRAY, no_vertices_.name(), static_cast<GLsizei>(label.size()), nullptr,
+                            label.data());
+        // Drivers need not keep labels.
+        if (label[0] == '\0' || expected == label.data()) return;
+    }
+    throw gl::GlError("another OpenGL context is current than the renderer's, or none");
 }
 
 const gl::Texture& Gpu::mirror_shares() {

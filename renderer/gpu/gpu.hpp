@@ -41,6 +41,9 @@ class Gpu {
     [[nodiscard]] const gl::Device& device() const { return device_; }
     [[nodiscard]] const gl::Functions& gl() const { return device_.gl(); }
 
+    /// Throws gl::GlError if the current context is not that of construction.
+    void require_context() const;
+
     /// The program of these stage files with these names defined: NAME as 1, or NAME=VALUE. Compiled at the
     /// first request, then cached. The reference is valid as long as the Gpu. Throws gl::ProgramError.
     [[nodiscard]] const gl::Program& program(const std::vector<std::string>& stages,

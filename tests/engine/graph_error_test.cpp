@@ -62,9 +62,9 @@ TEST_CASE("graph error: handles without a graph, of another graph, of another ki
     for (const CompileError& error : errors) {
         CHECK(error.code == ErrorCode::foreign_handle);
     }
-    CHECK(errors[0].message == "pass 'default' reads a texture of another graph");
+    CHECK(errors[0].message == "pass 'default' reads a texture by a null handle");
     CHECK(errors[2].message == "pass 'write' writes a texture of another graph");
-    CHECK(errors[5].message == "pass 'kind' reads a buffer of another graph");
+    CHECK(errors[5].message == "pass 'kind' reads a buffer by a handle that is not of one");
     CHECK(errors[6].message == "history of a texture of another graph");
 }
 
@@ -259,6 +259,44 @@ TEST_CASE("graph error: attachments of different sizes, and two depth targets") 
                                     "pass 'draw' has two depth targets, 'near' and 'far'"});
 }
 
+TEST_CASE("graph error: two resources at one binding point") {
+    FrameGraph graph;
+    const TextureHandle one = add_draw(graph, "draw one", graph.texture("one", colour));
+    const TextureHandle two = add_draw(graph, "draw two", graph.texture("two", colour));
+    const auto numbers = graph.buffer<int>("numbers", 4, Lifetime::imported);
+    graph.add("show", [&](Pass& pass) {
+        pass.read(one, {Usage::sampled, 3});
+        pass.read(two, {Usage::sampled, 3});
+        pass.read(numbers, {Usage::storage, 3});  // storage blocks have numbers of their own
+        pass.side_effect();
+    });
+    CHECK(error_of(graph) ==
+          CompileError{ErrorCode::shared_point,
+                       "pass 'show' has texture 'one' and texture 'two' at texture unit 3"});
+}
+
+TEST_CASE("graph error: textures that cannot be") {
+    const auto why = [](const TextureDesc& desc) {
+        FrameGraph graph;
+        (void)add_draw(graph, "draw", graph.texture("image", desc, Lifetime::imported));
+        const CompileError error = error_of(graph);
+        CHECK(error.code == ErrorCode::impossible_texture);
+        return error.message.substr(std::string_view("texture 'image' is not possible: ").size());
+    };
+    constexpr glm::uvec2 size{8, 5};
+    CHECK(why({.size = {0, 4}}) == "its size is 0x4");
+    // Levels of 8x5, 4x2, 2x1 and 1x1.
+    CHECK(why({.size = size, .mips = 5}) == "8x5 texels have 1 to 4 mip levels, not 5");
+    CHECK(why({.size = size, .mips = 0}) == "8x5 texels have 1 to 4 mip levels, not 0");
+    CHECK(why({.size = size, .shape = TextureShape::array, .layers = 0}) == "it has no layers");
+    CHECK(why({.size = size, .layers = 2}) == "it is flat, but has 2 layers");
+    CHECK(why({.size = glm::uvec2(8), .shape = TextureShape::cube_array, .layers = 8}) ==
+          "cubes have six layers each, and it has 8");
+    CHECK(why({.size = size, .shape = TextureShape::cube_array, .layers = 6}) ==
+          "the sides of cubes are square");
+    CHECK(why_impossible({.size = size, .shape = TextureShape::array, .layers = 3, .mips = 4}).empty());
+}
+
 TEST_CASE("graph error: names used twice") {
     FrameGraph graph;
     for (int time = 0; time < 2; ++time) {
@@ -313,7 +351,7 @@ TEST_CASE("graph error: all errors are found at once, and take() throws them") {
     CHECK_FALSE(result);
     CHECK(result.errors.size() == 3);
     CHECK_THROWS_WITH_AS((void)std::move(result).take(), R"(the frame graph does not compile:
-  pass 'show' reads a texture of another graph
+  pass 'show' reads a texture by a null handle
   pass 'show' reads texture 'image', which no pass has written
   two passes are called 'show')",
                          GraphError);

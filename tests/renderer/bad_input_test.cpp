@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/scene_error.hpp>
 #include <candela/scene/tangents.hpp>
@@ -510,6 +512,7 @@ TEST_CASE_FIXTURE(BadInput, "a camera with a fault is a SceneError that names it
         {{.projection = custom, .matrix = glm::mat4(0.0F)}, {}, "the matrix is not a projection"},
         {{.projection = custom, .matrix = glm::mat4(not_a_number)}, {}, "the matrix is not a projection"},
         {{.projection = custom, .matrix = glm::mat4(1.0F)}, {}, "the far plane at inf is not finite"},
+        {{.projection = custom, .matrix = glm::scale(glm::mat4(1.0F), {1, -1, 1})}, {}, "the matrix mirrors"},
         {{}, {.translation = {not_a_number, 0, 0}}, "the world matrix is not finite"},
         {{}, {.scale = glm::vec3(0.0F)}, "the world matrix has no direction"}};
     Watched renderer(device, context->get_proc(), false);

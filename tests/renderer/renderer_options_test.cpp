@@ -148,6 +148,43 @@ TEST_CASE_FIXTURE(RenderFixture, "a target that cannot be drawn into is one clea
     if (device.gl().CheckNamedFramebufferStatus(0, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         refuse(0, "the target, framebuffer 0, is incomplete: the context has no default framebuffer");
     }
+    gl::Framebuffer aside(device, "aside");
+    const gl::Texture numbers(device, "numbers", {.size = size, .format = Format::r32ui});
+    aside.attach_colour(0, numbers.name());
+    aside.draw_buffers(1);
+    refuse(aside.name(), "holds integers, which are no colours");
+    const gl::Texture small(device, "small", {.size = size - glm::uvec2(0, 1)});
+    aside.attach_colour(0, small.name());
+    refuse(aside.name(), "too few for");
+    const gl::Texture fitting(device, "fitting", {.size = size});
+    aside.attach_colour(0, fitting.name());
+    aside.draw_buffers(0);
+    refuse(aside.name(), "draws colour into no attachment");
+    aside.draw_buffers(1);
+    const Target moved{.framebuffer = aside.name(), .size = size - 1U, .origin = {0, 2}};
+    CHECK(throws<gl::GlError>([&] { renderer.render(scene.world, scene.camera, moved); }, "from (0, 2)"));
+    CHECK(render(scene, size) == before);
+}
+
+TEST_CASE_FIXTURE(RenderFixture, "a frame in another context, or in none, is one clear error") {
+    const Scene scene = cornell_box();
+    configure(linear_configuration());
+    const Picture before = render(scene, size);
+    const RenderTarget target(device, size);
+    const auto refuse = [&] {
+        CHECK(throws<gl::GlError>([&] { renderer.render(scene.world, scene.camera, target.target()); },
+                                  "another OpenGL context is current than the renderer's, or none"));
+    };
+    {
+        const auto other = make_current_context();
+        const gl::Device other_device(other->get_proc(), gl::DebugOutput::on);
+        refuse();
+        const TestedRenderer beside(other->get_proc());  // with objects of the same names
+        refuse();
+        CHECK(other_device.gl().GetError() == GL_NO_ERROR);
+    }
+    refuse();
+    context->make_current();
     CHECK(render(scene, size) == before);
 }
 

@@ -111,6 +111,8 @@ struct Declaration {
     }
     /// Whether the handle is of this graph and names a resource of this kind.
     [[nodiscard]] bool owns(ResourceHandle handle, ResourceKind kind) const;
+    /// What is wrong with a handle that is not one of these, to follow "a texture".
+    [[nodiscard]] std::string_view fault_of(ResourceHandle handle) const;
     /// Copies the name, with the ending of FrameGraph::append_to_names.
     [[nodiscard]] std::string_view store_name(std::string_view name);
     template <class... Args>

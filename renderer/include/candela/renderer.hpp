@@ -73,10 +73,11 @@ class CANDELA_API Renderer {
     ///
     /// Throws EntityError if there is no such camera, SceneError if the camera or its world matrix is not
     /// finite or cannot show anything, or if an entity's parents form a cycle or were destroyed, and
-    /// gl::GlError if there are no views, if a target does not exist, is incomplete, or has a size of 0 or
-    /// above the driver's limit, if a driver limit is exceeded, or if the driver runs out of memory; then
-    /// GL_OUT_OF_MEMORY is also pending for the host's glGetError. Passes on what an extension throws. After
-    /// an exception, the next call runs the passes that did not finish.
+    /// gl::GlError if another context is current, if there are no views, if a target does not exist, is
+    /// incomplete, draws colour into no attachment or into integers, is larger than its framebuffer, or has a
+    /// size of 0 or above the driver's limit, if a driver limit is exceeded, or if the driver runs out of
+    /// memory; then GL_OUT_OF_MEMORY is also pending for the host's glGetError. Passes on what an extension
+    /// throws. After an exception, the next call runs the passes that did not finish.
     void render(const World& world, std::span<const RenderView> views);
     /// The same with one view. `jitter`: see RenderView::jitter.
     void render(const World& world, Entity camera, const Target& target, glm::vec2 jitter = glm::vec2(0.0F));
@@ -118,7 +119,8 @@ class CANDELA_API Renderer {
     /// Tone-maps a picture of linear radiance, or of what else Configuration::show selects, that was computed
     /// elsewhere, for example an average of frames, into `target`. An automatic exposure is that of this
     /// picture. `radiance` holds target.size.x × target.size.y pixels row by row, the bottom row first.
-    /// Throws gl::GlError if it holds another number of pixels, and where `render` does because of a target.
+    /// Throws gl::GlError if it holds another number of pixels, and where `render` does because of a context
+    /// or target.
     void tone_map(const std::vector<glm::vec3>& radiance, const Target& target);
     /// The same for a 2D texture of linear radiance on the GPU, by its GL name. It is scaled to the target.
     void tone_map(std::uint32_t texture, const Target& target);

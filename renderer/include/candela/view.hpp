@@ -15,9 +15,9 @@ namespace candela {
 
 struct Camera;
 
-/// The part of a framebuffer of the host that a view is drawn into. Only colour is written, in any format;
-/// with a floating-point format and the tone map off, radiance is stored as it is, and alpha tells where
-/// there is a surface. The host keeps ownership.
+/// The part of a framebuffer of the host that a view is drawn into. Only colour is written, into the first
+/// draw buffer, in any format but integers; with a floating-point format and the tone map off, radiance is
+/// stored as it is, and alpha tells where there is a surface. The host keeps ownership.
 struct Target {
     std::uint32_t framebuffer = 0;  ///< GL name; 0: the default framebuffer (the window)
     glm::uvec2 size{1};             ///< pixels

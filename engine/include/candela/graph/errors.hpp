@@ -16,6 +16,8 @@ enum class ErrorCode : std::uint8_t {
     wrong_usage,          ///< an access that the resource's kind, format or lifetime does not allow
     feedback,             ///< a pass declares a read of the version that it overwrites
     attachment_mismatch,  ///< attachments of different sizes, or two depth targets
+    shared_point,         ///< a pass has two resources at one binding point
+    impossible_texture,   ///< a texture with a description that none can have
     duplicate_pass,       ///< two passes with the same name
     duplicate_resource,   ///< two persistent or imported resources with the same kind and name
     nested_pass           ///< a pass added while another pass is being declared

@@ -122,8 +122,9 @@ class CANDELA_API Execution {
         reserve_buffer(buffer, count);
     }
     /// Changes the description of a persistent texture. The pass must write the texture from version 0, and
-    /// not as colour_target or depth_target; GraphError otherwise. A description that differs from the
-    /// current one replaces the object, and its content is lost.
+    /// not as colour_target or depth_target, and a texture must be able to have it (see why_impossible);
+    /// GraphError otherwise. A description that differs from the current one replaces the object, and its
+    /// content is lost.
     void reserve(TextureHandle texture, const TextureDesc& desc);
 
     /// Whether a history has usable content: it was written, and the texture has the same description now.

@@ -60,6 +60,8 @@ struct TextureDesc {
     std::uint32_t mips = 1;
     bool operator==(const TextureDesc&) const = default;
 };
+/// Why no texture can have this description, for example "its size is 0x4"; empty if one can.
+[[nodiscard]] CANDELA_API std::string why_impossible(const TextureDesc& desc);
 /// Bytes of all layers and mip levels, without driver overhead.
 [[nodiscard]] CANDELA_API std::uint64_t byte_size(const TextureDesc& desc);
 

@@ -272,9 +272,9 @@ struct Camera {
     float half_height = 1.0F;           ///< metres, orthographic only (glTF's ymag)
     float near_plane = 0.01F;           ///< metres; > 0, or 0 too if orthographic
     float far_plane = std::numeric_limits<float>::infinity();  ///< metres; finite if orthographic
-    /// Custom only: a projection without skew, as by glm::frustum or glm::ortho, for stereo, tiles and
-    /// shifted lenses. Only what determines x and y is used; depth follows from the planes above. The aspect
-    /// of the target does not change it.
+    /// Custom only: a projection that neither skews nor mirrors, as by glm::frustum or glm::ortho, for
+    /// stereo, tiles and shifted lenses. Only what determines x and y is used; depth follows from the planes
+    /// above. The aspect of the target does not change it.
     glm::mat4 matrix{1.0F};
     bool operator==(const Camera&) const = default;
 };
