@@ -5,17 +5,13 @@ import zlib
 
 from gltf_writer import Scene
 from hdr_writer import daylight
+from helmet import noise
 from png_writer import picture
 from shapes import Surface, aim, looking
 
 SIZE = 2048  # texels a side of the textures
 CELL = 32  # texels between two places with values of their own
 RINGS, SEGMENTS = 100, 250
-
-
-def noise(seed, x, y, channel):
-    """Any number from 0 to 1 for whole numbers."""
-    return zlib.crc32(bytes((seed, x, y, channel))) / 0xFFFFFFFF
 
 
 def ramp(left, right):
@@ -28,7 +24,7 @@ def texture(seed, low, high):
     """A PNG with colours between two, that differ smoothly from place to place."""
     cells = SIZE // CELL
     places = [
-        [[a + noise(seed, x, y, i) * (b - a) for i, (a, b) in enumerate(zip(low, high))] for x in range(cells)]
+        [[a + noise(x, y, 8 * seed + i) * (b - a) for i, (a, b) in enumerate(zip(low, high))] for x in range(cells)]
         for y in range(cells)
     ]
     rows = bytearray()
