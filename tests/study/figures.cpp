@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <glm/gtc/quaternion.hpp>
-
 #include <candela/scene/animate.hpp>
 #include <candela/scene/components.hpp>
 #include "tests/study/bench.hpp"
