@@ -11,19 +11,13 @@
 #include <candela/scene/hierarchy.hpp>
 #include "sandbox/editing/history.hpp"
 #include "sandbox/editing/viewport.hpp"
-#include "sandbox/scene/emitted_light.hpp"
 #include "sandbox/scene/environment.hpp"
+#include "sandbox/scene/seen_light.hpp"
 
 namespace candela::sandbox {
 namespace {
 
 constexpr float half_turn = std::numbers::pi_v<float>;
-
-bool has_lights(const World& world) {
-    std::size_t lights = world.count<Environment>();
-    for_each_light_kind([&]<class Light>(const LightTraits<Light>&) { lights += world.count<Light>(); });
-    return lights > 0;
-}
 
 /// Brighter than its surroundings above, darker below; at the horizon much darker than what it lights, so
 /// that white things are seen before it.
@@ -52,17 +46,30 @@ glm::vec3 forward_of(const World& world) {
 }  // namespace
 
 bool is_lit(const World& world) {
-    if (has_lights(world)) return true;
-    EmittedLight light(world);
-    if (!light.any()) return false;
-    World seen = world;  // which may get a camera
+    if (world.count<Environment>() + world.count<DirectionalLight>() > 0) return true;
+    SceneRays surfaces;
+    const LampLight lamps(world, surfaces);
+    EmittedLight emitted(world, surfaces);
+    if (!lamps.any() && !emitted.any()) return false;
+
+    surfaces.update_and_wait(world);
+    World seen_world = world;  // which may get a camera
     constexpr glm::vec2 size(24.0F);
-    const Viewport viewport = make_viewport(seen, choose_camera(seen, std::nullopt, 1.0F), size);
+    const Entity camera = choose_camera(seen_world, std::nullopt, 1.0F);
+    const std::vector<SurfaceHit> seen = seen_surfaces(surfaces, make_viewport(seen_world, camera, size));
+    // What lamps do not reach is lit by bounces and may be all that is seen but for a spot.
+    constexpr float least_share_of_lamps = 0.01F;
+    const auto by_lamps = [&](const SurfaceHit& hit) { return lamps.reaches(hit); };
+    if (lit_share(seen, by_lamps) >= least_share_of_lamps) return true;
     // A helmet with a glowing visor hardly lights itself, and a lamp mostly the inside of its shade. What is
     // seen of rooms is mostly lit by their lamps, by 0.1 or more.
     constexpr float least = 0.02F;
-    constexpr float least_share = 0.25F;
-    return light.lit_share(viewport, least) >= least_share;
+    constexpr int rays = 8;
+    constexpr float least_share_of_emitters = 0.25F;
+    const auto by_emitters = [&](const SurfaceHit& hit) {
+        return emitted.on_white(hit.point, hit.normal, rays) > least;
+    };
+    return lit_share(seen, by_emitters) >= least_share_of_emitters;
 }
 
 std::vector<Entity> touched_by_studio(Scene& scene) {
@@ -102,7 +109,7 @@ void light_if_dark(Scene& scene) {
     if (is_lit(scene.world)) return;
     add_studio(scene);
     scene.warnings.emplace_back(
-        "the scene has no light that lights it: a studio does, a soft sky and a light");
+        "the scene has no light that lights what is seen: a studio does, a soft sky and a light");
 }
 
 }  // namespace candela::sandbox

@@ -7,8 +7,9 @@
 
 namespace candela::sandbox {
 
-/// Whether a world has a light, a sky, or surfaces that emit so much that a quarter of what is seen of it is
-/// lit by them; seen from its first camera, or, without one, from where the app looks at it.
+/// Whether a world has a sky, a directional light, a lamp that reaches a hundredth of what is seen of it, or
+/// surfaces that emit so much that a quarter of what is seen is lit by them; seen from its first camera, or,
+/// without one, from where the app looks at it.
 [[nodiscard]] bool is_lit(const World& world);
 
 /// Replaces the sky of a scene by one that is brighter above than below, and adds a directional light with a

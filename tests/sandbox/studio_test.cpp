@@ -12,7 +12,7 @@
 #include <candela/scene/components.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "sandbox/editing/history.hpp"
-#include "sandbox/scene/emitted_light.hpp"
+#include "sandbox/scene/seen_light.hpp"
 #include "tests/sandbox/temporary_folder.hpp"
 
 TEST_SUITE("studio") {
@@ -92,7 +92,7 @@ TEST_CASE("a helmet with glowing slits does not light itself, and rooms are lit 
         for (const auto& [entity, light] : helmet.world.view<Light>()) all.push_back(entity);
         for (const Entity entity : all) helmet.world.remove<Light>(entity);
     });
-    CHECK(EmittedLight(helmet.world).any());
+    CHECK(EmittedLight(helmet.world, SceneRays{}).any());
     light_if_dark(helmet);
     CHECK(has_studio(helmet));
 }
@@ -103,7 +103,9 @@ TEST_CASE("a point above a square is lit by L F") {
     // 0.5).
     World world;
     add(world, square(1.0F, 3.0F), Transform{});
-    EmittedLight light(world);
+    SceneRays surfaces;
+    surfaces.update_and_wait(world);
+    EmittedLight light(world, surfaces);
     // The deviation of a ray is below the mean, so that of 4,096 is below 1.6 %.
     CHECK(light.on_white({0, 2, 0}, {0, -1, 0}, 4096) == doctest::Approx(3.0 * 0.2394).epsilon(0.05));
     CHECK(light.on_white({0, 2, 0}, {0, 1, 0}, 64) == 0.0F);
@@ -119,6 +121,35 @@ TEST_CASE("a lamp that only its own bulb sees lights no scene") {
     add(world, square(3.0F, 0.0F), Transform{});
     CHECK(is_lit(world));
     add(world, square(0.6F, 0.0F), Transform{.translation = {0, 1.99F, 0}});
+    CHECK(!is_lit(world));
+}
+
+TEST_CASE("a lamp lights a scene if it reaches what is seen") {
+    // A floor that is seen from above, below a spot light.
+    const auto lit = [](const SpotLight& light, const Transform& place) {
+        World world;
+        add(world, square(3.0F, 0.0F), Transform{});
+        const Entity lamp = world.create();
+        world.set(lamp, place);
+        world.set(lamp, light);
+        return is_lit(world);
+    };
+    const glm::quat down = glm::angleAxis(-0.5F * std::numbers::pi_v<float>, glm::vec3(1, 0, 0));
+    CHECK(lit({}, {.translation = {0, 2, 0}, .rotation = down}));
+    CHECK(!lit({}, {.translation = {0, 2, 0}, .rotation = glm::inverse(down)}));
+    CHECK(!lit({}, {.translation = {0, -2, 0}, .rotation = glm::inverse(down)}));
+    CHECK(!lit({.range = 1.9F}, {.translation = {0, 2, 0}, .rotation = down}));
+    CHECK(!lit({.intensity = 0.0F}, {.translation = {0, 2, 0}, .rotation = down}));
+    // The cone's spot on the floor has a radius of 6 cm: less than a thousandth of what is seen.
+    CHECK(!lit({.outer_cone = 0.03F}, {.translation = {0, 2, 0}, .rotation = down}));
+}
+
+TEST_CASE("a lamp inside a closed thing lights no scene") {
+    World world = shipped("cornell.gltf").world;
+    CHECK(is_lit(world));
+    visit_lights(World(world), [&]<class Light>(Entity entity, const Light&) {
+        world.edit<Transform>(entity, [](Transform& place) { place.translation = {0.33F, 0.3F, 0.39F}; });
+    });
     CHECK(!is_lit(world));
 }
 

@@ -1,4 +1,4 @@
-#include "sandbox/scene/emitted_light.hpp"
+#include "sandbox/scene/seen_light.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <candela/scene/hierarchy.hpp>
@@ -34,16 +35,57 @@ float mean_emission(const Material& material) {
     return strongest * mean_of(*material.emissive_texture);
 }
 
+/// Whether nothing is in the way between two points on surfaces or at lamps.
+bool see_each_other(const SceneRays& surfaces, const glm::vec3& a, const glm::vec3& b) {
+    constexpr float inside = 1e-3F;  // of the way, whose ends may lie on surfaces
+    const glm::vec3 start = glm::mix(a, b, inside);
+    const glm::vec3 end = glm::mix(b, a, inside);
+    // Surfaces block light from both sides, but only their fronts are found.
+    return !surfaces.blocked(start, end) && !surfaces.blocked(end, start);
+}
+
 }  // namespace
 
-EmittedLight::EmittedLight(const World& world) {
+std::vector<SurfaceHit> seen_surfaces(const SceneRays& surfaces, const Viewport& viewport) {
+    std::vector<SurfaceHit> seen;
+    for (float y = 0.5F; y < viewport.size.y; ++y) {
+        for (float x = 0.5F; x < viewport.size.x; ++x) {
+            const auto hit = surfaces.first_hit(ray_through(viewport, viewport.origin + glm::vec2(x, y)));
+            if (hit) seen.push_back(*hit);
+        }
+    }
+    return seen;
+}
+
+LampLight::LampLight(const World& world, const SceneRays& surfaces) : surfaces_(surfaces) {
+    visit_lights(world, [&]<class Light>(Entity entity, const Light& light) {
+        if constexpr (light_traits<Light>.has_position) {
+            if (strength_of(light) * light.colour == glm::vec3(0.0F)) return;
+            const glm::mat4 to_world = world_matrix(world, entity);
+            float least_cosine = -1.0F;
+            if constexpr (light_traits<Light>.has_direction) least_cosine = std::cos(light.outer_cone);
+            lamps_.push_back(
+                {to_world[3], glm::normalize(-glm::vec3(to_world[2])), light.range, least_cosine});
+        }
+    });
+}
+
+bool LampLight::reaches(const SurfaceHit& surface) const {
+    return std::ranges::any_of(lamps_, [&](const Lamp& lamp) {
+        const glm::vec3 apart = surface.point - lamp.position;
+        const float distance = glm::length(apart);
+        return distance < lamp.range && glm::dot(apart, surface.normal) < 0.0F &&
+               glm::dot(apart, lamp.axis) >= lamp.least_cosine * distance &&
+               see_each_other(surfaces_, lamp.position, surface.point);
+    });
+}
+
+EmittedLight::EmittedLight(const World& world, const SceneRays& surfaces) : surfaces_(surfaces) {
     WorldMatrices matrices(world);
     for (const auto& [entity, instance] : world.view<MeshInstance>()) {
         for (const Primitive& primitive : instance.mesh->primitives) add(primitive, matrices(entity));
     }
-    if (!any()) return;
     by_flux_ = {flux_.begin(), flux_.end()};
-    surfaces_.update_and_wait(world);
 }
 
 void EmittedLight::add(const Primitive& primitive, const glm::mat4& to_world) {
@@ -76,11 +118,7 @@ float EmittedLight::draw_geometry(const glm::vec3& point, const glm::vec3& norma
     const float leaving = -glm::dot(glm::normalize(glm::cross(from.ab, from.ac)), towards);
     const float arriving = glm::dot(normal, towards);
     if (arriving <= 0.0F || (leaving <= 0.0F && !from.double_sided)) return 0.0F;
-    constexpr float inside = 1e-3F;  // of the way, whose ends lie on surfaces
-    const glm::vec3 start = point + inside * apart;
-    const glm::vec3 end = emitting - inside * apart;
-    // Surfaces block light from both sides, but only their fronts are found.
-    if (surfaces_.blocked(start, end) || surfaces_.blocked(end, start)) return 0.0F;
+    if (!see_each_other(surfaces_, point, emitting)) return 0.0F;
     return arriving * std::abs(leaving) / distance2;
 }
 
@@ -92,21 +130,6 @@ float EmittedLight::on_white(const glm::vec3& point, const glm::vec3& normal, in
     // it.
     const auto flux = static_cast<float>(std::reduce(flux_.begin(), flux_.end()));
     return flux / (pi * pi) * sum / static_cast<float>(rays);
-}
-
-float EmittedLight::lit_share(const Viewport& viewport, float least) {
-    int seen = 0;
-    int lit = 0;
-    for (int i = 0; i < static_cast<int>(viewport.size.x * viewport.size.y); ++i) {
-        const int width = static_cast<int>(viewport.size.x);
-        const Ray ray = ray_through(viewport, viewport.origin + glm::vec2(i % width, i / width) + 0.5F);
-        const auto hit = surfaces_.first_hit(ray);
-        if (!hit) continue;
-        constexpr int rays = 8;
-        ++seen;
-        if (on_white(hit->point, hit->normal, rays) > least) ++lit;
-    }
-    return seen == 0 ? 0.0F : static_cast<float>(lit) / static_cast<float>(seen);
 }
 
 }  // namespace candela::sandbox
