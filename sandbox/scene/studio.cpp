@@ -1,13 +1,17 @@
 #include "sandbox/scene/studio.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "sandbox/editing/history.hpp"
 #include "sandbox/editing/viewport.hpp"
@@ -43,20 +47,33 @@ glm::vec3 forward_of(const World& world) {
     return glm::length(level) > 1e-3F * glm::length(looks) ? glm::normalize(level) : glm::vec3(0, 0, -1);
 }
 
+/// The world with the vertices of its deformed meshes in the meshes themselves, where SceneRays finds them.
+World with_shapes(World world) {
+    const World before = world;
+    for (const auto& [entity, instance, deformed] : before.view<MeshInstance, DeformedMesh>()) {
+        Mesh mesh = *instance.mesh;
+        for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+            mesh.primitives[i].vertices = (*deformed.vertices)[i];
+        }
+        world.set(entity, MeshInstance{std::make_shared<const Mesh>(std::move(mesh))});
+    }
+    return world;
+}
+
 }  // namespace
 
-bool is_lit(const World& world) {
-    if (world.count<Environment>() + world.count<DirectionalLight>() > 0) return true;
+bool is_lit(const World& scene_world) {
+    if (scene_world.count<Environment>() + scene_world.count<DirectionalLight>() > 0) return true;
+    World world = with_shapes(scene_world);
     SceneRays surfaces;
     const LampLight lamps(world, surfaces);
     EmittedLight emitted(world, surfaces);
     if (!lamps.any() && !emitted.any()) return false;
 
     surfaces.update_and_wait(world);
-    World seen_world = world;  // which may get a camera
     constexpr glm::vec2 size(24.0F);
-    const Entity camera = choose_camera(seen_world, std::nullopt, 1.0F);
-    const std::vector<SurfaceHit> seen = seen_surfaces(surfaces, make_viewport(seen_world, camera, size));
+    const Entity camera = choose_camera(world, std::nullopt, 1.0F);
+    const std::vector<SurfaceHit> seen = seen_surfaces(surfaces, make_viewport(world, camera, size));
     // What lamps do not reach is lit by bounces and may be all that is seen but for a spot.
     constexpr float least_share_of_lamps = 0.01F;
     const auto by_lamps = [&](const SurfaceHit& hit) { return lamps.reaches(hit); };

@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <candela/scene/components.hpp>
+#include <candela/scene/deformed_mesh.hpp>
 #include <candela/scene/hierarchy.hpp>
 #include "sandbox/editing/history.hpp"
 #include "sandbox/scene/seen_light.hpp"
@@ -151,6 +154,20 @@ TEST_CASE("a lamp inside a closed thing lights no scene") {
         world.edit<Transform>(entity, [](Transform& place) { place.translation = {0.33F, 0.3F, 0.39F}; });
     });
     CHECK(!is_lit(world));
+}
+
+TEST_CASE("whether a lamp reaches a deformed mesh depends on where its vertices are now") {
+    World world;
+    const std::shared_ptr<const Mesh> mesh = square(3.0F, 0.0F);
+    const Entity floor = add(world, mesh, Transform{.translation = {0, 3, 0}});
+    const Entity lamp = world.create();
+    world.set(lamp, Transform{.translation = {0, 2, 0}});
+    world.set(lamp, PointLight{});
+    CHECK(!is_lit(world));
+    DeformedMesh::Vertices lower{mesh->primitives.front().vertices};
+    for (Vertex& vertex : lower.front()) vertex.position.y -= 3.0F;
+    world.set(floor, DeformedMesh{std::make_shared<const DeformedMesh::Vertices>(std::move(lower))});
+    CHECK(is_lit(world));
 }
 
 TEST_CASE("what shines into the open, or from the back of a surface, lights nothing") {
