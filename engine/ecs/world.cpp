@@ -1,6 +1,8 @@
 #include <candela/ecs/world.hpp>
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -17,6 +19,25 @@ EntityError EntityError::not_alive(Entity entity, std::string_view component) {
 
 EntityError EntityError::lacks(Entity entity, std::string_view component) {
     return EntityError(fmt::format("{} has no {}", to_string(entity), component));
+}
+
+void ChangeLog::add(Change change, std::size_t components) {
+    const std::size_t kept = std::max<std::size_t>(1024, components / 4);
+    // Half of them at once, so that dropping one takes constant time in the mean.
+    if (changes_.size() >= 2 * kept) {
+        const auto end = changes_.end() - static_cast<std::ptrdiff_t>(kept);
+        before_ = std::prev(end)->tick;
+        changes_.erase(changes_.begin(), end);
+    }
+    changes_.push_back(change);
+}
+
+std::optional<std::span<const Change>> ChangeLog::since(Tick tick) const {
+    const std::span all(changes_);
+    if (tick == before_) return all;
+    const auto known = std::ranges::lower_bound(all, tick, {}, &Change::tick);
+    if (known == all.end() || known->tick != tick) return std::nullopt;
+    return all.subspan(static_cast<std::size_t>(known - all.begin()) + 1);
 }
 
 Tick World::next_tick() {

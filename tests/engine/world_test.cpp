@@ -239,6 +239,70 @@ TEST_CASE("world: views give references to the components themselves") {
     }
 }
 
+TEST_CASE("world: the changes since a revision are known, of copies that have been through it") {
+    World world;
+    const Entity a = world.create();
+    const Entity b = world.create();
+    CHECK(world.changes_since<Height>(0)->empty());
+    world.set(a, Height{1});
+    const Tick first = world.revision<Height>();
+    world.set(b, Height{2});
+    world.set(b, Label{"b"});
+    world.remove<Height>(a);
+    const auto changed = [](const World& in, Tick tick) {
+        std::vector<Entity> entities;
+        for (const Change& change : in.changes_since<Height>(tick).value()) entities.push_back(change.entity);
+        return entities;
+    };
+    CHECK(changed(world, 0) == std::vector{a, b, a});
+    CHECK(changed(world, first) == std::vector{b, a});
+    CHECK(changed(world, world.revision<Height>()).empty());
+
+    World copy = world;
+    const Tick shared = world.revision<Height>();
+    const Tick of_label = world.revision<Label>();
+    world.destroy(b);
+    copy.set(a, Height{3});
+    CHECK(changed(world, shared) == std::vector{b});
+    CHECK(changed(copy, shared) == std::vector{a});
+    // The copy has never been through the destruction.
+    CHECK_FALSE(copy.changes_since<Height>(world.revision<Height>()));
+    CHECK_FALSE(world.changes_since<Height>(of_label));
+}
+
+TEST_CASE("world: changes are kept for a while only") {
+    World world;
+    const Entity entity = world.create();
+    std::vector<Tick> revisions;
+    for (int i = 0; i < 5000; ++i) {
+        world.set(entity, Height{i});
+        revisions.push_back(world.revision<Height>());
+        const std::size_t known = std::min<std::size_t>(revisions.size() - 1, 1000);
+        const auto changes = world.changes_since<Height>(revisions[revisions.size() - 1 - known]);
+        REQUIRE(changes);
+        REQUIRE(changes->size() == known);
+    }
+    CHECK_FALSE(world.changes_since<Height>(0));
+    CHECK_FALSE(world.changes_since<Height>(revisions.front()));
+}
+
+TEST_CASE("world: places are those of the view") {
+    World world;
+    std::vector<Entity> all;
+    for (int i = 0; i < 5; ++i) {
+        all.push_back(world.create());
+        world.set(all.back(), Height{i});
+    }
+    world.remove<Height>(all[1]);
+    CHECK(entities_of<Height>(world) ==
+          std::vector(world.entities<Height>().begin(), world.entities<Height>().end()));
+    CHECK_FALSE(world.place<Height>(all[1]));
+    for (const std::size_t i : {0U, 2U, 3U, 4U}) {
+        CHECK(world.entities<Height>()[world.place<Height>(all[i]).value()] == all[i]);
+    }
+    CHECK(world.entities<Label>().empty());
+}
+
 TEST_CASE("world: a copy keeps entities and ticks, and is independent of the original") {
     World world;
     const Entity entity = world.create();

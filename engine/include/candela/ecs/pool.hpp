@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,6 +18,27 @@ namespace candela {
 
 /// Counts the changes of a world, from 1; 0 means never.
 using Tick = std::uint64_t;
+
+/// One component was inserted, changed or removed.
+struct Change {
+    Tick tick;
+    Entity entity;
+};
+
+/// The last changes of a pool, oldest first: at least the last thousand or, if that is more, as many as a
+/// quarter of its components.
+class CANDELA_API ChangeLog {
+ public:
+    /// `components`: how many the pool has.
+    void add(Change change, std::size_t components);
+    /// All that came after the tick of a change, or after 0; nullopt if that change is not known any more or
+    /// was never one of this pool. Valid until the next `add`.
+    [[nodiscard]] std::optional<std::span<const Change>> since(Tick tick) const;
+
+ private:
+    std::vector<Change> changes_;
+    Tick before_ = 0;  // tick of the last change that was dropped
+};
 
 /// The operations on a pool that do not depend on its component type.
 class CANDELA_API PoolBase {
@@ -52,7 +75,7 @@ class Pool final : public PoolBase {
             values_[at] = std::move(value);
             ticks_[at] = now;
         }
-        revision_ = now;
+        note_change(entity, now);
         return true;
     }
 
@@ -64,7 +87,7 @@ class Pool final : public PoolBase {
         move_last_to(values_, at);
         move_last_to(ticks_, at);
         move_last_to(entities_, at);
-        revision_ = now;
+        note_change(entity, now);
         return true;
     }
 
@@ -82,6 +105,12 @@ class Pool final : public PoolBase {
 
     [[nodiscard]] Tick revision() const { return revision_; }
     [[nodiscard]] const std::vector<Entity>& entities() const { return entities_; }
+    /// Place of the entity in `entities`; nullopt if it has no component.
+    [[nodiscard]] std::optional<std::uint32_t> place(Entity entity) const {
+        const std::uint32_t at = position(entity);
+        return at == absent ? std::nullopt : std::optional(at);
+    }
+    [[nodiscard]] const ChangeLog& changes() const { return changes_; }
 
  private:
     static constexpr std::uint32_t absent = std::numeric_limits<std::uint32_t>::max();
@@ -96,6 +125,11 @@ class Pool final : public PoolBase {
         entities_.push_back(entity);
         values_.push_back(std::move(value));
         ticks_.push_back(now);
+    }
+
+    void note_change(Entity entity, Tick now) {
+        revision_ = now;
+        changes_.add({now, entity}, entities_.size());
     }
 
     [[nodiscard]] static bool equal(const C& a, const C& b) {
@@ -117,6 +151,7 @@ class Pool final : public PoolBase {
     std::vector<C> values_;
     std::vector<Tick> ticks_;
     Tick revision_ = 0;
+    ChangeLog changes_;
 };
 
 }  // namespace candela

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <typeindex>
 #include <unordered_map>
@@ -75,6 +77,22 @@ class CANDELA_API World {
     /// Tick at which a C was last inserted, changed or removed; 0 if never.
     template <Component C>
     [[nodiscard]] Tick revision() const;
+
+    /// The entities whose C was inserted, changed or removed since the pool's revision was `tick`, oldest
+    /// change first, an entity as often as it was changed. Nullopt if `tick` is none of the pool's revisions,
+    /// or one so long ago that not all changes since are known: then anything may have changed. At least the
+    /// last thousand are known, or, if that is more, as many as a quarter of the pool. Valid until any C of
+    /// the world changes.
+    template <Component C>
+    [[nodiscard]] std::optional<std::span<const Change>> changes_since(Tick tick) const;
+
+    /// The entities that have a C, in the order of `view<C>()`. Valid until any C of the world changes.
+    template <Component C>
+    [[nodiscard]] std::span<const Entity> entities() const;
+
+    /// Place of the entity in `entities<C>()`; nullopt if it has no C.
+    template <Component C>
+    [[nodiscard]] std::optional<std::uint32_t> place(Entity entity) const;
 
     /// Tick of the last change in any pool; 0 if never.
     [[nodiscard]] Tick revision() const { return tick_; }
@@ -160,6 +178,26 @@ template <Component C>
 Tick World::revision() const {
     const Pool<C>* components = pool<C>();
     return components ? components->revision() : 0;
+}
+
+template <Component C>
+std::optional<std::span<const Change>> World::changes_since(Tick tick) const {
+    const Pool<C>* components = pool<C>();
+    if (components) return components->changes().since(tick);
+    return tick == 0 ? std::optional(std::span<const Change>()) : std::nullopt;
+}
+
+template <Component C>
+std::span<const Entity> World::entities() const {
+    const Pool<C>* components = pool<C>();
+    return components ? std::span(components->entities()) : std::span<const Entity>();
+}
+
+template <Component C>
+std::optional<std::uint32_t> World::place(Entity entity) const {
+    require_alive(entity, component_name<C>());
+    const Pool<C>* components = pool<C>();
+    return components ? components->place(entity) : std::nullopt;
 }
 
 template <Component C>
