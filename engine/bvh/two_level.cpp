@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace candela {
 namespace {
@@ -55,6 +56,13 @@ std::uint32_t word_of(const PlacedBvh& object, const BvhNode& node) {
                            : child_word(object.first_triangle + node.first, node.count);
 }
 
+/// What one of the top's nodes is as a child.
+std::uint32_t word_in_top(const TopBvh& top, std::span<const PlacedBvh> objects, const BvhNode& node) {
+    if (node.count == 0) return child_word(wide_index(node), 0);
+    const TopBvh::Leaf& leaf = top.leaves[top.bvh.order[node.first]];
+    return word_of(objects[leaf.object], node_of(leaf, objects));
+}
+
 }  // namespace
 
 std::vector<WideNode> wide_nodes(const PlacedBvh& object) {
@@ -77,25 +85,31 @@ TopBvh build_top(std::span<const PlacedBvh> objects, std::uint32_t most_opened) 
     return top;
 }
 
-void refit_top(TopBvh& top, std::span<const PlacedBvh> objects) {
-    refit_box_bvh(top.bvh, boxes_of(top.leaves, objects));
+WideNode wide_node_at(const TopBvh& top, std::span<const PlacedBvh> objects, std::uint32_t index) {
+    const std::uint32_t first = 2 * index + 1;
+    if (is_unused(top.bvh.nodes[first])) return {};
+    const WideChildren below = wide_children(top.bvh, first);
+    std::array<WideChild, 4> children;
+    for (std::size_t i = 0; i < below.count; ++i) {
+        const BvhNode& node = top.bvh.nodes[below.nodes[i]];
+        children[i] = {{node.lower, node.upper}, word_in_top(top, objects, node)};
+    }
+    return wide_node(std::span(children).first(below.count));
 }
 
 std::vector<WideNode> wide_nodes(const TopBvh& top, std::span<const PlacedBvh> objects) {
-    std::vector<std::uint32_t> words;
-    words.reserve(top.bvh.nodes.size());
-    for (const BvhNode& node : top.bvh.nodes) {
-        if (node.count == 0) {
-            words.push_back(child_word(wide_index(node), 0));
-            continue;
-        }
-        const TopBvh::Leaf& leaf = top.leaves[top.bvh.order[node.first]];
-        words.push_back(word_of(objects[leaf.object], node_of(leaf, objects)));
-    }
-    if (words.empty()) return {wide_node({})};
+    if (top.bvh.nodes.empty()) return {wide_node({})};
     const BvhNode& root = top.bvh.nodes.front();
-    if (words.size() == 1) return {wide_node(std::array{WideChild{{root.lower, root.upper}, words.front()}})};
-    return widen(top.bvh, words);
+    if (top.bvh.nodes.size() == 1) {
+        const WideChild only{{root.lower, root.upper}, word_in_top(top, objects, root)};
+        return {wide_node(std::array{only})};
+    }
+    std::vector<WideNode> wide;
+    wide.reserve(top.bvh.nodes.size() / 2);
+    for (std::uint32_t i = 0; i < top.bvh.nodes.size() / 2; ++i) {
+        wide.push_back(wide_node_at(top, objects, i));
+    }
+    return wide;
 }
 
 }  // namespace candela

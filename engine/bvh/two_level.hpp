@@ -38,19 +38,25 @@ struct TopBvh {
         std::uint32_t node;    ///< of the object's hierarchy
     };
     std::vector<Leaf> leaves;
-    Bvh bvh;  ///< over the boxes of `leaves`, each in a leaf of its own
+    /// Over the boxes of `leaves`, each in a leaf of its own. After edits (see KeptTop) some nodes and leaves
+    /// are not in use, and children may come before their parents.
+    Bvh bvh;
 };
 
 /// Builds the top over the objects; opens at most `most_opened` nodes. O(n log n), deterministic.
 [[nodiscard]] TopBvh build_top(std::span<const PlacedBvh> objects, std::uint32_t most_opened = 1024);
 
-/// Fits the top's boxes to those of the objects after their hierarchies were refitted, and keeps its
-/// topology. The objects must be those of build_top, each with the same topology. O(n).
-void refit_top(TopBvh& top, std::span<const PlacedBvh> objects);
+/// Whether the place of a node in the top is not in use.
+[[nodiscard]] inline bool is_unused(const BvhNode& node) {
+    return node.count == 0 && node.first == 0;
+}
 
 /// The top's nodes in the joint array, which starts with them. At least one, which has no children if no
 /// object has triangles.
 [[nodiscard]] std::vector<WideNode> wide_nodes(const TopBvh& top, std::span<const PlacedBvh> objects);
+/// One of them; the top must have more than one leaf.
+[[nodiscard]] WideNode wide_node_at(const TopBvh& top, std::span<const PlacedBvh> objects,
+                                    std::uint32_t index);
 
 /// Like build_bvh for triangles, but over boxes, each in a leaf of its own: `order` has the boxes' indices.
 /// There must be at most 2^max_depth boxes.

@@ -9,7 +9,6 @@ namespace candela {
 namespace {
 
 constexpr std::uint32_t most_steps = 255;
-constexpr std::size_t most_children = 4;
 
 /// The places along an axis that a node's numbers of steps mean. GPUs find exactly the same ones: a step is a
 /// power of two, so that only the sum is rounded.
@@ -60,32 +59,6 @@ Box cut_off(const Box& box) {
     return {glm::clamp(box.lower, -most, most), glm::clamp(box.upper, -most, most)};
 }
 
-/// The wide node of the inner node whose children are nodes `first` and `first + 1`. Of its children, the
-/// inner one with the largest box is replaced by its own two, until there are four.
-WideNode widened(const Bvh& bvh, std::uint32_t first, std::span<const std::uint32_t> words) {
-    const auto size = [&](std::uint32_t index) {
-        const BvhNode& node = bvh.nodes[index];
-        return node.count == 0 ? half_area(node.lower, node.upper) : -1.0F;
-    };
-    std::array<std::uint32_t, most_children> below{first, first + 1};
-    std::size_t count = 2;
-    for (; count < most_children; ++count) {
-        const auto largest =
-            std::max_element(below.begin(), below.begin() + static_cast<std::ptrdiff_t>(count),
-                             [&](std::uint32_t a, std::uint32_t b) { return size(a) < size(b); });
-        if (bvh.nodes[*largest].count > 0) break;
-        const std::uint32_t opened = bvh.nodes[*largest].first;
-        *largest = opened;
-        below[count] = opened + 1;
-    }
-    std::array<WideChild, most_children> children;
-    for (std::size_t i = 0; i < count; ++i) {
-        const BvhNode& node = bvh.nodes[below[i]];
-        children[i] = {{node.lower, node.upper}, words[below[i]]};
-    }
-    return wide_node(std::span(children).first(count));
-}
-
 }  // namespace
 
 WideNode wide_node(std::span<const WideChild> children) {
@@ -112,11 +85,35 @@ WideNode wide_node(std::span<const WideChild> children) {
     return node;
 }
 
+WideChildren wide_children(const Bvh& bvh, std::uint32_t first) {
+    const auto size = [&](std::uint32_t index) {
+        const BvhNode& node = bvh.nodes[index];
+        return node.count == 0 ? half_area(node.lower, node.upper) : -1.0F;
+    };
+    WideChildren children{{first, first + 1}, 2};
+    while (children.count < children.nodes.size()) {
+        const auto end = children.nodes.begin() + static_cast<std::ptrdiff_t>(children.count);
+        const auto largest = std::max_element(
+            children.nodes.begin(), end, [&](std::uint32_t a, std::uint32_t b) { return size(a) < size(b); });
+        if (bvh.nodes[*largest].count > 0) break;
+        const std::uint32_t opened = bvh.nodes[*largest].first;
+        *largest = opened;
+        children.nodes[children.count++] = opened + 1;
+    }
+    return children;
+}
+
 std::vector<WideNode> widen(const Bvh& bvh, std::span<const std::uint32_t> words) {
     std::vector<WideNode> wide;
     wide.reserve(bvh.nodes.size() / 2);
     for (std::uint32_t first = 1; first < bvh.nodes.size(); first += 2) {
-        wide.push_back(widened(bvh, first, words));
+        const WideChildren below = wide_children(bvh, first);
+        std::array<WideChild, 4> children;
+        for (std::size_t i = 0; i < below.count; ++i) {
+            const BvhNode& node = bvh.nodes[below.nodes[i]];
+            children[i] = {{node.lower, node.upper}, words[below.nodes[i]]};
+        }
+        wide.push_back(wide_node(std::span(children).first(below.count)));
     }
     return wide;
 }

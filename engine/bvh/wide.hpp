@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -44,6 +46,15 @@ struct WideChild {
 
 /// The node with these children, at most 4. Coordinates beyond ±2^126 m are cut off there.
 [[nodiscard]] WideNode wide_node(std::span<const WideChild> children);
+
+/// The nodes of the hierarchy that are the children of a wide node.
+struct WideChildren {
+    std::array<std::uint32_t, 4> nodes;
+    std::size_t count;
+};
+/// Of the wide node for the inner node whose children are nodes `first` and `first + 1`: these, of which the
+/// inner one with the largest box is replaced by its own two, until there are four.
+[[nodiscard]] WideChildren wide_children(const Bvh& bvh, std::uint32_t first);
 
 /// A wide node for each inner node of the hierarchy, so that each of them may be used as a root: its children
 /// are those of the node, or theirs. It is at place `wide_index`. `words`: of each node of the hierarchy,

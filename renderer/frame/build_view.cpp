@@ -254,7 +254,7 @@ void build_view(FrameGraph& graph, Gpu& gpu, const SharedFrame& shared, const Vi
     const ShadingPathInfo& path = info_of(configuration.path);
     const ViewData view =
         add_view_upload(graph, gpu, out.camera, rendered_size(shape.target, shared.quality));
-    const SceneData seen = add_view_cull(graph, gpu, shared.lit.scene, out.camera);
+    const SceneData seen = add_view_cull(graph, gpu, shared.lit.scene, shared.lit.tracing, out.camera);
 
     FrameParts asked = asked_parts(shape.keep, shared.extensions);
     if (shared.vpls) {

@@ -14,6 +14,7 @@
 #include <rapidcheck.h>
 #include <glm/geometric.hpp>
 
+#include "engine/bvh/kept_top.hpp"
 #include "engine/bvh/traverse.hpp"
 #include "engine/bvh/wide.hpp"
 #include "tests/seed.hpp"
@@ -477,13 +478,24 @@ TEST_CASE("bvh: the cost of a split follows from the surface areas of its boxes"
 class Objects {
  public:
     void add(Triangles triangles) {
-        objects_.push_back({std::move(triangles), {}});
+        objects_.push_back({std::move(triangles), {}, next_node_, next_triangle_});
         objects_.back().bvh = build_bvh(objects_.back().triangles, object_max_depth);
-        rebuild();
+        next_node_ += static_cast<std::uint32_t>(objects_.back().bvh.nodes.size()) + 5;
+        next_triangle_ += static_cast<std::uint32_t>(objects_.back().bvh.order.size()) + 3;
+        std::vector<std::uint32_t> same(objects_.size() - 1);
+        std::iota(same.begin(), same.end(), 0U);
+        top_.renumber(same, objects_.size());
+        top_.insert(placed_objects(), static_cast<std::uint32_t>(objects_.size() - 1));
+        keep_or_build();
     }
     void remove(std::size_t i) {
+        std::vector<std::uint32_t> now(objects_.size());
+        std::iota(now.begin(), now.begin() + static_cast<std::ptrdiff_t>(i), 0U);
+        std::iota(now.begin() + static_cast<std::ptrdiff_t>(i) + 1, now.end(), static_cast<std::uint32_t>(i));
+        now[i] = KeptTop::gone;
         objects_.erase(objects_.begin() + static_cast<std::ptrdiff_t>(i));
-        rebuild();
+        top_.renumber(now, objects_.size());
+        keep_or_build();
     }
     template <class Change>
     void move(std::size_t i, Change change) {
@@ -491,9 +503,13 @@ class Objects {
             t = {change(t.a), change(t.b), change(t.c)};
         }
         refit(objects_[i].bvh, objects_[i].triangles);
-        refit_top(top_, placed_objects());
+        top_.refit(placed_objects(), std::array{static_cast<std::uint32_t>(i)});
+        keep_or_build();
     }
-    void rebuild() { top_ = build_top(placed_objects(), most_opened); }
+    /// Whether the top is kept where it may be, instead of being built again each time.
+    bool keeps = false;
+    [[nodiscard]] int kept() const { return kept_; }
+    [[nodiscard]] const Bvh& top() const { return top_.top().bvh; }
 
     [[nodiscard]] std::size_t size() const { return objects_.size(); }
     [[nodiscard]] Triangles triangles() const {
@@ -504,17 +520,18 @@ class Objects {
         return all;
     }
 
-    /// All as one hierarchy over `triangles`, with the objects' nodes in reverse order and gaps in between.
+    /// All as one hierarchy over `triangles`, with gaps between the objects' nodes.
     [[nodiscard]] Bvh joint() const {
         const std::vector<PlacedBvh> objects = placed_objects();
         const auto placed = [](const PlacedBvh& object, BvhNode node) {
             node.first += node.count == 0 ? object.first_node - 1 : object.first_triangle;
             return node;
         };
-        Bvh bvh{top_.bvh.nodes, joint_order()};
+        const TopBvh& top = top_.top();
+        Bvh bvh{top.bvh.nodes, joint_order()};
         for (BvhNode& node : bvh.nodes) {
             if (node.count == 0) continue;
-            const TopBvh::Leaf& leaf = top_.leaves[top_.bvh.order[node.first]];
+            const TopBvh::Leaf& leaf = top.leaves[top.bvh.order[node.first]];
             node = placed(objects[leaf.object], objects_[leaf.object].bvh.nodes[leaf.node]);
         }
         for (std::size_t i = 0; i < objects_.size(); ++i) {
@@ -531,7 +548,7 @@ class Objects {
     /// The same with wide nodes, as the GPU has them.
     [[nodiscard]] Wide wide() const {
         const std::vector<PlacedBvh> objects = placed_objects();
-        Wide all{wide_nodes(top_, objects), joint_order()};
+        Wide all{wide_nodes(top_.top(), objects), joint_order()};
         for (const PlacedBvh& object : objects) {
             const std::vector<WideNode> own = wide_nodes(object);
             all.nodes.resize(std::max(all.nodes.size(), object.first_node + own.size()));
@@ -546,16 +563,46 @@ class Objects {
     struct Object {
         Triangles triangles;
         Bvh bvh;
+        std::uint32_t first_node;
+        std::uint32_t first_triangle;
     };
 
+    void keep_or_build() {
+        if (keeps && !top_.is_worn()) {
+            ++kept_;
+        } else {
+            top_.build(placed_objects(), most_opened);
+        }
+        check_changed();
+    }
+
+    /// The wide nodes that are said to have changed are all that have.
+    void check_changed() {
+        const std::vector<PlacedBvh> objects = placed_objects();
+        const std::vector<WideNode> now = wide_nodes(top_.top(), objects);
+        if (const auto changed = top_.take_changed()) {
+            top_nodes_.resize(now.size());
+            for (const std::uint32_t i : *changed) top_nodes_[i] = wide_node_at(top_.top(), objects, i);
+        } else {
+            top_nodes_ = now;
+        }
+        const auto same = [](const WideNode& a, const WideNode& b) {
+            return a.origin == b.origin && a.exponents == b.exponents && a.lower == b.lower &&
+                   a.upper == b.upper && a.children == b.children;
+        };
+        std::size_t missed = 0;
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            const std::vector<BvhNode>& nodes = top_.top().bvh.nodes;
+            const bool is_used = nodes.size() < 3 || !is_unused(nodes[2 * i + 1]);
+            missed += is_used && !same(now[i], top_nodes_[i]) ? 1 : 0;
+        }
+        CHECK(missed == 0);
+    }
+
     [[nodiscard]] std::vector<PlacedBvh> placed_objects() const {
-        std::vector<PlacedBvh> placed(objects_.size());
-        auto node = static_cast<std::uint32_t>(top_.bvh.nodes.size());
-        std::uint32_t triangle = 3;
-        for (std::size_t i = objects_.size(); i-- > 0;) {
-            placed[i] = {&objects_[i].bvh, node, triangle};
-            node += static_cast<std::uint32_t>(objects_[i].bvh.nodes.size()) + 5;
-            triangle += static_cast<std::uint32_t>(objects_[i].bvh.order.size()) + 3;
+        std::vector<PlacedBvh> placed;
+        for (const Object& object : objects_) {
+            placed.push_back({&object.bvh, object.first_node, object.first_triangle});
         }
         return placed;
     }
@@ -578,7 +625,11 @@ class Objects {
     }
 
     std::vector<Object> objects_;
-    TopBvh top_;
+    KeptTop top_;
+    std::vector<WideNode> top_nodes_;  // kept by what take_changed says
+    int kept_ = 0;
+    std::uint32_t next_node_ = 4000;  // behind those of the top
+    std::uint32_t next_triangle_ = 3;
 };
 
 // From the root, every triangle is reached once, in boxes that contain it, and no leaf is too deep for the
@@ -631,10 +682,14 @@ void check_wide(const Wide& wide, std::span<const Triangle> triangles) {
 
 TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, additions and removals") {
     Random random(test_seed(13));
-    for (const std::uint32_t most_opened : {0U, 5U, 1024U}) {
+    for (const auto& [most_opened, keeps] :
+         {std::pair(0U, false), std::pair(5U, false), std::pair(1024U, false), std::pair(0U, true),
+          std::pair(5U, true), std::pair(1024U, true)}) {
         CAPTURE(most_opened);
+        CAPTURE(keeps);
         Objects objects;
         objects.most_opened = most_opened;
+        objects.keeps = keeps;
         for (int edit = 0; edit < 60; ++edit) {
             const auto any =
                 static_cast<std::size_t>(random.number(0, 0.999F) * static_cast<float>(objects.size()));
@@ -658,6 +713,64 @@ TEST_CASE("bvh: two levels: hits equal brute force after each of many moves, add
             CHECK(disagreements(objects.wide(), triangles, 100, random) == 0);
         }
     }
+}
+
+TEST_CASE("bvh: two levels: a top is kept through hundreds of edits, and rays hardly cost more") {
+    Random random(test_seed(16));
+    Objects objects;
+    objects.keeps = true;
+    objects.most_opened = 0;
+    const auto add = [&] {
+        const glm::vec3 by = random.point(10.0F);
+        Triangles triangles = soup(4, 0.3F, random);
+        for (Triangle& t : triangles) t = {t.a + by, t.b + by, t.c + by};
+        objects.add(std::move(triangles));
+    };
+    for (int i = 0; i < 200; ++i) add();
+    const int before = objects.kept();
+    constexpr int edits = 300;
+    for (int edit = 0; edit < edits; ++edit) {
+        const auto any =
+            static_cast<std::size_t>(random.number(0, 0.999F) * static_cast<float>(objects.size()));
+        const float choice = random.number(0, 1);
+        if (choice < 0.3F) {
+            add();
+        } else if (choice < 0.6F) {
+            objects.remove(any);
+        } else {
+            const glm::vec3 by = random.point(3.0F);
+            objects.move(any, [&](glm::vec3 p) { return p + by; });
+        }
+    }
+    // Objects move at random through a third of the scene, so that a few builds are due.
+    CHECK(objects.kept() - before > edits - 15);
+    const Triangles triangles = objects.triangles();
+    CHECK(disagreements(objects.joint(), triangles, 300, random) == 0);
+    check_wide(objects.wide(), triangles);
+    // Half as much again is what a top may cost before it is worn.
+    const float kept = sah_cost(objects.top());
+    objects.keeps = false;
+    objects.move(0, [](glm::vec3 p) { return p; });
+    CHECK(kept <= 2.0F * sah_cost(objects.top()));
+}
+
+TEST_CASE("bvh: two levels: things that come in rows do not make the top deep or expensive") {
+    Random random(test_seed(18));
+    Objects objects;
+    objects.keeps = true;
+    objects.most_opened = 0;
+    for (int i = 0; i < 400; ++i) {
+        const glm::vec3 at(i % 20, 0.0F, i / 20);
+        Triangles triangles = soup(4, 0.3F, random);
+        for (Triangle& t : triangles) t = {0.3F * t.a + at, 0.3F * t.b + at, 0.3F * t.c + at};
+        objects.add(std::move(triangles));
+    }
+    // Objects are 1 m apart. The first ones come at the sides of a small scene, where each is a large part.
+    CHECK(objects.kept() > 350);
+    const float kept = sah_cost(objects.top());
+    objects.keeps = false;
+    objects.move(0, [](glm::vec3 p) { return p; });
+    CHECK(kept < 1.3F * sah_cost(objects.top()));
 }
 
 TEST_CASE("bvh: two levels: of objects in the same place the first one is hit") {

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <random>
+#include <vector>
 
-#include "renderer/passes/view/view_cull.hpp"
+#include "renderer/passes/view/seen_objects.hpp"
+#include "renderer/passes/view/view.hpp"
 #include "tests/seed.hpp"
 
 TEST_SUITE("view cull") {
@@ -82,7 +87,7 @@ TEST_CASE("a box with a point in the view is never culled, and most other boxes 
     for (int i = 0; i < 4000; ++i) {
         const Box box = random.box();
         const CameraView view = random.view();
-        const bool outside = is_outside(box, view.clip_from_world);
+        const bool outside = in_view(box, view.clip_from_world) == InView::outside;
         if (any_point_in_view(random, box, view.clip_from_world)) {
             CHECK_FALSE(outside);
         } else {
@@ -107,7 +112,7 @@ TEST_CASE("boxes outside of any of the six planes are culled, boxes that cross o
         CAPTURE(outside.x);
         CAPTURE(outside.y);
         CAPTURE(outside.z);
-        CHECK(is_outside(cube_at(outside), clip));
+        CHECK(in_view(cube_at(outside), clip) == InView::outside);
     }
     for (const glm::vec3 across : {glm::vec3(-5.4F, 0, -5),
                                    {5.4F, 0, -5},
@@ -115,26 +120,129 @@ TEST_CASE("boxes outside of any of the six planes are culled, boxes that cross o
                                    {0, 5.4F, -5},
                                    {0, 0, -0.6F},
                                    {0, 0, -10.4F}}) {
-        CHECK_FALSE(is_outside(cube_at(across), clip));
+        CHECK(in_view(cube_at(across), clip) == InView::partly);
     }
-    CHECK_FALSE(is_outside({glm::vec3(-100.0F), glm::vec3(100.0F)}, clip));  // contains the eye
+    CHECK(in_view({glm::vec3(-100.0F), glm::vec3(100.0F)}, clip) == InView::partly);  // contains the eye
+    CHECK(in_view(cube_at({0, 0, -5}), clip) == InView::inside);
 }
 
-TEST_CASE("draws of items that are placed outside the view get no instances and are else unchanged") {
-    SceneLayout layout;
-    ScenePlacement placement;
-    for (const float x : {0.0F, 50.0F, 1.0F}) {
-        const auto item = static_cast<std::uint32_t>(placement.world.size());
-        layout.drawables.push_back({item, nullptr, 0, cube_at(glm::vec3(0.0F))});
-        layout.draws.push_back({36, 1, 10 * item, 0, item});
-        placement.world.push_back(glm::translate(glm::mat4(1.0F), glm::vec3(x, 0.0F, -5.0F)));
+namespace {
+
+/// Objects of a few triangles each that lie anywhere, under a top that is kept.
+class Objects {
+ public:
+    explicit Objects(Random& random) : random_(&random) {}
+
+    void add() {
+        objects_.push_back(std::make_unique<Object>());
+        place(size() - 1);
+        count_changed({});
+        top.insert(placed(), size() - 1);
     }
-    const std::vector<gpu::DrawCommand> draws = visible_draws(layout, placement, straight_view());
-    REQUIRE(draws.size() == 3);
-    for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(draws[i].instance_count == (i == 1 ? 0 : 1));
-        CHECK(draws[i].first_index == layout.draws[i].first_index);
-        CHECK(draws[i].base_instance == layout.draws[i].base_instance);
+    void remove(std::uint32_t object) {
+        objects_.erase(objects_.begin() + object);
+        count_changed(object);
+    }
+    void move(std::uint32_t object) {
+        place(object);
+        top.refit(placed(), std::array{object});
+    }
+    void build_if_worn() {
+        if (top.is_worn()) top.build(placed());
+    }
+
+    [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(objects_.size()); }
+    [[nodiscard]] const std::vector<Triangle>& triangles(std::uint32_t object) const {
+        return objects_[object]->triangles;
+    }
+
+    KeptTop top;
+
+ private:
+    struct Object {
+        std::vector<Triangle> triangles;
+        Bvh bvh;
+    };
+
+    void place(std::uint32_t object) {
+        Object& changed = *objects_[object];
+        const glm::vec3 centre = random_->vector(12.0F);
+        changed.triangles.resize(6);
+        for (Triangle& t : changed.triangles) {
+            t = {centre + random_->vector(1.0F), centre + random_->vector(1.0F),
+                 centre + random_->vector(1.0F)};
+        }
+        if (changed.bvh.nodes.empty()) changed.bvh = build_bvh(changed.triangles);
+        refit(changed.bvh, changed.triangles);
+    }
+    void count_changed(std::optional<std::uint32_t> removed) {
+        std::vector<std::uint32_t> now;
+        for (std::uint32_t next = 0; next < size() || now.size() < size();) {
+            if (removed == now.size()) now.push_back(KeptTop::gone);
+            if (next < size()) now.push_back(next++);
+        }
+        if (removed == now.size()) now.push_back(KeptTop::gone);
+        if (!removed) now.pop_back();
+        top.renumber(now, size());
+    }
+    [[nodiscard]] std::vector<PlacedBvh> placed() const {
+        std::vector<PlacedBvh> all;
+        for (const auto& object : objects_) all.push_back({&object->bvh, 0, 0});
+        return all;
+    }
+
+    Random* random_;
+    std::vector<std::unique_ptr<Object>> objects_;
+};
+
+bool has_corner_in_view(const std::vector<Triangle>& triangles, const glm::mat4& clip_from_world) {
+    return std::ranges::any_of(triangles, [&](const Triangle& t) {
+        return is_in_view(clip_from_world * glm::vec4(t.a, 1.0F)) ||
+               is_in_view(clip_from_world * glm::vec4(t.b, 1.0F)) ||
+               is_in_view(clip_from_world * glm::vec4(t.c, 1.0F));
+    });
+}
+
+bool is_surely_outside(const std::vector<Triangle>& triangles, const glm::mat4& clip_from_world) {
+    Box box;
+    for (const Triangle& t : triangles) box.grow(bounds(t));
+    return in_view(box, clip_from_world) == InView::outside;
+}
+
+}  // namespace
+
+TEST_CASE("what a kept view sees follows the camera and the objects, and says what has changed") {
+    Random random;
+    Objects objects(random);
+    SeenObjects kept;
+    std::vector<bool> told;  // by object: whether it is seen, by what `update` has returned
+    CameraView view = random.view();
+    for (int frame = 0; frame < 400; ++frame) {
+        const float choice = objects.size() < 100 ? 0.9F : random.number(0.0F, 1.0F);
+        const auto any =
+            static_cast<std::uint32_t>(random.number(0.0F, 0.999F) * static_cast<float>(objects.size()));
+        const bool other_objects = choice > 0.8F || frame == 0;
+        if (choice < 0.3F) view = random.view();
+        if (choice > 0.2F && choice < 0.8F) objects.move(any);
+        if (choice > 0.8F) objects.add();
+        if (choice > 0.95F && objects.size() > 1) objects.remove(any);
+        objects.build_if_worn();
+
+        if (other_objects) told.assign(objects.size(), false);
+        for (const std::uint32_t i :
+             kept.update(objects.top, objects.size(), view.clip_from_world, other_objects)) {
+            told[i] = !told[i];
+        }
+        std::size_t missed = 0, needless = 0, untold = 0;
+        for (std::uint32_t i = 0; i < objects.size(); ++i) {
+            const auto& triangles = objects.triangles(i);
+            missed += !kept.sees(i) && has_corner_in_view(triangles, view.clip_from_world) ? 1 : 0;
+            needless += kept.sees(i) && is_surely_outside(triangles, view.clip_from_world) ? 1 : 0;
+            untold += told[i] != kept.sees(i) ? 1 : 0;
+        }
+        CHECK(missed == 0);
+        CHECK(needless == 0);
+        CHECK(untold == 0);
     }
 }
 

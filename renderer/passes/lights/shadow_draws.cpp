@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "renderer/passes/scene/world_triangles.hpp"
-#include "renderer/passes/view/view_cull.hpp"
+#include "renderer/passes/view/seen_objects.hpp"
 
 namespace candela {
 namespace {
@@ -54,7 +54,7 @@ void append_shadow_draws(std::span<const ShadowCaster> casters, const glm::mat4&
     const glm::mat4 clip = clip_of_marked(clip_from_world, resolution);
     const std::size_t begin = draws.size();
     for (const ShadowCaster& caster : casters) {
-        if (is_outside(caster.bounds, clip)) continue;
+        if (in_view(caster.bounds, clip) == InView::outside) continue;
         if (draws.size() > begin && follows(caster.draw, draws.back())) {
             draws.back().index_count += caster.draw.index_count;
         } else {

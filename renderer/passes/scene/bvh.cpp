@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -28,43 +29,56 @@ struct HierarchyBuffers {
     BufferHandle<gpu::TraceTriangle> triangles;
 };
 
-std::vector<BufferRange*> ranges_of(std::vector<ObjectHierarchy>& objects,
+using Objects = std::vector<std::unique_ptr<ObjectHierarchy>>;
+
+std::vector<BufferRange*> ranges_of(const Objects& objects, std::span<const std::uint32_t> which,
                                     BufferRange ObjectHierarchy::*range) {
     std::vector<BufferRange*> ranges;
-    ranges.reserve(objects.size());
-    for (ObjectHierarchy& object : objects) {
-        ranges.push_back(&(object.*range));
-    }
+    ranges.reserve(which.size());
+    for (const std::uint32_t i : which) ranges.push_back(&(*objects[i].*range));
     return ranges;
 }
 
-/// Assigns places in the buffers to what has none.
-void place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded) {
-    std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
-    const auto top_size = std::max(static_cast<std::uint32_t>(uploaded.scene.top.bvh.nodes.size() / 2), 1U);
-    if (top_size > uploaded.top_room) {
+/// How many wide nodes the top has.
+std::uint32_t top_size_of(const SceneHierarchy& scene) {
+    return std::max(static_cast<std::uint32_t>(scene.top.top().bvh.nodes.size() / 2), 1U);
+}
+
+bool has_place(const ObjectHierarchy& object) {
+    return object.nodes.first != BufferRange::nowhere && object.triangles.first != BufferRange::nowhere;
+}
+
+/// Assigns places in the buffers to what has none. Returns whether any that had one has got another.
+bool place(Execution& run, const HierarchyBuffers& buffers, UploadedHierarchy& uploaded,
+           std::span<const std::uint32_t> all) {
+    const Objects& objects = uploaded.scene.objects;
+    const std::uint32_t top_size = top_size_of(uploaded.scene);
+    const bool other_top = top_size > uploaded.top_room;
+    if (other_top) {
         uploaded.top_room = uploaded.nodes_end = top_size + top_size / 4;
-        for (ObjectHierarchy& object : objects) {
-            object.nodes = {.count = object.nodes.count};
+        for (const auto& object : objects) {
+            object->nodes = {.count = object->nodes.count};
         }
     }
-    const bool all_moved = place_ranges(
-        run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles), uploaded.triangles_end);
-    for (ObjectHierarchy& object : objects) {
-        object.nodes.uploaded &= !all_moved;  // they contain the places of triangles
+    const bool moved_triangles = place_ranges(
+        run, buffers.triangles, ranges_of(objects, all, &ObjectHierarchy::triangles), uploaded.triangles_end);
+    for (const auto& object : objects) {
+        object->nodes.uploaded &= !moved_triangles;  // they contain the places of triangles
     }
-    place_ranges(run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes), uploaded.nodes_end,
-                 uploaded.top_room);
+    const bool moved_nodes =
+        place_ranges(run, buffers.nodes, ranges_of(objects, all, &ObjectHierarchy::nodes), uploaded.nodes_end,
+                     uploaded.top_room);
+    return other_top || moved_triangles || moved_nodes;
 }
 
 /// The triangles of a drawable, and once more with their second texture coordinates if rays need these.
 void write_triangles(const SceneLayout& layout, const SceneLayout::Drawable& drawable,
-                     std::span<const Vertex> vertices, const ObjectHierarchy& object,
+                     std::span<const Vertex> vertices, const ObjectHierarchy& object, std::uint32_t first_id,
                      BufferWriter<gpu::TraceTriangle>& writer) {
     const auto count = static_cast<std::uint32_t>(object.bvh.order.size());
     const bool has_second = object.triangles.count > count;
     const auto traced = [&](std::uint32_t i) {
-        return trace_triangle(layout, drawable, vertices, i, object.source.world, object.first_id + i);
+        return trace_triangle(layout, drawable, vertices, i, object.source.world, first_id + i);
     };
     for (const std::uint32_t i : object.bvh.order) {
         gpu::TraceTriangle triangle = traced(i);
@@ -82,28 +96,58 @@ void write_triangles(const SceneLayout& layout, const SceneLayout::Drawable& dra
     }
 }
 
+/// `which`: those that may have changed.
 void upload_objects(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
-                    UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed) {
-    std::vector<ObjectHierarchy>& objects = uploaded.scene.objects;
-    const std::vector<PlacedBvh> placed_bvhs = uploaded.scene.placed_objects();
-    upload_ranges(gpu, run, buffers.nodes, ranges_of(objects, &ObjectHierarchy::nodes),
+                    const SceneHierarchy& scene, std::span<const std::uint32_t> which,
+                    const SceneLayout& layout, const Deformations& deformed) {
+    upload_ranges(gpu, run, buffers.nodes, ranges_of(scene.objects, which, &ObjectHierarchy::nodes),
                   [&](std::size_t i, BufferWriter<gpu::WideNode>& writer) {
-                      writer.append(wide_nodes(placed_bvhs[i]));
+                      writer.append(wide_nodes(scene.placed()[which[i]]));
                   });
-    upload_ranges(gpu, run, buffers.triangles, ranges_of(objects, &ObjectHierarchy::triangles),
+    upload_ranges(gpu, run, buffers.triangles, ranges_of(scene.objects, which, &ObjectHierarchy::triangles),
                   [&](std::size_t i, BufferWriter<gpu::TraceTriangle>& writer) {
-                      const ObjectHierarchy& object = objects[i];
-                      const SceneLayout::Drawable& drawable = layout.drawables[i];
+                      const std::uint32_t object = which[i];
+                      const SceneLayout::Drawable& drawable = layout.drawables[object];
                       const std::span<const Vertex> vertices = vertices_of(drawable, deformed);
-                      write_triangles(layout, drawable, vertices, object, writer);
+                      write_triangles(layout, drawable, vertices, *scene.objects[object],
+                                      scene.ids[object].first, writer);
                   });
 }
 
-void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
-                const SceneHierarchy& scene) {
-    // Buffers must not be empty.
-    if (scene.top.leaves.empty()) upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
-    upload<gpu::WideNode>(gpu, run, buffers.nodes, wide_nodes(scene.top, scene.placed_objects()));
+/// `all`: not only the nodes that have changed.
+void upload_top(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers, SceneHierarchy& scene,
+                bool all) {
+    const TopBvh& top = scene.top.top();
+    const auto changed = scene.top.take_changed();
+    if (all || !changed) {
+        // Buffers must not be empty.
+        if (top.leaves.empty()) upload_one(gpu, run, buffers.triangles, gpu::TraceTriangle{});
+        upload<gpu::WideNode>(gpu, run, buffers.nodes, wide_nodes(top, scene.placed()));
+        return;
+    }
+    BufferWriter<gpu::WideNode> writer(gpu, run.object(buffers.nodes));
+    for (const std::uint32_t i : *changed) {
+        writer.seek(i);
+        writer.push_back(wide_node_at(top, scene.placed(), i));
+    }
+    writer.flush();
+}
+
+/// Uploads what has changed since the last call.
+void upload_hierarchy(const Gpu& gpu, Execution& run, const HierarchyBuffers& buffers,
+                      UploadedHierarchy& uploaded, const SceneLayout& layout, const Deformations& deformed,
+                      bool other_layout) {
+    SceneHierarchy& scene = uploaded.scene;
+    std::vector<std::uint32_t> all(scene.objects.size());
+    std::iota(all.begin(), all.end(), 0U);
+    const bool needs_place = other_layout || std::ranges::any_of(scene.changed(), [&](std::uint32_t i) {
+                                 return !has_place(*scene.objects[i]);
+                             });
+    const bool moved = needs_place && place(run, buffers, uploaded, all);
+    const std::vector<std::uint32_t>& which = moved ? all : scene.changed();
+    for (const std::uint32_t i : which) scene.note_place(i);
+    upload_objects(gpu, run, buffers, scene, which, layout, deformed);
+    upload_top(gpu, run, buffers, scene, moved);
 }
 
 void warn_of_rounding(Log& log, const SceneMetrics& metrics) {
@@ -137,11 +181,10 @@ Tracing add_bvh(FrameGraph& graph, Gpu& gpu, const SceneData& scene) {
             const std::shared_ptr<UploadedHierarchy> uploaded =
                 run.has_result() ? *run.previous(kept) : std::make_shared<UploadedHierarchy>();
             const ScenePlacement& placement = run.value(placement_handle);
-            uploaded->scene.update(layout, placement, run.changed(layout_handle));
-            place(run, buffers, *uploaded);
-            upload_objects(gpu, run, buffers, *uploaded, layout, placement.deformed);
-            upload_top(gpu, run, buffers, uploaded->scene);
-            const SceneMetrics now = uploaded->scene.metrics(layout);
+            const bool other_layout = run.changed(layout_handle);
+            uploaded->scene.update(layout, placement, other_layout);
+            upload_hierarchy(gpu, run, buffers, *uploaded, layout, placement.deformed, other_layout);
+            const SceneMetrics now = uploaded->scene.metrics();
             warn_of_rounding(gpu.log(), now);
             run.set(metrics, now);
             run.set(kept, uploaded);

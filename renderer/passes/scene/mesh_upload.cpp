@@ -88,9 +88,14 @@ void MeshTable::upload(const Gpu& gpu, Execution& run, BufferHandle<Vertex> vert
 
 std::vector<gpu::DrawCommand> MeshTable::draws(std::span<const SceneLayout::Drawable> drawables) {
     std::vector<gpu::DrawCommand> draws;
+    draws.reserve(drawables.size());
     auto deformed = deformed_.begin();
+    const UploadedPrimitive* uploaded = nullptr;  // of the last drawable: many have the same one
     for (const SceneLayout::Drawable& drawable : drawables) {
-        const UploadedPrimitive& primitive = *primitives_.find(drawable.primitive);
+        if (uploaded == nullptr || uploaded->primitive != drawable.primitive) {
+            uploaded = primitives_.find(drawable.primitive);
+        }
+        const UploadedPrimitive& primitive = *uploaded;
         std::uint32_t first_vertex = primitive.vertices.first;
         if (deformed != deformed_.end() && deformed->drawable.item == drawable.item &&
             deformed->drawable.primitive == drawable.primitive) {

@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/bvh/two_level.hpp"
+#include "engine/bvh/kept_top.hpp"
 #include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/passes/scene/scene_upload.hpp"
 
@@ -49,46 +49,81 @@ struct SceneMetrics {
 
 /// The hierarchy over the triangles of one solid drawable, in world space, and its place on the GPU.
 struct ObjectHierarchy {
-    /// What triangles and nodes are made from.
+    /// What triangles and nodes are made from, besides the primitive.
     struct Source {
-        Entity entity;
-        const Primitive* primitive = nullptr;
+        bool is_made = false;
         std::uint32_t material = 0;
         bool mirrored = false;
         glm::mat4 world{1.0F};
         std::shared_ptr<const DeformedMesh::Vertices> vertices;  ///< null: those of the mesh
-        bool operator==(const Source&) const = default;
     };
     std::shared_ptr<const Mesh> mesh;  ///< keeps the primitive alive
     Source source;
     Bvh bvh;
-    float built_cost = 0.0F;     ///< SAH cost at the last build
-    double area = 0.0;           ///< of the triangles, one side each, m²
-    std::uint32_t first_id = 0;  ///< of its triangles: see gpu::TraceTriangle
-    BufferRange nodes;           ///< wide ones
+    float built_cost = 0.0F;  ///< SAH cost at the last build
+    double area = 0.0;        ///< of the triangles, one side each, m²
+    BufferRange nodes;        ///< wide ones
     BufferRange triangles;
 };
 
+/// The ids of an object's triangles: see gpu::TraceTriangle.
+struct IdRange {
+    static constexpr std::uint32_t unset = std::numeric_limits<std::uint32_t>::max();
+
+    std::uint32_t first = unset;
+    std::uint32_t count = 0;
+};
+
 /// The hierarchy over the triangles of all solid drawables, kept from frame to frame: one for each, joined by
-/// a top (engine/bvh/two_level.hpp). What has moved is refitted, and built again once its SAH cost
-/// exceeds 1.5 times that of the last build. So is the top, which is also built again when objects come or
-/// go.
+/// a top (engine/bvh/kept_top.hpp). What has moved is refitted, and built again once its SAH cost
+/// exceeds 1.5 times that of the last build. An update for what has moved takes no time for the rest.
 class SceneHierarchy {
  public:
     /// Brings everything up to date with the scene. `other_layout`: the layout is another than in the last
     /// call. The ranges of what has changed are not `uploaded` then.
     void update(const SceneLayout& layout, const ScenePlacement& placement, bool other_layout);
 
-    [[nodiscard]] SceneMetrics metrics(const SceneLayout& layout) const;
-    [[nodiscard]] std::vector<PlacedBvh> placed_objects() const;
+    /// Numbers of the objects that the last update has changed, ascending.
+    [[nodiscard]] const std::vector<std::uint32_t>& changed() const { return changed_; }
+    [[nodiscard]] SceneMetrics metrics() const;
+    /// The objects, and where they are in the buffers by the last call of note_place.
+    [[nodiscard]] const std::vector<PlacedBvh>& placed() const { return placed_; }
+    /// Takes over where the object's ranges are.
+    void note_place(std::uint32_t object);
 
-    std::vector<ObjectHierarchy> objects;  ///< by solid drawable
-    TopBvh top;
+    std::vector<std::unique_ptr<ObjectHierarchy>> objects;  ///< by solid drawable
+    std::vector<IdRange> ids;                               ///< by object
+    KeptTop top;
 
  private:
-    bool take_over(const SceneLayout& layout);
+    /// The drawables of two layouts that are the same: one primitive of one entity.
+    struct Identity {
+        Entity entity;
+        const Primitive* primitive;
+        bool operator==(const Identity&) const = default;
+    };
+    /// What a block of objects adds to the metrics. Sums of sums are the same whatever changed before.
+    struct Sums {
+        double area = 0.0;
+        double reflecting = 0.0;
+        std::uint64_t triangles = 0;
+    };
+    static constexpr std::size_t block_size = 64;
 
-    float top_cost_ = 0.0F;  // SAH cost at the last build
+    void take_over(const SceneLayout& layout);
+    void fit_objects(const SceneLayout& layout, const ScenePlacement& placement,
+                     const std::vector<std::uint32_t>& candidates);
+    void fit_top();
+    void add_up(const SceneLayout& layout, bool all);
+    void add_up_block(const SceneLayout& layout, std::size_t block);
+
+    std::vector<Identity> identities_;  // by object
+    std::vector<PlacedBvh> placed_;     // by object
+    ScenePlacement placement_;          // in the last update
+    std::vector<std::uint32_t> changed_;
+    std::vector<std::uint32_t> refitted_;  // of these: with the topology that they had
+    std::vector<std::uint32_t> built_;     // of these: the others
+    std::vector<Sums> sums_;               // by block of objects
 };
 
 }  // namespace candela

@@ -26,14 +26,10 @@ void add_moved(const Box& before, const Box& now, std::vector<Box>& boxes) {
 std::vector<Box> moved_boxes(const SceneLayout& layout, const ScenePlacement& before,
                              const ScenePlacement& now) {
     std::vector<Box> boxes;
-    for (const SceneLayout::Drawable& drawable : layout.solids()) {
-        const glm::mat4& from = before.world[drawable.item];
-        const glm::mat4& to = now.world[drawable.item];
-        if (from != to ||
-            vertices_of(drawable, before.deformed).data() != vertices_of(drawable, now.deformed).data()) {
-            add_moved(place_box(bounds_of(drawable, before.deformed), from),
-                      place_box(bounds_of(drawable, now.deformed), to), boxes);
-        }
+    for (const std::uint32_t i : moved_solids(layout, before, now)) {
+        const SceneLayout::Drawable& drawable = layout.drawables[i];
+        add_moved(place_box(bounds_of(drawable, before.deformed), before.world[drawable.item]),
+                  place_box(bounds_of(drawable, now.deformed), now.world[drawable.item]), boxes);
     }
     return boxes;
 }

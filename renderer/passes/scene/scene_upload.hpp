@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,43 +8,13 @@
 
 #include <candela/graph/frame_graph.hpp>
 #include <candela/scene/components.hpp>
-#include <candela/scene/deformed_mesh.hpp>
 #include "engine/bvh/box.hpp"
 #include "renderer/gpu/gpu.hpp"
 #include "renderer/gpu/gpu_types.hpp"
 #include "renderer/passes/scene/material_binding.hpp"
+#include "renderer/passes/scene/scene_list.hpp"
 
 namespace candela {
-
-/// The meshes of the world: one item per MeshInstance that SceneCheck accepts, in the order of the world's
-/// view.
-struct SceneGeometry {
-    struct Item {
-        Entity entity;
-        std::shared_ptr<const Mesh> mesh;
-        bool mirrored = false;  ///< the world matrix reverses the winding of its triangles
-        bool deformed = false;  ///< its entity has a DeformedMesh
-        bool operator==(const Item&) const = default;
-    };
-    std::vector<Item> items;
-    bool operator==(const SceneGeometry&) const = default;
-};
-
-/// The vertices of a DeformedMesh, and the box around those of each primitive; local space.
-struct Deformation {
-    std::shared_ptr<const DeformedMesh::Vertices> vertices;
-    std::vector<Box> bounds;
-    bool operator==(const Deformation&) const = default;
-};
-/// By item; only of those that are deformed.
-using Deformations = std::map<std::uint32_t, Deformation>;
-
-/// Where the surfaces of the items are.
-struct ScenePlacement {
-    std::vector<glm::mat4> world;  ///< local-to-world matrix of each item, by index; metres
-    Deformations deformed;
-    bool operator==(const ScenePlacement&) const = default;
-};
 
 /// A part of a primitive: so many triangles that follow each other, the last part fewer.
 inline constexpr std::uint32_t triangles_per_part = 256;
@@ -77,9 +46,17 @@ struct SceneLayout {
     std::vector<Group> groups;            ///< in drawing order
     std::vector<std::shared_ptr<const Material>> materials;  ///< null where an index is not in use
     std::uint32_t solid_count = 0;  ///< number of opaque and masked drawables: they stop light
+    /// Numbers of drawables, item by item, ascending: those of item i are from first_of_item[i] up to
+    /// first_of_item[i + 1].
+    std::vector<std::uint32_t> by_item;
+    std::vector<std::uint32_t> first_of_item;
 
     /// The groups of one alpha mode.
     [[nodiscard]] std::span<const Group> groups_of(AlphaMode alpha) const;
+    /// The numbers of an item's drawables.
+    [[nodiscard]] std::span<const std::uint32_t> drawables_of(std::size_t item) const {
+        return std::span(by_item).subspan(first_of_item[item], first_of_item[item + 1] - first_of_item[item]);
+    }
     /// The drawables that stop light.
     [[nodiscard]] std::span<const Drawable> solids() const { return std::span(drawables).first(solid_count); }
 };
@@ -92,6 +69,16 @@ struct SceneLayout {
 /// The boxes around its parts; a single one around all that is deformed. Local space.
 [[nodiscard]] std::span<const Box> parts_of(const SceneLayout::Drawable& drawable,
                                             const Deformations& deformed);
+
+/// The numbers of the drawables whose items are elsewhere than before, ascending. Both have as many items as
+/// the layout.
+[[nodiscard]] std::vector<std::uint32_t> moved_drawables(const SceneLayout& layout,
+                                                         const SharedArray<glm::mat4>& before,
+                                                         const SharedArray<glm::mat4>& now);
+
+/// The numbers of the solid drawables that are elsewhere than before or deformed in another way, ascending.
+[[nodiscard]] std::vector<std::uint32_t> moved_solids(const SceneLayout& layout, const ScenePlacement& before,
+                                                      const ScenePlacement& now);
 
 /// The scene on the GPU, with its description on the CPU.
 struct SceneData {
@@ -109,10 +96,10 @@ struct SceneData {
     std::optional<BufferHandle<glm::vec2>> second_uvs{};
 };
 
-/// Adds nodes `scene-gather` (CPU: items that SceneCheck accepts, where they are and how they are
-/// deformed, from MeshInstance, Transform and DeformedMesh), `scene-upload` (CPU, then upload: meshes and
-/// materials, when the set of items changes, only those that the scene had not before; and deformed vertices,
-/// when they change) and `instance-upload` (CPU, then upload: world matrices, when something moves). With
+/// Adds nodes `scene-gather` (CPU: SceneList, from MeshInstance, Transform and DeformedMesh), `scene-upload`
+/// (CPU, then upload: meshes and materials, when the set of items changes, only those that the scene had not
+/// before; and deformed vertices, when they change) and `instance-upload` (CPU, then upload: the world
+/// matrices of what has moved). With
 /// `second_uvs` also `second-uv-upload` (CPU, then upload: all of them, when the set of items changes).
 [[nodiscard]] SceneData add_scene_upload(FrameGraph& graph, Gpu& gpu, bool second_uvs = false);
 

@@ -57,8 +57,8 @@ TracedObject object_at(const TracedScene& scene, std::uint32_t index) {
 template <class Found>
 void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
     float limit = ray.t_max;
-    traverse(scene.hierarchy.top.bvh, ray, [&](std::uint32_t i) {
-        const TopBvh::Leaf& leaf = scene.hierarchy.top.leaves[i];
+    traverse(scene.hierarchy.top.top().bvh, ray, [&](std::uint32_t i) {
+        const TopBvh::Leaf& leaf = scene.hierarchy.top.top().leaves[i];
         const TracedObject object = object_at(scene, leaf.object);
         const auto visit = [&](std::uint32_t index) {
             const Triangle triangle = object.triangle(index);
@@ -66,7 +66,7 @@ void trace(const TracedScene& scene, const Ray& ray, Found&& found) {
             if (hit && hit->t < limit && !object.has_hole(*hit)) limit = found(*hit, triangle);
             return limit;
         };
-        traverse(scene.hierarchy.objects[leaf.object].bvh, ray, visit, leaf.node);
+        traverse(scene.hierarchy.objects[leaf.object]->bvh, ray, visit, leaf.node);
         return limit;
     });
 }

@@ -16,8 +16,8 @@ namespace {
 
 std::vector<glm::mat3> shapes_of(const ScenePlacement& placement) {
     std::vector<glm::mat3> shapes;
-    for (const glm::mat4& world : placement.world) {
-        shapes.push_back(shape_of(world));
+    for (std::size_t i = 0; i < placement.world.size(); ++i) {
+        shapes.push_back(shape_of(placement.world[i]));
     }
     return shapes;
 }

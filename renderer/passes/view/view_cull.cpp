@@ -1,65 +1,87 @@
 #include "renderer/passes/view/view_cull.hpp"
 
-#include <algorithm>
-#include <array>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <vector>
 
 #include <candela/graph/execute.hpp>
+#include "renderer/gpu/buffer_ranges.hpp"
 #include "renderer/gpu/growing_buffer.hpp"
+#include "renderer/passes/view/seen_objects.hpp"
 
 namespace candela {
 namespace {
 
-// Relative slack of clip coordinates, far above the rounding error of the matrix products.
-constexpr float rounding = 1e-4F;
+/// Changed in place, so that it cannot be compared.
+struct KeptView {
+    std::shared_ptr<SeenObjects> seen;
+};
 
-/// Signed distances from the six planes of the view volume of a point in clip space, times w; negative:
-/// outside.
-std::array<float, 6> plane_distances(const glm::vec4& clip) {
-    return {clip.w + clip.x, clip.w - clip.x, clip.w + clip.y, clip.w - clip.y, clip.z, clip.w - clip.z};
+/// What a view is culled from, and where the draws go.
+struct CullNode {
+    SceneData scene;
+    ValueHandle<std::shared_ptr<const SceneHierarchy>> hierarchy;
+    ValueHandle<CameraView> camera;
+    ValueHandle<KeptView> kept;
+    BufferHandle<gpu::DrawCommand> draws;
+};
+
+/// The draw of a drawable, for which nothing is drawn if it is not seen.
+gpu::DrawCommand seen_draw(const SceneLayout& layout, std::uint32_t drawable, bool is_seen) {
+    gpu::DrawCommand draw = layout.draws[drawable];
+    draw.instance_count = is_seen ? 1 : 0;
+    return draw;
+}
+
+void cull(const Gpu& gpu, Execution& run, const CullNode& node) {
+    const SceneLayout& layout = run.value(node.scene.layout);
+    const ScenePlacement& placement = run.value(node.scene.placement);
+    const glm::mat4& clip_from_world = run.value(node.camera).clip_from_world;
+    const std::shared_ptr<SeenObjects> seen =
+        run.has_result() ? run.previous(node.kept)->seen : std::make_shared<SeenObjects>();
+    const bool all = !run.has_result() || run.changed(node.scene.layout);
+    std::vector<std::uint32_t> changed =
+        seen->update(run.value(node.hierarchy)->top, layout.solid_count, clip_from_world, all);
+    run.set(node.kept, {seen});
+    if (all) {
+        changed.resize(layout.solid_count);
+        std::iota(changed.begin(), changed.end(), 0U);
+        run.reserve(node.draws, layout.draws.size());
+    }
+    BufferWriter<gpu::DrawCommand> writer(gpu, run.object(node.draws));
+    for (const std::uint32_t i : changed) {
+        writer.seek(i);
+        writer.push_back(seen_draw(layout, i, seen->sees(i)));
+    }
+    writer.seek(layout.solid_count);
+    for (std::uint32_t i = layout.solid_count; i < layout.drawables.size(); ++i) {
+        const SceneLayout::Drawable& drawable = layout.drawables[i];
+        const Box& bounds = bounds_of(drawable, placement.deformed);
+        const InView where = in_view(bounds, clip_from_world * placement.world[drawable.item]);
+        writer.push_back(seen_draw(layout, i, where != InView::outside));
+    }
+    writer.flush();
 }
 
 }  // namespace
 
-bool is_outside(const Box& box, const glm::mat4& clip_from_box) {
-    std::array<bool, 6> all_beyond;
-    all_beyond.fill(true);
-    for (unsigned i = 0; i < 8; ++i) {
-        const glm::vec4 clip = clip_from_box * glm::vec4(box.corner(i), 1.0F);
-        const float slack = rounding * (std::abs(clip.x) + std::abs(clip.y) + std::abs(clip.w));
-        const std::array<float, 6> distances = plane_distances(clip);
-        for (std::size_t plane = 0; plane < distances.size(); ++plane) {
-            all_beyond[plane] = all_beyond[plane] && distances[plane] < -slack;
-        }
-    }
-    return std::ranges::find(all_beyond, true) != all_beyond.end();
-}
-
-std::vector<gpu::DrawCommand> visible_draws(const SceneLayout& layout, const ScenePlacement& placement,
-                                            const CameraView& view) {
-    std::vector<gpu::DrawCommand> draws = layout.draws;
-    for (std::size_t i = 0; i < draws.size(); ++i) {
-        const SceneLayout::Drawable& drawable = layout.drawables[i];
-        if (is_outside(bounds_of(drawable, placement.deformed),
-                       view.clip_from_world * placement.world[drawable.item])) {
-            draws[i].instance_count = 0;
-        }
-    }
-    return draws;
-}
-
-SceneData add_view_cull(FrameGraph& graph, const Gpu& gpu, const SceneData& scene,
+SceneData add_view_cull(FrameGraph& graph, const Gpu& gpu, const SceneData& scene, const Tracing& tracing,
                         ValueHandle<CameraView> camera) {
     return graph.add("view-cull", [&](Pass& pass) {
         pass.read(scene.layout);
         pass.read(scene.placement);
+        pass.read(tracing.hierarchy);
         pass.read(camera);
+        const CullNode node{
+            .scene = scene,
+            .hierarchy = tracing.hierarchy,
+            .camera = camera,
+            .kept = pass.update(graph.value<KeptView>("seen objects")),
+            .draws = pass.update(growing_buffer<gpu::DrawCommand>(graph, "visible draws"), Usage::copy)};
+        pass.run([=, &gpu](Execution& run) { cull(gpu, run, node); });
         SceneData out = scene;
-        out.draws = pass.write(growing_buffer<gpu::DrawCommand>(graph, "visible draws"), Usage::copy);
-        pass.run([=, &gpu](Execution& run) {
-            upload<gpu::DrawCommand>(
-                gpu, run, out.draws,
-                visible_draws(run.value(out.layout), run.value(out.placement), run.value(camera)));
-        });
+        out.draws = node.draws;
         return out;
     });
 }
