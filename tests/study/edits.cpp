@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -79,7 +80,7 @@ World studio() {
 
 /// A kind of edit: `apply` makes one, on the frame with that number.
 struct EditStudy {
-    std::string_view name;
+    std::string name;
     std::function<void(int)> apply;
 };
 
@@ -92,8 +93,9 @@ struct EditCost {
 
 /// Whether the pass works on the CPU for every edit of the scene, and not for the picture.
 bool is_of_scene(std::string_view pass) {
-    static constexpr std::array names{"scene-gather", "scene-upload", "instance-upload", "bvh",
-                                      "scene-motion", "lights",       "view-cull",       "refinement"};
+    static constexpr std::array names{"scene-gather", "scene-upload", "instance-upload",
+                                      "bvh",          "scene-motion", "lights",
+                                      "view-cull",    "refinement",   "shadow-plan"};
     return std::ranges::find(names, pass) != names.end();
 }
 
@@ -216,6 +218,51 @@ void study_crowd(const gl::GetProc& get_proc, int rounds) {
     print_costs(bench, {{"all move", move}}, rounds);
 }
 
+/// `count` edits at a time in a wide world of so many things.
+void study_world(const gl::GetProc& get_proc, int rounds, std::uint32_t things) {
+    World world = studio();
+    const Entity camera = world.entities<Camera>().front();
+    const auto small = sphere(2, painted({0.5F, 0.2F, 0.2F}));
+    const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(things)));
+    const auto at = [&](std::uint32_t n) {
+        return glm::vec3(n % side, 0.0F, n / side) - 0.5F * glm::vec3(side, 2.0F, side);
+    };
+    std::vector<Entity> all;
+    for (std::uint32_t i = 0; i < things; ++i) all.push_back(place(world, small, at(i), 0.3F));
+    std::vector<Entity> added;
+
+    Bench bench(get_proc, world, {64, 48});
+    bench.configure(direct_light());
+    fmt::print("{} things:\n", things);
+    const auto add_places = [&](int) { world.set(world.create(), Transform{}); };
+    const auto turn = [&](int) {
+        world.edit<Transform>(camera, [](Transform& pose) {
+            pose.rotation = glm::angleAxis(0.02F, glm::vec3(0, 1, 0)) * pose.rotation;
+        });
+    };
+    std::vector<EditStudy> edits{{"an entity with a transform alone is added", add_places},
+                                 {"the camera turns", turn}};
+    for (const std::uint32_t count : {1U, 10U, 100U, 1000U}) {
+        if (count > things) continue;
+        const auto move = [&, count](int round) {
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const Entity entity = all[(std::uint64_t{i} * things / count + 7U * round) % things];
+                world.edit<Transform>(entity, [](Transform& pose) { pose.translation.y += 0.1F; });
+            }
+        };
+        const auto toggle = [&, count](int round) {
+            for (std::uint32_t i = 0; i < count && round % 2 == 0; ++i) {
+                added.push_back(place(world, small, at(things + i), 0.3F));
+            }
+            if (round % 2 == 0) return;
+            for (const Entity entity : std::exchange(added, {})) world.destroy(entity);
+        };
+        edits.push_back({fmt::format("{} moved", count), move});
+        edits.push_back({fmt::format("{} came or went", count), toggle});
+    }
+    print_costs(bench, edits, rounds);
+}
+
 }  // namespace
 
 int edits(const EditsStudy& study) {
@@ -223,6 +270,8 @@ int edits(const EditsStudy& study) {
     context->make_current();
     const gl::GetProc get_proc = Uploads::counting(context->get_proc());
     fmt::print("CPU time of the scene's passes after an edit, medians of {} rounds\n", 2 * study.rounds);
+    for (const std::uint32_t things : study.things) study_world(get_proc, study.rounds, things);
+    if (!study.things.empty()) return 0;
     study_textures(get_proc, study.rounds);
     study_crowd(get_proc, study.rounds);
     return 0;

@@ -181,6 +181,8 @@ void add_edits(CLI::App& app, int& status) {
     CLI::App& part = *app.add_subcommand("edits", "what a frame costs after meshes came, went or moved");
     const auto study = std::make_shared<EditsStudy>();
     part.add_option("--rounds", study->rounds, "of two edits each")->check(CLI::Range(1, 1000));
+    part.add_option("--things", study->things, "in wide worlds of so many things each")
+        ->check(CLI::Range(1, 10'000'000));
     part.callback([=, &status] { status = edits(*study); });
 }
 

@@ -106,7 +106,8 @@ int moves(const MovesStudy& study);
 
 /// The input of `edits`.
 struct EditsStudy {
-    int rounds = 5;  ///< of two edits each
+    int rounds = 5;                     ///< of two edits each
+    std::vector<std::uint32_t> things;  ///< worlds of so many; none: a few scenes with large meshes
 };
 /// Prints the CPU time and the uploaded bytes of frames in which meshes come, go or move.
 int edits(const EditsStudy& study);
