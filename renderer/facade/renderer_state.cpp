@@ -152,6 +152,7 @@ void Renderer::State::switch_to(const Configuration& configuration, const FrameS
     configuration_ = configuration;
     shape_ = shape;
     extensions_ = std::move(extensions);
+    surfaces_bound_ = false;
     last_passes_.clear();
 }
 
@@ -170,18 +171,41 @@ void Renderer::State::require_views(std::span<const RenderView> views) const {
     }
 }
 
+void Renderer::State::set_views(std::span<const RenderView> views) {
+    host_contents_.resize(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const ViewHandles& handles = frame_.views[i];
+        set_view(handles, views[i]);
+        if (handles.host) {
+            set_surfaces(*handles.host, *views[i].surfaces, host_contents_[i]);
+        } else {
+            host_contents_[i] = {};
+        }
+    }
+    surfaces_bound_ = true;
+}
+
 void Renderer::State::set_view(const ViewHandles& handles, const RenderView& view) {
     const glm::uvec2 size = rendered_size(view.target.size, shape_.quality);
     runtime_.set(handles.request, ViewRequest{view.camera, size, view.jitter});
     runtime_.set(handles.target, view.target);
     runtime_.bind(handles.picture, view.target.framebuffer, {view.target.size, Format::rgba8});
-    if (handles.host) {
-        runtime_.set(handles.host->description, *view.surfaces);
-        runtime_.bind(handles.host->depth, view.surfaces->depth, {});
-        runtime_.bind(handles.host->normal, view.surfaces->normal, {});
-        runtime_.bind(handles.host->albedo, view.surfaces->albedo, {});
-        if (handles.host->material) runtime_.bind(*handles.host->material, view.surfaces->material, {});
-    }
+}
+
+/// Binds the host's textures, by which their content counts as new, unless it is known to be the same.
+void Renderer::State::set_surfaces(const HostSurfaceInputs& inputs, const HostSurfaces& surfaces,
+                                   HostContent& last) {
+    const HostContent now{surfaces, texture_size(gpu_.device(), surfaces.depth)};
+    const bool revised = surfaces.revision != 0 && now != last;
+    const bool same = surfaces.revision != 0 && now == last;
+    last = now;
+    if (revised) ++refinement_clock_.epoch;
+    runtime_.set(inputs.description, surfaces);
+    if (same && surfaces_bound_) return;
+    runtime_.bind(inputs.depth, surfaces.depth, {});
+    runtime_.bind(inputs.normal, surfaces.normal, {});
+    runtime_.bind(inputs.albedo, surfaces.albedo, {});
+    if (inputs.material) runtime_.bind(*inputs.material, surfaces.material, {});
 }
 
 void Renderer::State::render(const World& world, std::span<const RenderView> views) {
@@ -203,9 +227,7 @@ void Renderer::State::render(const World& world, std::span<const RenderView> vie
     }
     shape.quality = quality_now(world, std::move(requests));
     if (shape != shape_) switch_to(configuration_, shape, extensions_);
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        set_view(frame_.views[i], views[i]);
-    }
+    set_views(views);
     // The mean starts over after a frame that threw.
     if (!std::exchange(completed_, false)) {
         ++refinement_clock_.epoch;

@@ -54,13 +54,22 @@ class CANDELA_PRIVATE Renderer::State {
         Quality quality;
     };
 
+    /// The surfaces that the host has drawn of a view, in the last frame.
+    struct HostContent {
+        HostSurfaces surfaces{};
+        glm::uvec2 size{0};  // of the textures
+        bool operator==(const HostContent&) const = default;
+    };
+
     void switch_to(const Configuration& configuration, const FrameShape& shape,
                    std::vector<Extension> extensions);
     [[nodiscard]] std::vector<std::string> try_to(const Configuration& configuration,
                                                   std::vector<Extension> extensions);
     void require_room_for_maps(const Configuration& configuration) const;
     void require_views(std::span<const RenderView> views) const;
+    void set_views(std::span<const RenderView> views);
     void set_view(const ViewHandles& handles, const RenderView& view);
+    void set_surfaces(const HostSurfaceInputs& inputs, const HostSurfaces& surfaces, HostContent& last);
     [[nodiscard]] const ViewHandles& view_handles(std::size_t view) const;
     [[nodiscard]] FrameContents contents_now(const World& world);
     [[nodiscard]] double budget_ms() const;
@@ -86,6 +95,8 @@ class CANDELA_PRIVATE Renderer::State {
     std::uint32_t contents_vpls_ = 0;           // VplSettings::count then
     Tick contents_transforms_ = 0;              // revision of Transform then
     bool contents_depend_on_transforms_ = false;
+    std::vector<HostContent> host_contents_;  // by view
+    bool surfaces_bound_ = false;  // the host's textures have been bound since the last `switch_to`
     Quality quality_in_motion_;
     std::vector<ViewRequest> last_requests_;
     Tick last_revision_ = 0;  // the world's, in the last frame

@@ -49,13 +49,18 @@ void require_texture(const gl::Device& device, std::uint32_t texture, std::strin
     }
 }
 
+glm::uvec2 texture_size(const gl::Device& device, std::uint32_t texture) {
+    glm::ivec2 size(0);
+    device.gl().GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &size.x);
+    device.gl().GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &size.y);
+    return glm::uvec2(size);
+}
+
 void require_texture(const gl::Device& device, std::uint32_t texture, glm::uvec2 size,
                      std::string_view what) {
     require_texture(device, texture, what);
-    glm::ivec2 found(0);
-    device.gl().GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &found.x);
-    device.gl().GetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &found.y);
-    if (glm::uvec2(found) != size) {
+    const glm::uvec2 found = texture_size(device, texture);
+    if (found != size) {
         throw gl::GlError(fmt::format("{}, texture {}, has {} × {} pixels instead of {} × {}", what, texture,
                                       found.x, found.y, size.x, size.y));
     }

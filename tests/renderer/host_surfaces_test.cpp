@@ -2,10 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/matrix.hpp>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "renderer/facade/device_of.hpp"
@@ -24,15 +27,19 @@ constexpr glm::uvec2 size{48, 36};
 /// A texture of the host's with OpenGL's default parameters, which ask for mip levels that it does not have.
 class HostTexture {
  public:
-    HostTexture(gl::Device& device, const std::vector<glm::vec4>& texels, Format format)
-        : texture_(device, "host's", {size, format}) {
+    HostTexture(gl::Device& device, const std::vector<glm::vec4>& texels, Format format,
+                glm::uvec2 of_size = size)
+        : texture_(device, "host's", {of_size, format}) {
+        fill(texels);
+        device.gl().TextureParameteri(texture_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_LINEAR);
+    }
+    void fill(const std::vector<glm::vec4>& texels) {
+        const std::size_t components = gl::format_info(texture_.desc().format).components;
         std::vector<float> channels;
         for (const glm::vec4& texel : texels) {
-            channels.push_back(texel.x);
-            if (format == Format::rgba32f) channels.insert(channels.end(), {texel.y, texel.z, texel.w});
+            for (std::size_t i = 0; i < components; ++i) channels.push_back(texel[static_cast<int>(i)]);
         }
         texture_.upload(std::as_bytes(std::span(channels)));
-        device.gl().TextureParameteri(texture_.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_LINEAR);
     }
     [[nodiscard]] GLuint name() const { return texture_.name(); }
 
@@ -121,6 +128,74 @@ class HostSurfaceTests : public RenderFixture {
     Configuration configuration = linear_configuration();
     RenderTarget target{device, size};
 };
+
+/// A host that draws into textures of its own, with a renderer that keeps their light.
+class HostTexturesTests : public HostSurfaceTests {
+ protected:
+    HostTexturesTests() {
+        static_cast<void>(usual());
+        const FrameResults results = renderer.results();
+        conventions = own_surfaces();
+        depth_texels = depths(device.gl(), results.depth);
+        normal_texels = texels(device.gl(), results.normal);
+        albedo_texels = texels(device.gl(), results.albedo);
+        for (glm::vec4& texel : normal_texels) texel = glm::vec4(decoded_normal(texel), 0.0F);
+        conventions.normal_encoding = NormalEncoding::signed_xyz;
+        depth.emplace(device, depth_texels, Format::r32f);
+        normal.emplace(device, normal_texels, Format::rgba32f);
+        albedo.emplace(device, albedo_texels, Format::rgba32f);
+        REQUIRE(kept.configure(configuration).empty());
+    }
+
+    [[nodiscard]] HostSurfaces surfaces(std::uint64_t revision) const {
+        HostSurfaces surfaces = conventions;
+        surfaces.depth = depth->name();
+        surfaces.normal = normal->name();
+        surfaces.albedo = albedo->name();
+        surfaces.revision = revision;
+        return surfaces;
+    }
+
+    [[nodiscard]] RenderView view_of(const HostSurfaces& surfaces) const {
+        return {.camera = scene.camera, .target = to.target(), .surfaces = surfaces};
+    }
+
+    /// A frame of the renderer that goes on from frame to frame.
+    Picture next(const HostSurfaces& surfaces) {
+        const RenderView view = view_of(surfaces);
+        kept.render(scene.world, {&view, 1});
+        return to.read();
+    }
+
+    [[nodiscard]] std::vector<std::string> passes_that_ran() const {
+        std::vector<std::string> names;
+        for (const PassRecord& pass : kept.last_passes()) {
+            if (pass.ran) names.emplace_back(pass.name);
+        }
+        return names;
+    }
+    [[nodiscard]] bool reads_surfaces() const {
+        const std::vector<std::string> names = passes_that_ran();
+        return std::ranges::find(names, "host-surfaces") != names.end();
+    }
+
+    void darken_albedo() {
+        for (glm::vec4& texel : albedo_texels) texel *= 0.5F;
+        albedo->fill(albedo_texels);
+    }
+
+    HostSurfaces conventions;
+    std::vector<glm::vec4> depth_texels;
+    std::vector<glm::vec4> normal_texels;
+    std::vector<glm::vec4> albedo_texels;
+    std::optional<HostTexture> depth;
+    std::optional<HostTexture> normal;
+    std::optional<HostTexture> albedo;
+    TestedRenderer kept{context->get_proc()};
+    RenderTarget to{device, size};
+};
+
+const std::vector<std::string> only_copy{"tone-map"};
 
 // Positions that were stored and read again differ by rounding, which moves the edges of shadows by less than
 // a thousandth of a pixel; a wrong convention gives errors near 1.
@@ -262,6 +337,155 @@ TEST_CASE_FIXTURE(HostSurfaceTests,
     }
     // All 8 frames have the same surfels and the same samples of the pixels.
     CHECK(relative_mean_square(to.read(), expected) < rounding);
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests,
+                  "with a revision, a still frame only copies, as one without surfaces of the host's") {
+    const Picture first = next(surfaces(1));
+    CHECK(first == from(surfaces(0)));
+    CHECK(reads_surfaces());
+    for (int frame = 0; frame < 3; ++frame) {
+        CHECK(next(surfaces(1)) == first);
+        CHECK(passes_that_ran() == only_copy);
+    }
+    CHECK(next(surfaces(0)) == first);
+    CHECK(reads_surfaces());
+    CHECK(next(surfaces(0)) == first);
+    CHECK(reads_surfaces());
+    // What lights the surfaces is another matter.
+    scene.world.edit<PointLight>(scene.light, [](PointLight& light) { light.intensity *= 2.0F; });
+    CHECK(next(surfaces(2)) == from(surfaces(0)));
+    scene.world.edit<PointLight>(scene.light, [](PointLight& light) { light.intensity *= 2.0F; });
+    CHECK(next(surfaces(2)) == from(surfaces(0)));
+    CHECK_FALSE(reads_surfaces());
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests, "another revision, texture, size or convention is seen at once") {
+    Picture last = next(surfaces(1));
+    const auto check_change = [&](const HostSurfaces& changed) {
+        const Picture now = next(changed);
+        CHECK(reads_surfaces());
+        CHECK(now == from(changed));
+        CHECK(now != last);
+        last = now;
+        CHECK(next(changed) == last);
+        CHECK(passes_that_ran() == only_copy);
+    };
+    darken_albedo();
+    check_change(surfaces(2));
+
+    const HostTexture white(device, std::vector(albedo_texels.size(), glm::vec4(1)), Format::rgba32f);
+    HostSurfaces other = surfaces(2);
+    other.albedo = white.name();
+    check_change(other);
+
+    HostSurfaces turned = other;
+    turned.world_from_normal = glm::mat3(glm::rotate(glm::mat4(1.0F), 1.0F, glm::vec3(1, 0, 0)));
+    check_change(turned);
+
+    // New storage of the same textures, by a function that the library never calls.
+    const gl::Functions& gl = device.gl();
+    const auto tex_image = reinterpret_cast<PFNGLTEXIMAGE2DPROC>(context->get_proc()("glTexImage2D"));
+    std::array<GLuint, 3> names{};
+    gl.GenTextures(3, names.data());
+    const auto specify = [&](GLuint name, GLint internal, GLenum layout, const std::vector<glm::vec4>& texels,
+                             std::uint32_t step) {
+        std::vector<float> channels;
+        for (std::uint32_t y = 0; y < size.y; y += step) {
+            for (std::uint32_t x = 0; x < size.x; x += step) {
+                const glm::vec4 texel = texels[y * size.x + x];
+                channels.push_back(texel.x);
+                if (layout == GL_RGB) channels.insert(channels.end(), {texel.y, texel.z});
+            }
+        }
+        gl.BindTexture(GL_TEXTURE_2D, name);
+        tex_image(GL_TEXTURE_2D, 0, internal, static_cast<GLsizei>(size.x / step),
+                  static_cast<GLsizei>(size.y / step), 0, layout, GL_FLOAT, channels.data());
+        gl.BindTexture(GL_TEXTURE_2D, 0);
+    };
+    const auto specify_all = [&](std::uint32_t step) {
+        specify(names[0], GL_R32F, GL_RED, depth_texels, step);
+        specify(names[1], GL_RGB32F, GL_RGB, normal_texels, step);
+        specify(names[2], GL_RGB32F, GL_RGB, albedo_texels, step);
+    };
+    HostSurfaces resized = surfaces(3);
+    resized.depth = names[0];
+    resized.normal = names[1];
+    resized.albedo = names[2];
+    specify_all(1);
+    check_change(resized);
+    specify_all(2);
+    check_change(resized);
+    gl.DeleteTextures(3, names.data());
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests,
+                  "surfaces with a revision stay through other graphs, views and exceptions") {
+    const Picture first = next(surfaces(1));
+    configuration.tone_map.enabled = true;
+    REQUIRE(kept.configure(configuration).empty());
+    CHECK(next(surfaces(1)) == from(surfaces(0)));
+    configuration.tone_map.enabled = false;
+    REQUIRE(kept.configure(configuration).empty());
+    CHECK(next(surfaces(1)) == first);
+
+    darken_albedo();
+    HostSurfaces missing = surfaces(2);
+    missing.normal = 4711;
+    CHECK_THROWS_AS(static_cast<void>(next(missing)), gl::GlError);
+    CHECK(next(surfaces(2)) == from(surfaces(0)));
+
+    // Views have revisions of their own.
+    const RenderTarget second(device, size);
+    const HostTexture white(device, std::vector(albedo_texels.size(), glm::vec4(1)), Format::rgba32f);
+    HostSurfaces of_second = surfaces(2);
+    of_second.albedo = white.name();
+    std::vector<RenderView> views{view_of(surfaces(2)), view_of(of_second)};
+    views[1].target = second.target();
+    for (int frame = 0; frame < 2; ++frame) {
+        kept.render(scene.world, views);
+        CHECK(to.read() == from(surfaces(0)));
+        of_second.revision = 0;
+        CHECK(second.read() == from(of_second));
+    }
+    // Not more passes than if Candela had drawn the surfaces: views share memory.
+    const std::size_t passes = passes_that_ran().size();
+    std::vector<RenderView> own = views;
+    for (RenderView& view : own) view.surfaces.reset();
+    for (int frame = 0; frame < 2; ++frame) kept.render(scene.world, own);
+    CHECK(passes <= passes_that_ran().size());
+    kept.render(scene.world, views);
+    CHECK(to.read() == from(surfaces(0)));
+    kept.invalidate();
+    kept.render(scene.world, views);
+    CHECK(second.read() == from(of_second));
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests, "refinement starts over with a new revision, and goes on without") {
+    configuration.refinement = {.enabled = true, .frames = 4};
+    REQUIRE(kept.configure(configuration).empty());
+    for (std::uint32_t frame = 1; frame <= 4; ++frame) {
+        static_cast<void>(next(surfaces(1)));
+        CHECK(kept.report().refined == frame);
+    }
+    const Picture refined = next(surfaces(1));
+    CHECK(kept.settled());
+    CHECK(passes_that_ran() == only_copy);
+    darken_albedo();
+    CHECK(relative_mean_square(next(surfaces(2)), refined) > 100.0 * rounding);
+    CHECK(kept.report().refined == 1);
+    for (std::uint32_t frame = 2; frame <= 4; ++frame) {
+        static_cast<void>(next(surfaces(0)));
+        CHECK(kept.report().refined == frame);
+    }
+}
+
+TEST_CASE_FIXTURE(HostTexturesTests, "verification finds a revision that should have changed") {
+    kept.verify(true);
+    static_cast<void>(next(surfaces(1)));
+    CHECK_NOTHROW(static_cast<void>(next(surfaces(1))));
+    darken_albedo();
+    CHECK(throws<GraphError>([&] { static_cast<void>(next(surfaces(1))); }, "host-surfaces"));
 }
 
 }  // TEST_SUITE("host surfaces")

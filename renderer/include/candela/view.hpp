@@ -59,7 +59,7 @@ enum class NormalEncoding : std::uint8_t {
 /// The surfaces that are visible in a view, as drawn by the host: 2D textures of the same size, which should
 /// be that of the target. Candela then draws no surfaces itself and computes their light: the radiance that
 /// they reflect. It adds no emission, sky or blended surfaces, which are the host's. The scene's meshes must
-/// still be in the world, where they cast shadows and reflect light. The textures count as new in each frame.
+/// still be in the world, where they cast shadows and reflect light.
 struct HostSurfaces {
     std::uint32_t depth = 0;   ///< GL name; window depth in [0, 1]: a depth format, or red
     std::uint32_t normal = 0;  ///< GL name
@@ -75,6 +75,11 @@ struct HostSurfaces {
     float empty_depth = 1.0F;        ///< where there is no surface; 0 for reversed depth
     NormalEncoding normal_encoding = NormalEncoding::signed_xyz;
     glm::mat3 world_from_normal{1.0F};  ///< a rotation: the camera's if the normals are in view space
+    /// Which content the textures have. If this and all else here are as in the last frame of the view, and
+    /// the textures have the same size, their content counts as the same, and a still frame costs next to
+    /// nothing; refinement starts over when the content changes. 0: the content counts as new in each frame,
+    /// and refinement goes on. Renderer::verify finds a revision that should have changed.
+    std::uint64_t revision = 0;
     bool operator==(const HostSurfaces&) const = default;
 };
 
