@@ -219,6 +219,11 @@ std::optional<FoundBuffer> FrameGraph::find_buffer(std::string_view name) const 
     return FoundBuffer{{found}, resource.storage->buffer.stride, note_of(*declared_, resource)};
 }
 
+std::optional<TextureDesc> FrameGraph::desc(TextureHandle texture) const {
+    if (!declared_->owns(texture, ResourceKind::texture)) return std::nullopt;
+    return declared_->resources[texture.resource].storage->texture;
+}
+
 void FrameGraph::note(ResourceHandle on, std::any what) {
     if (on.graph != declared_->id || on.resource >= declared_->resources.size()) {
         return declared_->error(ErrorCode::foreign_handle, "note on a resource {}", declared_->fault_of(on));

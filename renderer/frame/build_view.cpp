@@ -1,7 +1,13 @@
 #include "renderer/frame/build_view.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
 
+#include <fmt/format.h>
+
+#include <candela/graph/errors.hpp>
 #include "renderer/frame/frame_budget.hpp"
 #include "renderer/passes/indirect/vpl_gather.hpp"
 #include "renderer/passes/mirror/mirror_rays.hpp"
@@ -132,9 +138,57 @@ Lighting lighting_of_blended(FrameGraph& graph, Gpu& gpu, const SharedFrame& sha
     return lighting;
 }
 
+/// A texture of a view's frame that extensions may replace.
+struct ReplaceablePart {
+    std::string_view name;
+    std::optional<TextureHandle> ViewFrame::*texture;
+};
+constexpr std::array<ReplaceablePart, 9> replaceable_parts{{{"depth", &ViewFrame::depth},
+                                                            {"normal", &ViewFrame::normal},
+                                                            {"albedo", &ViewFrame::albedo},
+                                                            {"mirror", &ViewFrame::mirror},
+                                                            {"gloss", &ViewFrame::gloss},
+                                                            {"bumps", &ViewFrame::bumps},
+                                                            {"indirect", &ViewFrame::indirect},
+                                                            {"indirect_flow", &ViewFrame::indirect_flow},
+                                                            {"radiance", &ViewFrame::radiance}}};
+
+std::string text_of(const TextureDesc& desc) {
+    std::string text = fmt::format("{}x{} texels of {}", desc.size.x, desc.size.y, to_string(desc.format));
+    if (desc.shape != TextureShape::flat) {
+        text += fmt::format(", {} of {} layers", to_string(desc.shape), desc.layers);
+    }
+    if (desc.mips > 1) text += fmt::format(", {} mip levels", desc.mips);
+    return text;
+}
+
+/// Throws GraphError if an extension has replaced a part by one that what follows could not read as the part.
+void require_alike(const FrameGraph& graph, const Extension& extension, const ViewFrame& given,
+                   const ViewFrame& returned) {
+    for (const auto& [name, texture] : replaceable_parts) {
+        const std::optional<TextureHandle>& before = given.*texture;
+        const std::optional<TextureHandle>& after = returned.*texture;
+        if (before == after) continue;
+        const auto refuse = [&, part = name](std::string_view what) {
+            throw GraphError(fmt::format("the extension '{}' {} '{}'{}", extension.name,
+                                         after ? "returns a part" : "removes the part", part, what));
+        };
+        if (!after) refuse("");
+        if (!before) refuse(", which it was not given");
+        const std::optional<TextureDesc> found = graph.desc(*after);
+        const std::optional<TextureDesc> expected = graph.desc(*before);
+        if (found && found != expected) {
+            refuse(fmt::format(" of {} instead of {}", text_of(*found), text_of(*expected)));
+        }
+    }
+}
+
 void extend(FrameGraph& graph, const SharedFrame& shared, ExtensionPlace place, ViewFrame& parts) {
     for (const Extension& extension : shared.extensions) {
-        if (extension.place == place) extension.declare(graph, parts);
+        if (extension.place != place) continue;
+        const ViewFrame given = parts;
+        extension.declare(graph, parts);
+        require_alike(graph, extension, given, parts);
     }
 }
 

@@ -38,6 +38,19 @@ TEST_CASE_FIXTURE(Find, "the newest version of a texture, by its name") {
     CHECK(backend.misuse.empty());
 }
 
+TEST_CASE_FIXTURE(Find, "the description of a texture, by its handle") {
+    const TextureHandle blank = texture("scene");
+    CHECK(graph.desc(blank) == colour);
+    CHECK(graph.desc(draw("surfaces", {}, blank)) == colour);
+    CHECK(graph.desc(graph.history(blank)) == colour);
+    const TextureDesc levels{.size = {8, 4}, .mips = 3};
+    CHECK(graph.desc(graph.mip(graph.texture("levels", levels), 1)) == part_desc(levels, {.mip = 1}));
+    CHECK_FALSE(graph.desc({}));
+    FrameGraph other;
+    CHECK_FALSE(graph.desc(other.texture("scene", colour)));
+    CHECK_FALSE(graph.desc({graph.buffer<int>("numbers", 1)}));
+}
+
 TEST_CASE_FIXTURE(Find, "names have the endings of views; of equal names, the last is found") {
     const TextureHandle first = draw("draw", {}, texture("depth"));
     graph.append_to_names(" 2");

@@ -18,6 +18,7 @@
 #include "renderer/gl/program.hpp"
 #include "tests/renderer/path_fixture.hpp"
 #include "tests/renderer/texels.hpp"
+#include "tests/throws.hpp"
 
 TEST_SUITE("extensions") {
 
@@ -292,6 +293,62 @@ TEST_CASE_FIXTURE(ExtensionTests, "a faulty extension is refused by name and cha
     CHECK(refused(unwritten).find("'thirsty'") != std::string::npos);
     CHECK(refused([](FrameGraph&, ViewFrame&) { throw std::runtime_error("no such file"); }) ==
           "no such file");
+}
+
+TEST_CASE_FIXTURE(ExtensionTests,
+                  "an extension that returns a part unlike the one that it was given is refused") {
+    const Picture usual = frame();
+    const auto refused = [&](ExtensionPlace place, auto change) {
+        Extension extension{.name = "odd", .place = place};
+        extension.declare = change;
+        const std::vector<std::string> errors = renderer.extend(extension);
+        CHECK(frame() == usual);
+        REQUIRE(errors.size() == 1);
+        return errors.front();
+    };
+    const auto written = [](FrameGraph& graph, const TextureDesc& desc) {
+        return graph.add(
+            "odd", [&](Pass& pass) { return pass.write(graph.texture("odd", desc), Usage::colour_target); });
+    };
+    const auto replacing = [&](TextureDesc desc) {
+        return [=](FrameGraph& graph, ViewFrame& parts) { parts.radiance = written(graph, desc); };
+    };
+    CHECK(
+        refused(ExtensionPlace::before_tone_map, replacing({size / 2U, Format::rgba32f})) ==
+        "the extension 'odd' returns a part 'radiance' of 12x9 texels of rgba32f instead of 24x18 texels of "
+        "rgba32f");
+    CHECK(
+        refused(ExtensionPlace::after_shading, replacing({size, Format::rgba16f})) ==
+        "the extension 'odd' returns a part 'radiance' of 24x18 texels of rgba16f instead of 24x18 texels of "
+        "rgba32f");
+    CHECK(refused(ExtensionPlace::after_shading,
+                  replacing({.size = size, .format = Format::rgba32f, .mips = 2}))
+              .find("24x18 texels of rgba32f, 2 mip levels instead of") != std::string::npos);
+    // Shading would overwrite it.
+    CHECK(refused(ExtensionPlace::after_surfaces, replacing({size, Format::rgba32f})) ==
+          "the extension 'odd' returns a part 'radiance', which it was not given");
+    CHECK(refused(ExtensionPlace::before_tone_map, [](FrameGraph&, ViewFrame& parts) {
+              parts.radiance.reset();
+          }) == "the extension 'odd' removes the part 'radiance'");
+    // A handle of nothing is found by compiling.
+    CHECK(refused(ExtensionPlace::before_tone_map, [](FrameGraph&, ViewFrame& parts) {
+              parts.radiance = TextureHandle{};
+          }).find("tone-map") != std::string::npos);
+    // An extension with a size of its own does until the size of the view is another.
+    Extension fixed{.name = "fixed"};
+    fixed.declare = [=](FrameGraph& graph, ViewFrame& parts) {
+        parts.radiance = graph.add("fixed", [&](Pass& pass) {
+            pass.read(*parts.radiance, Usage::copy);
+            return pass.write(graph.texture("fixed", {size, Format::rgba32f}), Usage::copy);
+        });
+    };
+    REQUIRE(renderer.extend(fixed).empty());
+    static_cast<void>(frame());
+    const RenderTarget larger(device, 2U * size);
+    CHECK(throws<GraphError>([&] { renderer.render(scene.world, scene.camera, larger.target()); },
+                             "of 24x18 texels of rgba32f instead of 48x36 texels of rgba32f"));
+    renderer.remove_extension("fixed");
+    CHECK(frame() == usual);
 }
 
 TEST_CASE_FIXTURE(ExtensionTests,

@@ -32,9 +32,11 @@ enum class ExtensionPlace : std::uint8_t {
     before_tone_map,  ///< radiance of the whole picture, with refinement the mean of all frames
 };
 
-/// Handles of a view's frame at the place of an extension: inputs for its passes. An extension replaces a
-/// handle by that of its own result, for example `radiance`; what follows in the frame then reads that. Sizes
-/// and formats are those of FrameResults. Parts that were not asked for may be missing.
+/// Handles of a view's frame at the place of an extension: inputs for its passes. An extension replaces the
+/// handle of a texture by that of its own result, for example `radiance`; what follows in the frame then
+/// reads that. The result must have the size and the format of what it replaces, which are those of
+/// FrameResults; to return another, or a part that was not given, is an error. Parts that were not asked for
+/// may be missing.
 struct ViewFrame {
     std::size_t index = 0;  ///< of the view in the call of Renderer::render
     glm::uvec2 size{1};     ///< pixels of the textures

@@ -270,6 +270,10 @@ class CANDELA_API FrameGraph {
     /// The same for a buffer.
     [[nodiscard]] std::optional<FoundBuffer> find_buffer(std::string_view name) const;
 
+    /// The description of a texture of this graph, as declared; none for another handle. A pass may reserve
+    /// another one.
+    [[nodiscard]] std::optional<TextureDesc> desc(TextureHandle texture) const;
+
     /// Says what the content of a texture or buffer means, for passes that find it by name: any value that
     /// the host chooses, such as a struct with handles of other resources. Replaces an earlier note.
     void note(ResourceHandle on, std::any what);
